@@ -16,7 +16,7 @@ from pathlib import Path
 import trustme
 
 from rastrainer.errors import InputError
-from rastrainer.study.database.database import LockWait, PostgresAddress
+from rastrainer.study.database.database import LockWait, PostgresAddress, study_place
 from rastrainer.study.database.study import Study
 from Testing.free_port import free_port
 
@@ -106,7 +106,7 @@ class PostgresServer:
 
     def address(self, database: str, user: str = "tester") -> PostgresAddress:
         """Return the address of a database."""
-        return PostgresAddress("127.0.0.1", database, user, self.port)
+        return study_place(f"postgresql://{user}@127.0.0.1:{self.port}/{database}")
 
     def execute(self, sql: str, database: str = "postgres") -> str:
         """Have `psql` execute SQL as the administrator; return what it prints."""

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from rastrainer_simulator.cli.main import read_commands
 from Testing.pictures import MOST_BYTES
 from Testing.test_architecture import FILES, named_in_strings, our_imports
 from tools import command_table
@@ -198,11 +199,21 @@ def module_at(path: str) -> str:
     return module
 
 
+def modules_of_commands() -> set[str]:
+    return {
+        f"rastrainer_simulator.cli.{command.run.partition('.')[0]}"
+        for command in read_commands().values()
+        if command.run
+    }
+
+
 def test_each_file_of_a_walk_leads_to_another_one_in_it():
     walks = modules_of_walks()
     assert len(walks) == 3
     for modules in walks.values():
         leads_to = {name: {*our_imports()[name], *named_in_strings(name)} for name in modules}
+        if "rastrainer_simulator.cli.main" in modules:
+            leads_to["rastrainer_simulator.cli.main"] |= modules_of_commands()
         for module in modules:
             others = {name for name in modules if module in leads_to[name]} | leads_to[module]
             assert others & set(modules) - {module}, module

@@ -1,6 +1,6 @@
 """Slicer's side without Slicer: receives, registers, scores and stores trials, writes files.
 
-    python -m rastrainer_headless.main --port 18944 --scenario DIR --output DIR [--trials N]
+    python -m rastrainer_headless.main --port 18944 --assets DIR --output DIR [--trials N]
 
 Every line on standard output is one JSON object with the key `event`:
 
@@ -35,26 +35,20 @@ from rastrainer.head.mesh import read_head_mesh
 from rastrainer.json_records import record_to_json
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
 from rastrainer.registration.fits import RIGID
-from rastrainer.scenario.scenario import Scenario, load_scenario
-from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic.delivery_queue import AbortedTrialLogic
-from rastrainer.slicer.logic.procedure_logic import ProcedureLogic
-from rastrainer.slicer.logic.scenario_cache import ScenarioCache
-from rastrainer.slicer.logic.trial_logic import TrialLogic
-from rastrainer.slicer.logic.trial_services import TrialServices
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.scene.error_colors import magnification
 from rastrainer.slicer.scene.nodes import labelsOf
-from rastrainer.slicer.scene.scenario_nodes import SceneFileLoader, showScenario
-from rastrainer.study.database.study import STUDY_FILE, Study
+from rastrainer.slicer.scene.scenario_nodes import showScenario
+from rastrainer.study.database.study import STUDY_FILE
 from rastrainer.trial.analysis import TrialAnalysis
-from rastrainer.trial.ctps import CTPS_WARNING, read_trials
+from rastrainer.trial.ctps import CTPS_WARNING
 from rastrainer.work_progress import allow_any_text
-from rastrainer_headless.connector import headlessKit
+from rastrainer_headless.headless_session import openSession, process
 from rastrainer_headless.residual_picture import writeResidualPicture
 from rastrainer_headless.scene import HeadlessScene
 
-PERIOD_S = 0.005
+PERIOD_S = 0.01
 SCENE = "trial.mrb"
 PICTURE = "residuals.png"
 RESULTS = "results.jsonl"
@@ -64,65 +58,32 @@ class TrialsMissingError(RASTrainerError):
     """The trials did not come in time."""
 
 
-class HeadlessHost:
-    """Replaces Slicer's application: owns the scene and calls what is due."""
+class TrialPrinter:
+    """Prints what happens in a session, and writes a line on each scored trial.
 
-    def __init__(self, cache: ScenarioCache, output: Path, cohort: Path | None) -> None:
-        self.application = HeadlessScene()
-        self.link = Link(self.application.scene, headlessKit, client="headless Slicer")
+    Attributes:
+        latest: the trial that was scored last.
+        scored: number of the scored trials.
+    """
+
+    def __init__(self, session: ModuleSession, results: Path) -> None:
         self.latest: TrialAnalysis | None = None
         self.scored = 0
-        self._output = output
+        self._results = results
         self._touches = 0
-        self._work = BackgroundWork()
-        self._files = SceneFileLoader(self.application.scene, self._work)
-        services = TrialServices(
-            self.application.scene,
-            self.link,
-            cache.find,
-            lambda: Study.open(output / STUDY_FILE, make_folder=True),
-            self._work,
-        )
-        self._presenter = TrialLogic(services, () if cohort is None else read_trials(cohort))
-        self._aborted = AbortedTrialLogic(services)
-        self._procedure = ProcedureLogic(services)
-        self._aborted.kept.connect(
+        session.link.statusChanged.connect(lambda status: printEvent("status", **asdict(status)))
+        session.link.pointsChanged.connect(self._printPoints)
+        session.trials.trialScored.connect(self._printTrial)
+        session.aborted.kept.connect(
             lambda trial: printEvent("aborted", trialId=trial.trial_id, reason=trial.reason)
         )
-        self.link.statusChanged.connect(lambda status: printEvent("status", **asdict(status)))
-        self.link.pointsChanged.connect(self._printPoints)
-        self._presenter.trialScored.connect(self._printTrial)
         for problems in (
-            self._presenter.problemFound,
-            self._aborted.problemFound,
-            self._files.problemFound,
-            self._procedure.answered,
+            session.trials.problemFound,
+            session.aborted.problemFound,
+            session.files.problemFound,
+            session.procedure.answered,
         ):
             problems.connect(lambda sentence: printEvent("problem", sentence=sentence))
-
-    def run(self, count: int, timeoutS: float) -> TrialAnalysis:
-        """Wait until a number of trials are scored, and return the last one."""
-        end = time.monotonic() + timeoutS
-        while self.scored < count or self.latest is None:
-            if time.monotonic() > end:
-                raise TrialsMissingError(
-                    f"{self.scored} of {count} trials came within {timeoutS:g} s. "
-                    f"{self.link.status.sentence} {self.link.status.remedy}".rstrip()
-                )
-            if self.link.connector is not None:
-                self.link.connector.PeriodicProcess()
-            self.link.process()
-            self._files.process()
-            self._work.process()
-            time.sleep(PERIOD_S)
-        return self.latest
-
-    def close(self) -> None:
-        self._procedure.close()
-        self._presenter.close()
-        self._aborted.close()
-        self._work.close()
-        self.link.disconnect()
 
     def _printPoints(self, node: Any) -> None:
         labels, positions = labelsOf(node), slicer.util.arrayFromMarkupsControlPoints(node)
@@ -136,14 +97,15 @@ class HeadlessHost:
 
     def _printTrial(self, analysis: TrialAnalysis) -> None:
         results = results_json(analysis)
-        path = self._output / RESULTS
         try:
-            with path.open("a", encoding="utf-8", newline="\n") as file:
+            with self._results.open("a", encoding="utf-8", newline="\n") as file:
                 file.write(json.dumps(results, allow_nan=False) + "\n")
                 file.flush()
                 os.fsync(file.fileno())
         except OSError as error:
-            raise InputError(f"The file {path} cannot be written: {error.strerror}.") from None
+            raise InputError(
+                f"The file {self._results} cannot be written: {error.strerror}."
+            ) from None
         self.latest = analysis
         self.scored += 1
         printEvent("trial", results=results)
@@ -187,11 +149,11 @@ def results_json(analysis: TrialAnalysis) -> dict[str, Any]:
 
 
 def writeOutput(
-    folder: Path, application: HeadlessScene, scenario: Scenario, latest: TrialAnalysis
+    folder: Path, scene: HeadlessScene, scenario: Scenario, latest: TrialAnalysis
 ) -> dict[str, str]:
     """Write scene and picture of the latest trial; return the paths of all files."""
     files = {"scene": folder / SCENE, "picture": folder / PICTURE, "results": folder / RESULTS}
-    application.save(files["scene"])
+    scene.save(files["scene"])
     task, rigid = scenario.task(latest.record.task), latest.rigid
     expected = latest.target_errors[RIGID]
     low, high = expected.interval_mm
@@ -224,11 +186,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument(
         "--listen", action="store_true", help="wait for a simulator started with --connect"
     )
-    parser.add_argument("--scenario", type=Path, required=True, metavar="DIR")
+    parser.add_argument("--scenario", default="colin27", metavar="NAME")
     parser.add_argument("--output", type=Path, required=True, metavar="DIR")
     parser.add_argument("--trials", type=int, default=1, metavar="N", help="trials to wait for")
     parser.add_argument("--timeout", type=float, default=600.0, metavar="S", help="seconds to wait")
-    parser.add_argument("--cohort", type=Path, metavar="CSV", help="trials that CTPS compares with")
+    parser.add_argument(
+        "--assets", type=Path, required=True, metavar="DIR", help="scenarios, robots and studies"
+    )
     arguments = parser.parse_args(argv)
     try:
         _run(arguments)
@@ -248,22 +212,33 @@ def _run(arguments: argparse.Namespace) -> None:
         raise InputError("Wait for at least one trial.")
     if not 0 < arguments.timeout < math.inf:
         raise InputError("The timeout must be a number of seconds above 0.")
-    cache = ScenarioCache(arguments.scenario)
-    scenario = load_scenario(arguments.scenario)
-    # What is wrong with it is reported before anyone plays.
-    Study.open(arguments.output / STUDY_FILE, make_folder=True).close()
-    host = HeadlessHost(cache, arguments.output, arguments.cohort)
-    showScenario(host.application.scene, scenario)
+    output, scene = arguments.output, HeadlessScene()
+    session = openSession(scene, output, arguments.assets)
     try:
+        # What is wrong with it is reported before anyone plays.
+        scenario = session.scenarios.find(arguments.scenario)
+        session.openStudyPatiently().close()
+        printer = TrialPrinter(session, output / RESULTS)
+        showScenario(scene.scene, scenario)
         if arguments.listen:
-            host.link.listenOn(arguments.port)
+            session.link.listenOn(arguments.port)
         else:
-            host.link.connectTo(arguments.host, arguments.port)
-        latest = host.run(arguments.trials, arguments.timeout)
+            session.link.connectTo(arguments.host, arguments.port)
+        end = time.monotonic() + arguments.timeout
+        while printer.scored < arguments.trials:
+            if time.monotonic() > end:
+                status = session.link.status
+                raise TrialsMissingError(
+                    f"{printer.scored} of {arguments.trials} trials came within "
+                    f"{arguments.timeout:g} s. {status.sentence} {status.remedy}".rstrip()
+                )
+            process(session)
+            time.sleep(PERIOD_S)
     finally:
-        host.close()
-    files = writeOutput(arguments.output, host.application, scenario, latest)
-    printEvent("output", **files, study=str(arguments.output / STUDY_FILE))
+        session.close()
+    assert printer.latest is not None
+    files = writeOutput(output, scene, scenario, printer.latest)
+    printEvent("output", **files, study=str(output / STUDY_FILE))
 
 
 if __name__ == "__main__":

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
 
@@ -12,18 +11,20 @@ import vtk
 
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.registration.registration import Registration
+from rastrainer.slicer.polydata import meshPolyData
 from rastrainer.slicer.scene.error_colors import (
     RESIDUAL_SCALARS,
     arrowTips,
     glyphsPolyData,
     residualRange,
 )
-from rastrainer.slicer.scene.scenario_nodes import meshPolyData
 
 WIDTH, HEIGHT = 1800, 1080
 _VIEWS = ((0.0, 0.09, 0.45, 0.92), (0.45, 0.09, 0.9, 0.92))
 _LEGEND = (0.9, 0.09, 1.0, 0.92)
-_CHARACTER_WIDTH, _LABEL_HEIGHT, _LABEL_GAP = 12, 28, 10
+_LABEL_SIZE, _LABEL_GAP = (100, 28), 10
+_SIDES = ((1, 1), (1, -1), (-1, 1), (-1, -1))
+"""Of a point, on which its label may be: right or left, above or below."""
 _MARGIN = 1.08
 _CLEARLY_FACING = 0.25
 _PAPER = (1.0, 1.0, 1.0)
@@ -73,12 +74,12 @@ def writeResidualPicture(
         skin.GetProperty().SetColor(*_SKIN)
         skin.GetProperty().SetSpecular(0.1)
         view.AddActor(skin)
-        screen = _look(view, shown, center, directions[number])
         window.AddRenderer(view)
+        axes = _look(view, shown, center, directions[number])
         isLabeled = facing[number] == facing.max(axis=0)
         rows = np.flatnonzero((facing[number] > _CLEARLY_FACING) | isLabeled)
         glyphs = _glyphView(view, registration, rows, colors)
-        _addLabels(glyphs, screen, registration, np.flatnonzero(isLabeled))
+        _addLabels(glyphs, registration, np.flatnonzero(isLabeled), axes)
         window.AddRenderer(glyphs)
     window.AddRenderer(_legend(colors))
     window.Render()
@@ -144,19 +145,27 @@ def _actor(data: vtk.vtkPolyData) -> vtk.vtkActor:
 
 
 def _addLabels(
-    view: vtk.vtkRenderer, screen: ViewPlane, registration: Registration, rows: np.ndarray
+    view: vtk.vtkRenderer,
+    registration: Registration,
+    rows: np.ndarray,
+    axes: np.ndarray,
 ) -> None:
-    """Write number and residual beside the points that this view shows best."""
-    texts = [f"{registration.labels[row]}: {registration.residuals_mm[row]:.1f}" for row in rows]
-    sizes = np.array([(_CHARACTER_WIDTH * len(text), _LABEL_HEIGHT) for text in texts])
+    """Write number and residual of points next to them, on the side that has most room."""
+    _left, bottom, _right, top = view.GetViewport()
+    pixelsPerMm = 0.5 * (top - bottom) * HEIGHT / view.GetActiveCamera().GetParallelScale()
+    # In the picture, in sizes of a label.
     starts, tips = registration.fixed_mm, arrowTips(registration)
-    along = np.linspace(0.0, 1.0, 9)[:, None, None]
-    arrows = screen.project((starts + along * (tips - starts)).reshape(-1, 3))
-    sides = placeLabels(screen.project(starts[rows]), sizes, arrows, _LABEL_GAP)
-    for text, row, (right, up) in zip(texts, rows, sides, strict=True):
+    taken = np.vstack([starts, 0.5 * (starts + tips), tips]) @ axes.T
+    taken *= pixelsPerMm / np.array(_LABEL_SIZE)
+    for row in rows:
+        middles = taken[row] + 0.6 * np.array(_SIDES)
+        room = np.abs(middles[:, None] - taken).max(axis=2).min(axis=1)
+        best = int(np.argmax(room.round(3)))
+        taken = np.vstack([taken, middles[best]])
+        right, up = _SIDES[best]
         label = vtk.vtkBillboardTextActor3D()
-        label.SetInput(text)
-        label.SetPosition(starts[row])
+        label.SetInput(f"{registration.labels[row]}: {registration.residuals_mm[row]:.1f}")
+        label.SetPosition(registration.fixed_mm[row])
         label.SetDisplayOffset(_LABEL_GAP * right, _LABEL_GAP * up)
         style = label.GetTextProperty()
         # VTK's numbers: 0 left or bottom, 1 centered, 2 right or top.
@@ -172,25 +181,24 @@ def _addLabels(
 
 def _look(
     view: vtk.vtkRenderer, shown: np.ndarray, center: np.ndarray, direction: np.ndarray
-) -> ViewPlane:
-    """Fill the view with the points `shown`, (n, 3) float, as they are seen from a direction."""
-    left, bottom, right, top = view.GetViewport()
-    width, height = (right - left) * WIDTH, (top - bottom) * HEIGHT
+) -> np.ndarray:
+    """Fill the view with points (n, 3) as seen from a direction; return its axes (2, 3)."""
     rightward = np.cross([0.0, 0.0, 1.0], direction)
     rightward /= np.linalg.norm(rightward)
     axes = np.array([rightward, np.cross(direction, rightward)])
     across = (shown - center) @ axes.T
     low, high = across.min(axis=0), across.max(axis=0)
-    pixelsPerMm = float(min(np.array([width, height]) / _MARGIN / (high - low)))
+    left, bottom, right, top = view.GetViewport()
+    heightPerWidth = (top - bottom) * HEIGHT / ((right - left) * WIDTH)
     focus = center + 0.5 * (low + high) @ axes
     camera = view.GetActiveCamera()
     camera.ParallelProjectionOn()
     camera.SetFocalPoint(focus)
     camera.SetPosition(focus + 800.0 * direction)
     camera.SetViewUp(0.0, 0.0, 1.0)
-    camera.SetParallelScale(0.5 * height / pixelsPerMm)
+    camera.SetParallelScale(0.5 * _MARGIN * max((high - low) * [heightPerWidth, 1.0]))
     camera.SetClippingRange(1.0, 1600.0)
-    return ViewPlane(axes, focus, pixelsPerMm)
+    return axes
 
 
 def _legend(colors: vtk.vtkColorTransferFunction) -> vtk.vtkRenderer:
@@ -241,62 +249,3 @@ def chooseTwoViews(outward: np.ndarray) -> np.ndarray:
         return round(float(seen.min()), 2), float(seen.sum())
 
     return grid[list(max(combinations(range(len(grid)), 2), key=worth))]
-
-
-@dataclass(frozen=True)
-class ViewPlane:
-    """How a view maps RAS mm to pixels, counted from its middle.
-
-    Attributes:
-        axes: (2, 3) float, unit vectors to the right and up.
-        focus: (3,) float, what is in the middle.
-        pixelsPerMm: the scale.
-    """
-
-    axes: np.ndarray
-    focus: np.ndarray
-    pixelsPerMm: float
-
-    def project(self, points: np.ndarray) -> np.ndarray:
-        """Return (n, 2) pixels of (n, 3) points."""
-        return self.pixelsPerMm * (points - self.focus) @ self.axes.T
-
-
-Side = tuple[int, int]
-
-SIDES: tuple[Side, ...] = ((1, 1), (1, -1), (-1, 1), (-1, -1), (1, 0), (-1, 0), (0, 1), (0, -1))
-"""Upper right is preferred; each number is −1, 0 or 1 along right and up."""
-
-_COST_OF_OVERLAP = 10.0
-
-
-def placeLabels(
-    anchors: np.ndarray, sizes: np.ndarray, obstacles: np.ndarray, gap: float
-) -> Sequence[Side]:
-    """Return on which side of its anchor (n, 2) each label of a size (n, 2) goes, in pixels.
-
-    The labels are placed one after the other, each where it covers the least of others and of the
-    obstacles (m, 2).
-    """
-    placed: list[np.ndarray] = []
-    sides: list[Side] = []
-    directions = np.array(SIDES)
-    for anchor, size in zip(anchors, sizes, strict=True):
-        # The lower left and the upper right corner on each side.
-        lower = anchor + gap * directions + 0.5 * (directions - 1) * size
-        boxes = np.stack([lower, lower + size], axis=1)
-        costs = [_cost(box, placed, obstacles) for box in boxes]
-        best = int(np.argmin(costs))
-        placed.append(boxes[best])
-        sides.append(SIDES[best])
-    return sides
-
-
-def _cost(box: np.ndarray, placed: Sequence[np.ndarray], obstacles: np.ndarray) -> float:
-    lower, upper = box
-    overlaps = [
-        np.prod(np.clip(np.minimum(upper, other[1]) - np.maximum(lower, other[0]), 0.0, None))
-        for other in placed
-    ]
-    covered = np.all((obstacles > lower) & (obstacles < upper), axis=1).sum()
-    return _COST_OF_OVERLAP * float(sum(overlaps)) / float(np.prod(upper - lower)) + float(covered)

@@ -3,18 +3,35 @@
 from __future__ import annotations
 
 import gzip
+import math
 import os
+import struct
 import zlib
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import slicer
+from scipy.spatial.transform import Rotation
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.head.volume import Volume, asFloat, imageOfNode
-from rastrainer.slicer.head.volume_header import checkHeader, leastSize, missingOrientation
+from rastrainer.slicer.head.volume_header import (
+    beginOf,
+    isAnalyze,
+    missingOrientation,
+    niftiHeader,
+    nrrdFields,
+)
 from rastrainer_headless.dicom_series import isDicom, readDicom
+
+_NIFTI_2, _MGH = 540, b"\0\0\0\1"
+_COLORS, _COMPLEX = (128, 2304), (32, 1792, 2048)
+_RIGHT_ANGLE = 0.01
+_LONGEST_ROTATION = 1.001
+_CONTRADICTION = 0.7
+"""Cosine of the angle between an axis by the qform and by the sform: they differ by 45°."""
 
 
 def readVolume(path: Path, orientation: str | None = None) -> Volume:
@@ -26,12 +43,13 @@ def readVolume(path: Path, orientation: str | None = None) -> Volume:
         return readDicom(path)
     if not path.is_file():
         raise InputError(f"{path} does not exist; give a volume such as a .nii.gz or .nrrd file.")
-    checkHeader(path)
+    begin = beginOf(path)
+    _checkHeader(path, begin)
     # A `.nii` or `.nii.gz` file may end too early.
     opened = gzip.open if path.suffix == ".gz" else open
     try:
         with opened(path, "rb") as file:
-            isCut = file.seek(0, os.SEEK_END) < leastSize(path)
+            isCut = file.seek(0, os.SEEK_END) < _leastSize(path, begin)
     except (EOFError, zlib.error):
         isCut = True
     except OSError:
@@ -71,3 +89,93 @@ def _oriented(volume: Volume, orientation: str) -> Volume:
     matrix[:3, :3] = axes * np.linalg.norm(volume.ijkToRas[:3, :3], axis=0)
     matrix[:3, 3] = -matrix[:3, :3] @ ((np.array(volume.values.shape) - 1) / 2.0)
     return replace(volume, ijkToRas=matrix)
+
+
+def _checkHeader(path: Path, begin: bytes) -> None:
+    if path.suffix.lower() in (".mgz", ".mgh") or begin.startswith(_MGH):
+        raise _unusable(path, "is in FreeSurfer's format", "mri_convert makes NIfTI of it")
+    if begin[:4] in (struct.pack("<i", _NIFTI_2), struct.pack(">i", _NIFTI_2)):
+        raise _unusable(path, "is NIfTI-2", "save it as NIfTI-1 or NRRD")
+    if begin.startswith(b"NRRD"):
+        fields = nrrdFields(begin)
+        sizes = [int(size) for size in fields.get("sizes", "").split() if size.isdecimal()]
+        kinds = fields.get("kinds", "").lower()
+        if len(sizes) == 4 and any(kind in kinds for kind in ("color", "vector", "complex")):
+            several = f"has {fields['sizes']} values, several in a voxel"
+            raise _unusable(path, several, "use one with gray values")
+        _checkSizes(path, tuple(sizes))
+    nifti = niftiHeader(begin)
+    if nifti is not None:
+        _checkNifti(path, nifti)
+
+
+def _checkNifti(path: Path, nifti: Any) -> None:
+    _checkSizes(path, _sizesOf(nifti))
+    if nifti["kind"] in _COLORS:
+        raise _unusable(path, "has colors (RGB)", "use the image with one gray value a voxel")
+    if nifti["kind"] in _COMPLEX:
+        raise _unusable(path, "has complex numbers", "use the magnitude")
+    if isAnalyze(nifti) or not nifti["codes"].any():
+        return
+    repair = "write the orientation again from the original DICOM files"
+    qformCode, sformCode = nifti["codes"]
+    isLong = not np.linalg.norm(nifti["rotation"]) <= _LONGEST_ROTATION
+    if qformCode > 0 and (isLong or not (nifti["spacing"][1:] > 0).all()):
+        raise _unusable(path, "has a qform that is no rotation", repair)
+    if sformCode <= 0:
+        return
+    sform = nifti["sform"][:, :3].astype(float)
+    lengths = np.linalg.norm(sform, axis=0)
+    if not np.isfinite(lengths).all() or not lengths.all():
+        raise _unusable(path, "has an sform whose axes have no length", repair)
+    axes = sform / lengths
+    isSheared = np.abs(axes.T @ axes - np.eye(3)).max() > _RIGHT_ANGLE
+    if isSheared and qformCode <= 0:
+        raise _unusable(
+            path, "has a sheared sform: its axes are not at right angles", "resample it"
+        )
+    if qformCode <= 0:
+        return
+    b, c, d = nifti["rotation"].astype(float)
+    a = math.sqrt(max(0.0, 1.0 - b * b - c * c - d * d))
+    flip = -1.0 if nifti["spacing"][0] < 0 else 1.0
+    qform = Rotation.from_quat([b, c, d, a]).as_matrix() @ np.diag([1.0, 1.0, flip])
+    if np.sum(axes * qform, axis=0).min() < _CONTRADICTION:
+        raise _unusable(
+            path,
+            f"has a qform and an sform that contradict each other ({_letters(qform)} and "
+            f"{_letters(axes)})",
+            "remove the wrong one",
+        )
+
+
+def _letters(axes: np.ndarray) -> str:
+    """Return the directions, such as LPS, in which a volume's axes (3, 3) mostly run."""
+    main = np.abs(axes).argmax(axis=0)
+    return "".join(("RAS" if axes[row, i] > 0 else "LPI")[row] for i, row in enumerate(main))
+
+
+def _leastSize(path: Path, begin: bytes) -> float:
+    """Return the least number of bytes, unpacked, of a NIfTI-1 file; 0 for any other file."""
+    nifti = niftiHeader(begin)
+    if nifti is None or isAnalyze(nifti) or path.suffix in (".hdr", ".img"):
+        return 0.0
+    return float(nifti["begins"]) + math.prod(_sizesOf(nifti)) * int(nifti["bits"]) / 8
+
+
+def _sizesOf(nifti: Any) -> tuple[int, ...]:
+    count, *sizes = nifti["sizes"].tolist()
+    return tuple(sizes[: max(0, count)])
+
+
+def _checkSizes(path: Path, sizes: tuple[int, ...]) -> None:
+    if math.prod(sizes[3:]) > 1:
+        raise _unusable(
+            path,
+            f"has {len(sizes)} dimensions ({' × '.join(map(str, sizes))})",
+            "extract one 3D image of it",
+        )
+
+
+def _unusable(path: Path, what: str, remedy: str) -> InputError:
+    return InputError(f"{path} {what}; {remedy}.")

@@ -3,7 +3,6 @@
 import asyncio
 import json
 import multiprocessing
-import secrets
 import socket
 import struct
 import tempfile
@@ -195,16 +194,16 @@ class _View:
 def rows(quick: bool) -> list[dict]:
     """Return the rows `crowd.*`: echoes, each client's p99, intervals of poses and states, loop."""
     seconds = 5.0 if quick else 20.0
-    key = secrets.token_urlsafe()
     with (
         tempfile.TemporaryDirectory() as folder,
-        ViewedSimulator(Path(folder) / "records", "--view-port", "0", key=key) as simulator,
+        ViewedSimulator(Path(folder) / "records", "--view-port", "0") as simulator,
     ):
         begin = multiprocessing.get_context("spawn")
         results = begin.Queue()
         # The crowd is a separate process: it must not wait for its own measurement.
         crowd = begin.Process(
-            target=serve_crowd, args=(simulator.port, simulator.view_port, key, seconds, results)
+            target=serve_crowd,
+            args=(simulator.port, simulator.view_port, simulator.key, seconds, results),
         )
         crowd.start()
         time.sleep(SETTLE_S)

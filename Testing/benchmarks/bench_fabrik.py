@@ -98,7 +98,7 @@ def _wide(robot: Pinocchio, ours: Ours, sizes: Sizes) -> dict:
         question = ours.question(target, "position")
         before, q_next = q_next, np.array(ours.solve(question, q_next))
         steps.append(np.degrees(np.abs(q_next - before).max()))
-        limited = np.array(limit_step(q, ours.solve(question, q), robot.velocity, TICK_S).q)
+        limited = np.array(limit_step(q, ours.solve(question, q), robot.velocity, TICK_S)[0])
         moved = np.abs(limited - q)
         kept += bool(np.all(moved <= fastest * (1.0 + 1e-9)) and np.degrees(moved).max() <= 2.0)
         q = limited
@@ -110,7 +110,7 @@ def _cold(
     robot: Pinocchio, ours: Ours, peers: Sequence[Solver], mode: str, sizes: Sizes
 ) -> list[dict]:
     random = np.random.default_rng(SEED)
-    postures = random.uniform(robot.lower, robot.upper, (sizes.verified, 7))
+    postures = random.uniform(*robot.limits, (sizes.verified, 7))
     targets = [robot.tip(q).copy() for q in postures]
     solved = 0
     for target in targets:
@@ -172,7 +172,7 @@ def _suffix(peer: Solver) -> str:
 
 def _exact(robot: Pinocchio, q: np.ndarray, target: pin.SE3, mode: str) -> bool:
     off, turned = robot.errors(q, target, mode)
-    inside = bool(np.all(robot.lower <= q) and np.all(q <= robot.upper))
+    inside = bool(np.all(np.clip(q, *robot.limits) == q))
     return inside and off <= EXACT_M and turned <= EXACT_RAD
 
 

@@ -22,7 +22,7 @@ from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
 from rastrainer.study.database.study import Study
-from rastrainer.trial.analysis import analyze_trial
+from rastrainer.trial.analysis import RevealedTruth, analyze_trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import SAFETY_METRICS
 from rastrainer_simulator.assets import asset_path
@@ -57,6 +57,7 @@ for name in [name for name in sys.modules if name.split(".")[0] == "rastrainer"]
     del sys.modules[name]
 from Testing.slicer.host.installation import Installation
 Installation().add_modules()
+from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.slicer.turns import importInTurns
 ours = lambda: sum(name.split(".")[0] == "rastrainer" for name in sys.modules)
 turns, was, before = [], time.process_time(), ours()
@@ -260,7 +261,9 @@ class _Steps:
             for number in range(first, first + count):
                 record = {**self._record(number), "trainee": trainee}
                 study.add_trial(record, fits, errors, analysis.score)
-                study.set_truth(record["trialId"], 1.0, np.eye(4).ravel().tolist())
+                study.add_results(
+                    record["trialId"], truth=RevealedTruth(tuple(np.eye(4).ravel().tolist()), 1.0)
+                )
 
     def _write_journal(self, trial_id: str) -> None:
         folder = Path.home() / "RASTrainer" / "trials"

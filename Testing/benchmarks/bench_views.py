@@ -1,6 +1,5 @@
 """What a view costs: the stream, the scene, and the simulator's process while one watches."""
 
-import secrets
 import tempfile
 import time
 from contextlib import ExitStack
@@ -26,13 +25,12 @@ def rows(quick: bool) -> list[dict]:
 
 
 def _stream_rows(seconds: float) -> list[dict]:
-    key = secrets.token_urlsafe()
     with tempfile.TemporaryDirectory() as folder:
         arguments = (Path(folder) / "records", "--view-port", "0")
         with (
             LoopThread() as thread,
-            ViewedSimulator(*arguments, key=key) as simulator,
-            ViewClient(thread, simulator.url, key) as view,
+            ViewedSimulator(*arguments) as simulator,
+            ViewClient(thread, simulator.url, simulator.key) as view,
         ):
             view.join()
             view.next("scene")
@@ -54,12 +52,12 @@ def _stream_rows(seconds: float) -> list[dict]:
 
 def _crowd_row(seconds: float) -> dict:
     """Return what several views are sent together."""
-    key = secrets.token_urlsafe()
     with tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
         thread = stack.enter_context(LoopThread())
         arguments = (Path(folder) / "records", "--view-port", "0")
-        simulator = stack.enter_context(ViewedSimulator(*arguments, key=key))
-        views = [stack.enter_context(ViewClient(thread, simulator.url, key)) for _ in range(CROWD)]
+        simulator = stack.enter_context(ViewedSimulator(*arguments))
+        joining = [ViewClient(thread, simulator.url, simulator.key) for _ in range(CROWD)]
+        views = [stack.enter_context(view) for view in joining]
         for view in views:
             view.join()
             view.next("state")

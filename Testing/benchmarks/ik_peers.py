@@ -106,7 +106,7 @@ class LeastSquares:
             longest = np.abs(step).max()
             if longest > self.longest_step:
                 step *= self.longest_step / longest
-            q = np.clip(q + step, robot.lower, robot.upper)
+            q = np.clip(q + step, *robot.limits)
         return None
 
 

@@ -20,7 +20,7 @@ from rastrainer_simulator.loop.timing import (
     FIRST,
     LoopStatistics,
     precise_timing,
-    set_real_time,
+    raise_thread_priority,
     sleep_until,
 )
 from Testing.benchmarks.loop_health import Punctuality, next_health, punctuality, undisturbed
@@ -91,7 +91,9 @@ def _loop(pipe: Connection, processor: int | None) -> None:
     is_late = bytearray()
     with precise_timing(is_first_in_line=True):
         if hasattr(os, "SCHED_FIFO"):
-            set_real_time(FIRST + 1)  # To wait for the machine alone, not for the loop beside it.
+            raise_thread_priority(
+                FIRST + 1
+            )  # To wait for the machine alone, not for the loop beside it.
         pipe.send("ready")
         due = pipe.recv()
         while not pipe.poll():

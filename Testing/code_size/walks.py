@@ -66,11 +66,10 @@ def walk_from_stick_to_wire(folder: Path) -> None:
     from Testing.simulator.net.igtl.servers import LoopThread
     from Testing.simulator.net.views.served import ViewClient
 
-    key = "k" * 32
     with (
-        ViewedSimulator(folder / "records", key=key) as simulator,
+        ViewedSimulator(folder / "records") as simulator,
         LoopThread() as thread,
-        ViewClient(thread, simulator.url, key) as view,
+        ViewClient(thread, simulator.url, simulator.key) as view,
         Client(port=simulator.port) as client,
     ):
         view.join()

@@ -14,14 +14,14 @@ from Testing.simulator.landmarked import LANDMARKS
 METHOD = "trace over the skin"
 """As the experiment menu calls it."""
 CENTER_M = np.array([0.001, -0.012, 0.016])
-"""Of the head, RAS."""
+"""In the head's RAS frame."""
 COARSE = LANDMARKS[:3]
 SEEN_OFF_MM = 0.3
 """Height above the skin at which the tip has visibly left it."""
 TURN_BACK_M = 0.006
 STROKE_POINTS = 12
 TRACING = "over parts that face different ways"
-"""What is read while a stroke is on."""
+"""Readings during a stroke."""
 
 
 class DrawingTrainee(StreamTrainee):

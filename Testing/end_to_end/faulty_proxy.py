@@ -1,7 +1,7 @@
 """A TCP proxy that does to connections what networks do: seeded, and never to the bytes' order.
 
-TCP keeps the order within a connection. Between two connections there is none: what was sent over
-a connection that was cut may arrive after what was sent over the next.
+TCP keeps the order within a connection. Two connections have no order: data sent over a connection
+that was cut may arrive after data sent over the next.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ class Fault:
         after_bytes: of both directions together.
         kind: "cut" (closed), "reset", "half-open" (both ends stay open, nothing passes), or
             "late" (the client is cut, and what it had sent arrives only later).
-        lasts_s: of a half-open link or of what is late.
-        delay_s: of every piece that passes.
+        lasts_s: duration of a half-open link, or delay of late data.
+        delay_s: delay of every piece that passes.
     """
 
     after_bytes: int

@@ -107,7 +107,7 @@ def carry_over(
 
 
 def slip(trainee: CarriedTrainee, client: Client, label: str) -> None:
-    """Touch the skin beside a point."""
+    """Touch the skin next to a point."""
     trainee.approach(label, 0.004)
     place, center = trainee.place_of(label), trainee.head_center
     aside = np.cross(place - center, (0.0, 0.0, 1.0))

@@ -1,4 +1,4 @@
-"""Builds what every simulator builds first, so that what is forked afterward has it already."""
+"""Build the parts that every simulator builds first, so that forked processes have them already."""
 
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation

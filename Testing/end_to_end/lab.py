@@ -1,10 +1,8 @@
-"""A training place: the simulator with a gamepad, its window, and Slicer's side beside it."""
+"""A training place: the simulator with a gamepad, its window, and Slicer's side."""
 
 from __future__ import annotations
 
 import json
-import os
-import secrets
 import subprocess
 import sys
 from contextlib import ExitStack
@@ -13,7 +11,7 @@ from typing import IO
 
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.net.limits import LIMITS_FILE
-from Testing.end_to_end.simulator_process import SERVES
+from Testing.end_to_end.simulator_process import SERVES, paired_key
 from Testing.end_to_end.stream_trainee import WatchingView
 from Testing.end_to_end.virtual_display import VirtualDisplay, VirtualKeyboard
 from Testing.end_to_end.virtual_gamepad import SimulatorWithGamepad
@@ -24,7 +22,7 @@ from Testing.simulator.net.views.served import ViewClient
 SLICER = (sys.executable, "-m", "rastrainer_headless.main")
 TIMEOUT_S = 600
 PATIENT = {"views": {"silentS": 10, "lostS": TIMEOUT_S}}
-"""A machine that is too busy to draw neither releases what is held nor pauses the trial."""
+"""A machine that is too busy to draw neither releases held keys nor pauses the trial."""
 
 
 class Lab:
@@ -32,21 +30,21 @@ class Lab:
 
     Attributes:
         simulator: the process, and its gamepad.
-        display, keyboard: those of the window.
+        display, keyboard: the window's display and keyboard.
         records: folder of the journals.
-        url: of the page.
-        code, key: by which a browser and other views join.
-        view: one that watches.
+        url: address of the page.
+        code, key: admit a browser and other views.
+        view: a spectator.
     """
 
     def __init__(self, folder: Path, *arguments: str, **preferences: str):
         self._folder = folder
         self._preferences = {"order": "any", **preferences}
         self.records = folder / "records"
-        self.key = secrets.token_urlsafe(32)
         with ExitStack() as stack:
             self.simulator = stack.enter_context(self._start(*arguments))
             self.url, self.code = SERVES.search(self.simulator.next_line()).groups()
+            self.key = paired_key(self.url, self.code)
             thread = stack.enter_context(LoopThread())
             client = stack.enter_context(ViewClient(thread, self.url, self.key))
             self.view = WatchingView(client)
@@ -60,11 +58,7 @@ class Lab:
         config.mkdir(parents=True)
         (config / LIMITS_FILE).write_text(json.dumps(PATIENT))
         (config / "preferences.json").write_text(json.dumps(self._preferences))
-        os.environ["RASTRAINER_VIEW_KEY"] = self.key
-        try:
-            return SimulatorWithGamepad(self.records, "--view-port", "0", *arguments)
-        finally:
-            del os.environ["RASTRAINER_VIEW_KEY"]
+        return SimulatorWithGamepad(self.records, "--view-port", "0", *arguments)
 
     def __enter__(self) -> Lab:
         return self
@@ -82,7 +76,7 @@ class Lab:
         """Start Slicer's side, which scores a number of trials and ends."""
         slicer = SlicerProcess(
             *("--port", str(self.simulator.port), "--trials", str(trials)),
-            *("--scenario", str(asset_path("scenarios", "colin27"))),
+            *("--assets", str(asset_path())),
             *("--output", str(self._folder / "study"), "--timeout", str(TIMEOUT_S)),
         )
         self._stack.callback(slicer.kill)

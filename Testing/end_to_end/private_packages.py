@@ -30,7 +30,7 @@ def fill(folder: Path, wheel: Path) -> None:
         try:
             found = distribution(name)
         except PackageNotFoundError:
-            continue  # Of another platform or version of Python.
+            continue  # For another platform or version of Python.
         root = Path(found.locate_file(""))
         for file in found.files:
             source = Path(found.locate_file(file)).resolve()

@@ -33,12 +33,12 @@ class ProcedureTrainee(StreamTrainee):
 
     @property
     def procedure(self) -> dict:
-        """What the stream says of the procedure."""
+        """The procedure's part of the stream."""
         return self.view.state["procedure"]
 
     @property
     def ruler(self) -> DepthRuler:
-        """The scale beside the picture."""
+        """The scale next to the picture."""
         assert self.view.screen.ruler is not None, "something is fed"
         return self.view.screen.ruler
 

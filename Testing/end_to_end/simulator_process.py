@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import signal
 import subprocess
 import sys
 import tempfile
+import urllib.request
 from pathlib import Path
 from typing import Any
 
@@ -103,12 +103,18 @@ class ViewedSimulator(SimulatorProcess):
 
     Attributes:
         url, view_port, code: as it prints them.
+        key: of a view that was paired with the code.
     """
 
-    def __init__(self, records: Path, *arguments: str, key: str | None = None):
-        environment = dict(os.environ)
-        if key is not None:
-            environment["RASTRAINER_VIEW_KEY"] = key
-        super().__init__(records, "--no-gamepad", *arguments, env=environment)
+    def __init__(self, records: Path, *arguments: str):
+        super().__init__(records, "--no-gamepad", *arguments)
         line = LINE.fullmatch(self._process.stdout.readline())
         self.url, self.view_port, self.code = line[1], int(line[2]), line[3]
+        self.key = paired_key(self.url, self.code)
+
+
+def paired_key(url: str, code: str) -> str:
+    """Pair a view by its code, as its page does; return its key."""
+    request = urllib.request.Request(f"{url}/pair", json.dumps({"code": code}).encode())
+    with urllib.request.urlopen(request, timeout=60) as answer:
+        return json.load(answer)["key"]

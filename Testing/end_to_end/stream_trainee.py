@@ -12,7 +12,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rastrainer.json_records import record_from_json
-from rastrainer_simulator.flow.flow import PICTURE_GRACE_S
+from rastrainer_simulator.flow.flow_presenter import PICTURE_GRACE_S
 from rastrainer_simulator.presentation.screen import Menu, Screen
 from rastrainer_simulator.teleoperation.steering import camera_axes
 from Testing.end_to_end.window_process import wait_until
@@ -32,7 +32,7 @@ ON_POINT_M, NEAR_M = 0.002, 0.008
 """Distance at which the tip is stopped, and how far from there it may come to rest."""
 HOVER_M = 0.032
 OFF_FIDUCIALS_M = 0.018
-"""A point this far from every fiducial is clearly not one, whatever the skin's slope there."""
+"""A point this far from every fiducial is clearly no fiducial, even where the skin is steep."""
 ASIDE_M = (0.03, 0.04, 0.05)
 """How far from the tip to look for such a point."""
 LONGEST_TOUCH_S = 600.0
@@ -52,7 +52,7 @@ class Hands(Protocol):
 
 
 class WatchingView:
-    """A view that joins beside the window, and keeps what all views receive.
+    """A second view that records the messages that all views receive.
 
     Attributes:
         state, screen, scene: the latest.
@@ -205,7 +205,7 @@ class StreamTrainee:
             self.press("accept", lambda b=before: self.menu != b, "the next page")
 
     def read_introduction(self) -> None:
-        """Go from the start menu to that of the tasks."""
+        """Go from the start menu to the menu of tasks."""
         self.until_menu("start")
         self.choose("train")
         self.until_menu("introduction")

@@ -9,11 +9,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rastrainer.protocol import DEFAULT_HOST
-from rastrainer.slicer.logic.module_paths import ModulePaths
-from rastrainer.slicer.logic.module_session import ModuleSession
-from rastrainer.slicer.program.simulator_package import SimulatorPackage
 from rastrainer.study.database.database import PostgresAddress, study_place
-from rastrainer_headless.connector import headlessKit
+from rastrainer_headless.headless_session import openSession, process
 from rastrainer_headless.scene import HeadlessScene
 from rastrainer_simulator.assets import asset_path
 
@@ -28,22 +25,11 @@ def run(folder: Path, port: int, address: str = "") -> None:
     No trainee is chosen.
     """
     place = study_place(address) if address else None
-    places = ModulePaths(
-        assets=asset_path(),
-        python=Path(sys.executable),
-        simulator=folder / "simulator",
-        study=folder / STUDY,
-        records=folder / RECORDS,
-        library=folder / "scenarios",
-        package=SimulatorPackage.of(ROOT / "RASTrainer"),
-        studyAddress=place if isinstance(place, PostgresAddress) else None,
-    )
-    session = ModuleSession(HeadlessScene().scene, places, headlessKit)
+    place = place if isinstance(place, PostgresAddress) else None
+    session = openSession(HeadlessScene(), folder, asset_path(), place)
     session.link.connectTo(DEFAULT_HOST, port)
     while True:
-        if session.link.connector is not None:
-            session.link.connector.PeriodicProcess()
-        session.process()
+        process(session)
         time.sleep(PERIOD_S)
 
 

@@ -1,4 +1,4 @@
-"""A trainee over OpenIGTLink who notes what was acknowledged and returns after every crash."""
+"""A trainee over OpenIGTLink who notes acknowledged commands and returns after every crash."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ class SurvivingPlayer:
         if not self.trial_id and state["trialId"] in self.registered:
             return
         if state["phase"] == "idle":
-            # Only a trial that was never acknowledged, or one that is over, is not there.
+            # Only a trial that was never acknowledged or that is over may be missing.
             assert not self.trial_id or in_flight == CommandName.REGISTER
             self.trial_id = ""
             return
@@ -189,7 +189,7 @@ class SurvivingPlayer:
         self._in_flight = ""
 
     def _send(self, client: Client, name: str, killing: Killing | None, **arguments) -> dict:
-        """Carry out a command; what is in transit when the server dies may count or not."""
+        """Carry out a command; a command in transit when the server dies may count or not."""
         self._in_flight = name
         if killing is not None and killing.is_due():
             body = json.dumps(arguments)

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 from pathlib import Path
 
 import pytest
 
-from Testing.end_to_end.simulator_process import SERVES, SimulatorProcess
+from rastrainer.igtl.client import Client
+from rastrainer_simulator.virtual.scripted_trial import send, send_hello
+from Testing.end_to_end.hands import KeyHands
+from Testing.end_to_end.simulator_process import SERVES, SimulatorProcess, paired_key
 from Testing.end_to_end.stream_trainee import WatchingView
 from Testing.end_to_end.virtual_display import VirtualDisplay, VirtualKeyboard
 from Testing.end_to_end.window_process import wait_until
 from Testing.running_process import runs, started_by
 from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.simulator.net.views.served import ViewClient
+from Testing.web.place import CarriedTrainee
 
-KEY = "k" * 32
 SIZE = (1280, 720)
 
 
@@ -30,13 +34,13 @@ class Desk:
             **os.environ,
             "HOME": str(self.home),
             "DISPLAY": display.name,
-            "RASTRAINER_VIEW_KEY": KEY,
         }
         options = ("--view-port", "0", "--no-gamepad", "--desktop")
         self.simulator = SimulatorProcess(folder / "records", *options, env=environment)
         self.url, self.code = SERVES.search(self.simulator.next_line()).groups()
         self.keyboard = VirtualKeyboard(display)
-        self.view = WatchingView(ViewClient(thread, self.url, KEY))
+        key = paired_key(self.url, self.code)
+        self.view = WatchingView(ViewClient(thread, self.url, key))
 
     def open_menu(self) -> None:
         """Press Enter in the window until the first menu has led to another."""
@@ -49,6 +53,17 @@ class Desk:
 
         wait_until(is_other, "the menu after Enter")
 
+    def close_window(self) -> None:
+        self.keyboard.hold("ControlLeft", True)
+        self.keyboard.tap("KeyW")
+        self.keyboard.hold("ControlLeft", False)
+
+    def trainee(self, stack: contextlib.ExitStack) -> CarriedTrainee:
+        """Return a trainee at the window's keyboard, whose tip commands carry."""
+        client = stack.enter_context(Client(port=self.simulator.port))
+        send_hello(client, "trainee")
+        return CarriedTrainee(self.view, KeyHands(self.keyboard), client)
+
     @property
     def processes(self) -> list[int]:
         """The processes of the window."""
@@ -56,7 +71,7 @@ class Desk:
 
     @property
     def profiles(self) -> list[Path]:
-        """What the windows of this user have kept."""
+        """Files that the windows of this user have kept."""
         return list((self.home / "RASTrainer" / "window").iterdir())
 
 
@@ -76,9 +91,7 @@ def test_keys_pressed_in_the_window_operate_and_closing_it_ends_the_simulator(de
         assert desk.code.encode() not in command, "others can read the pairing code"
     (profile,) = desk.profiles
     assert profile.stat().st_mode & 0o077 == 0
-    desk.keyboard.hold("ControlLeft", True)
-    desk.keyboard.tap("KeyW")
-    desk.keyboard.hold("ControlLeft", False)
+    desk.close_window()
     status, _errors = desk.simulator.wait()
     assert status == 0
     wait_until(lambda: not any(map(runs, window)), "the end of the window's processes")
@@ -101,6 +114,52 @@ def test_a_simulator_that_is_stopped_closes_its_window(desk):
     assert desk.simulator.stop()[0] == 0
     wait_until(lambda: not any(map(runs, window)), "the end of the window's processes")
     assert desk.profiles == []
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("killed", ["window", "simulator", "both"])
+def test_a_trial_goes_on_with_all_its_touches_after_a_kill(tmp_path, killed):
+    with VirtualDisplay(SIZE) as display, LoopThread() as thread, contextlib.ExitStack() as stack:
+        desk = Desk(tmp_path, display, thread)
+        stack.enter_context(desk.simulator)
+        trainee = desk.trainee(stack)
+        send(trainee.client, "StartTask", {"task": "task-1", "trainee": "P07"})
+        trainee.until(lambda: desk.view.scene["task"] == "task-1", "the scene")
+        trainee.until_running()
+        trainee.have_touched(3)
+        window = desk.processes
+        if killed != "simulator":
+            os.kill(window[0], signal.SIGKILL)
+        if killed != "window":
+            desk.simulator.kill()
+        wait_until(lambda: not any(map(runs, window)), "the end of the window's processes")
+        if killed == "window":
+            assert desk.simulator.stop()[0] == 0
+        again = Desk(tmp_path, display, thread)
+        with again.simulator:
+            trainee = again.trainee(stack)
+            trainee.resume()
+            trainee.have_touched(5)
+            assert len(again.profiles) == 1
+            assert again.simulator.stop()[0] == 0
+        assert again.profiles == []
+
+
+@pytest.mark.soak
+def test_ten_starts_and_ends_leave_no_process_and_no_profile(tmp_path):
+    with VirtualDisplay(SIZE) as display, LoopThread() as thread:
+        for number in range(10):
+            desk = Desk(tmp_path, display, thread)
+            with desk.simulator:
+                desk.open_menu()
+                window = desk.processes
+                if number % 2:
+                    desk.close_window()
+                    assert desk.simulator.wait()[0] == 0
+                else:
+                    assert desk.simulator.stop()[0] == 0
+            wait_until(lambda: not any(map(runs, window)), "the end of the window's processes")  # noqa: B023
+            assert desk.profiles == []
 
 
 def test_without_a_browser_the_simulator_says_what_to_do(tmp_path):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import multiprocessing
-import secrets
 
 import pytest
 
@@ -17,11 +16,11 @@ TIMEOUT_S = 120.0
 @pytest.mark.soak
 @pytest.mark.parametrize(("clients", "views"), [(30, 5), (CLIENTS, VIEWS)])
 def test_many_clients_and_views_at_once_are_all_served(tmp_path, clients, views):
-    key = secrets.token_urlsafe()
     begin = multiprocessing.get_context("spawn")
     results = begin.Queue()
-    with ViewedSimulator(tmp_path / "records", "--view-port", "0", key=key) as simulator:
-        asked = (simulator.port, simulator.view_port, key, SECONDS, results, clients, views)
+    with ViewedSimulator(tmp_path / "records", "--view-port", "0") as simulator:
+        ports = (simulator.port, simulator.view_port, simulator.key)
+        asked = (*ports, SECONDS, results, clients, views)
         crowd = begin.Process(target=serve_crowd, args=asked, daemon=True)
         crowd.start()
         served = results.get(timeout=TIMEOUT_S)

@@ -1,8 +1,8 @@
-"""Finished trials reach the study exactly once, whatever happens to connections and both ends.
+"""Finished trials reach the study exactly once, even if connections break and both ends crash.
 
 The server's part is the control loop, the link and the offers as they run in the simulator; the
-other side's is Slicer's link, trial logic and study. Between them are real sockets and a proxy that
-cuts, delays, lets messages overtake each other and leaves links half-open.
+other side's is Slicer's link, trial logic and study. The ends are connected by real sockets through
+a proxy that cuts, delays and reorders messages and leaves links half-open.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ def slicer_side(path, scenario, port, scored):
 
 
 def deliver(folder, simulation, thread, trials, seed, longest_s):
-    """Deliver trials through faults and ends of both sides; return what was seen."""
+    """Deliver trials through faults and ends of both sides; return the observations."""
     rng = random.Random(seed)
     records, study = folder / "records", folder / "study.db"
     wanted = write_finished_trials(records, range(1, trials + 1))

@@ -26,7 +26,7 @@ from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
 
 SIZE = 0.75
 WEN, WEN_RADIUS = np.array([0.0, -55.0, 0.0]), 12.0
-"""What is painted at the back of the head, RAS mm."""
+"""Center of the paint at the back of the head, RAS mm."""
 
 
 @functools.cache

@@ -1,4 +1,5 @@
-"""From the start menu to the result by a gamepad alone, seen in the window and scored in Slicer.
+"""A session by gamepad alone: from the start menu to the result, drawn in the window, scored in
+Slicer.
 
 During the trial Slicer's side crashes and returns; in the next one the gamepad is unplugged.
 """
@@ -269,7 +270,7 @@ def test_the_window_shows_each_step_of_the_flow(session):
 
 
 def middle(pixels: np.ndarray) -> np.ndarray:
-    """Leave out what is laid over the picture's edges."""
+    """Leave out the panels at the picture's edges."""
     return pixels[HEIGHT // 5 : HEIGHT * 7 // 8, WIDTH // 6 : WIDTH * 3 // 4]
 
 

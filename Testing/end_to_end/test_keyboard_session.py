@@ -1,4 +1,4 @@
-"""From the start menu to the result by the window's keyboard alone; the window crashes within."""
+"""A session by the keyboard alone, from the start menu to the result; the window crashes once."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def kill_while_moving(lab: Lab, trainee: StreamTrainee, window) -> dict:
 
 
 def touches_of(lab: Lab) -> list[dict]:
-    """Return what the journal of the one trial of Task 1 says of its touches."""
+    """Return the touches in the journal of the only trial of Task 1."""
     records = [read_journal(path) for path in lab.records.glob("*.journal")]
     (journal,) = [record for record in records if record.header["task"] == "task-1"]
     return list(journal.of_kind("touch"))

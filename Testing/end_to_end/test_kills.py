@@ -203,7 +203,7 @@ def deliver_the_rest(lab, slicer, trials):
 
 
 def wait_for_study(lab, is_complete):
-    """Wait for what is stored; patience ends only if nothing more arrives."""
+    """Wait for stored trials; give up only if nothing more arrives."""
     stored, give_up = None, 0.0
     while not is_complete(now := lab.stored()):
         if now != stored:

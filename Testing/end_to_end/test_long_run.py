@@ -33,14 +33,13 @@ pytestmark = pytest.mark.skipif(
 )
 
 TROUBLE = re.compile(r"error|traceback|critical", re.IGNORECASE)
-KEY = "the-views-key-of-this-long-run-only"
 MAX_GROWTH_MB = 8.0
-"""Growth of either process between the first fifth and the last: that of caches and studies."""
+"""Allowed growth of either process between the first fifth and the last, for caches and studies."""
 
 
 @dataclass(frozen=True)
 class Usage:
-    """Of a process at one moment: MB of memory in use and open descriptors."""
+    """A process at one moment: MB of memory in use and open descriptors."""
 
     resident_mb: float
     descriptors: int
@@ -69,7 +68,7 @@ class Run:
 
 
 def train(folder: Path, is_enough: Callable[[int], bool], speed: float) -> Run:
-    """Play trial after trial, each over a separate connection, a view and Slicer's side beside.
+    """Play trial after trial, each over a separate connection, with a view and Slicer's side.
 
     `is_enough` is asked with the number of trials played, before each trial.
     """
@@ -79,7 +78,7 @@ def train(folder: Path, is_enough: Callable[[int], bool], speed: float) -> Run:
     with contextlib.ExitStack() as stack:
         thread = stack.enter_context(LoopThread())
         simulator = stack.enter_context(
-            ViewedSimulator(records, "--speed", str(speed), "--view-port", "0", key=KEY)
+            ViewedSimulator(records, "--speed", str(speed), "--view-port", "0")
         )
         slicer_says = stack.enter_context((folder / "slicer-says").open("w+"))
         slicer = SlicerProcess(
@@ -89,7 +88,7 @@ def train(folder: Path, is_enough: Callable[[int], bool], speed: float) -> Run:
         )
         stack.callback(slicer.kill)
         while not is_enough(len(simulators)):
-            with ViewClient(thread, simulator.url, KEY) as view:
+            with ViewClient(thread, simulator.url, simulator.key) as view:
                 WatchingView(view)
                 assert player.play(simulator.port, None, 1)
                 lines = slicer.events_until("trial")

@@ -1,7 +1,7 @@
 """One study in PostgreSQL: twelve trainees move between three seats, and everything is killed.
 
-Each seat is a simulator and Slicer's side, processes of their own. Simulators die while a trainee
-plays, at a message or with a command on its way; Slicer's sides and the database at any time.
+Each seat is a simulator and Slicer's side, in two processes. Simulators die while a trainee plays,
+at a message or with a command on its way; Slicer's sides and the database at any time.
 """
 
 from __future__ import annotations
@@ -137,7 +137,7 @@ class Lab:
         ]
 
     def next_step(self, trainee):
-        """Return the name of the trainee's next step, with what is stored already; "" if none."""
+        """Return the name of the trainee's next step after the stored ones; "" if none."""
         with opened_when_available(self.place) as study:
             step = StudyProgress(study).played(trainee).next_step
         return "" if step is None else step.name

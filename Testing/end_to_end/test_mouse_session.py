@@ -113,7 +113,7 @@ class WindowMouse:
         return False
 
     def _place(self, item: str) -> tuple[float, float] | None:
-        """Return the middle of what is clicked to choose an item; None where it is not shown."""
+        """Return the middle of an item's button; None if it is not shown."""
         box = self._window.page.evaluate(BOX, item)
         return None if box is None else (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
 
@@ -121,7 +121,7 @@ class WindowMouse:
 class ClickingInWindow(StreamTrainee):
     """Goes through the menus by clicks."""
 
-    # A click before the window has drawn what is clicked chooses nothing.
+    # A click before the window has drawn the item chooses nothing.
     again_s = 10.0
 
     def choose(self, item: str) -> None:
@@ -145,7 +145,7 @@ class ClickingInWindow(StreamTrainee):
 
 
 def enter_id(trainee):
-    """Click from the start menu to that of the tasks, with the ID P7."""
+    """Click from the start menu to the menu of tasks, with the ID P7."""
     trainee.until_menu("start")
     for item in ("train", "skip", "next", "clicked", "row 1", "P", "row 3", "7", "done"):
         trainee.choose(item)

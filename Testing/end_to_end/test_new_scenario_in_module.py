@@ -1,4 +1,4 @@
-"""From a volume to a running trial in the module, by few clicks."""
+"""A few clicks in the module lead from a volume to a running trial."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def session_under_way(host, tmp_path):
 
 
 def load_volume(scene, path, name):
-    """Load a file as Slicer does: what is loaded last is what the slice views show."""
+    """Load a file as Slicer does: the slice views show the volume that was loaded last."""
     node = scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode", name)
     storage = scene.AddNewNodeByClass("vtkMRMLVolumeArchetypeStorageNode")
     storage.SetFileName(str(path))
@@ -130,7 +130,7 @@ def test_five_clicks_start_training_on_a_loaded_volume_with_placed_fiducials(hos
 
     # The node of the previous head may still exist when the trial runs.
     host.wait_until(
-        # Those of the previous scenario are shown until the new ones are read.
+        # The previous scenario's nodes are shown until the new ones are read.
         lambda: shown_images() and shown_images().GetName() == "Ms X",
         "its images are shown",
     )

@@ -23,7 +23,6 @@ from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.simulator.net.views.served import ViewClient
 
 TRAINEE = "Pseudonym-77"
-KEY = "a-key-that-nobody-else-knows-0123456789-abcdefgh"
 UNLIMITED = (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
 
 
@@ -84,9 +83,9 @@ def ended(tmp_path_factory):
     folder = tmp_path_factory.mktemp("lab")
     with contextlib.ExitStack() as stack:
         thread = stack.enter_context(LoopThread())
-        simulator = stack.enter_context(ViewedSimulator(folder / "records", key=KEY))
+        simulator = stack.enter_context(ViewedSimulator(folder / "records"))
         client = stack.enter_context(Client(port=simulator.port))
-        view = stack.enter_context(ViewClient(thread, simulator.url, KEY))
+        view = stack.enter_context(ViewClient(thread, simulator.url, simulator.key))
         view.join()
         pairing = urllib.request.Request(f"{simulator.url}/pair", b'{"code": "000000"}')
         with contextlib.suppress(urllib.error.HTTPError):
@@ -100,7 +99,7 @@ def ended(tmp_path_factory):
             # That the trial runs is answered a moment before it is logged.
             wait_until(lambda: "The trial is running." in log.read_text(), "the line in the log")
             result = simulator.stop(signal.SIGTERM)
-    return folder, result, simulator.code
+    return folder, result, (simulator.code, simulator.key)
 
 
 def log_lines(folder, name="simulator-0.log"):
@@ -109,7 +108,7 @@ def log_lines(folder, name="simulator-0.log"):
 
 
 def test_a_simulator_in_use_exits_cleanly_on_sigterm_and_closes_the_journal(ended):
-    folder, (status, _errors), _code = ended
+    folder, (status, _errors), _secrets = ended
     assert status == 0
     reading = read_journal(journal(folder / "records"))
     assert reading.integrity is Integrity.INTACT
@@ -132,10 +131,10 @@ def test_the_log_covers_the_whole_run_in_json_lines(ended):
 
 
 def test_no_secret_and_no_pseudonym_is_in_the_log(ended):
-    folder, (_status, errors), code = ended
+    folder, (_status, errors), secrets = ended
     written = "".join(path.read_text() for path in folder.glob("records-config/logs/*"))
     assert written
-    for secret in (code, KEY, TRAINEE):
+    for secret in (*secrets, TRAINEE):
         assert secret not in written
         assert secret not in errors
 

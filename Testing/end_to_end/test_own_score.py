@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import secrets
 import time
 from dataclasses import replace
 
@@ -32,13 +31,13 @@ from rastrainer.trial.ctps import PUBLISHED_STUDY, read_trials
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.flow.session.local_scorer import (
+from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
+from rastrainer_simulator.record.trial_archive import TrialArchive
+from rastrainer_simulator.training.local_scorer import (
     SCORED_BY_SIMULATOR,
     registered_alone,
     score_alone,
 )
-from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
-from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.virtual.scripted_trial import play_trial, send_hello
 from Testing.end_to_end.faulty_proxy import SlicerSide
 from Testing.end_to_end.finished_trials import COLIN, TRAINEE, write_finished_trials
@@ -169,12 +168,12 @@ def test_slicer_connecting_later_stores_the_trial_and_its_score_replaces_the_ide
 def test_a_view_of_the_real_simulator_shows_its_own_score_until_slicer_scores_the_trial(
     tmp_path, scenario, cohort, loop_thread
 ):
-    key, records = secrets.token_hex(32), tmp_path / "records"
-    with ViewedSimulator(records, "--speed", "8", key=key) as simulator:
+    records = tmp_path / "records"
+    with ViewedSimulator(records, "--speed", "8") as simulator:
         with Client(port=simulator.port) as client:
             send_hello(client, "player")
             trial = play_trial(client, scenario, "task-1", "P07", 5, BRISK).trial_id
-        with ViewClient(loop_thread, simulator.url, key) as joined:
+        with ViewClient(loop_thread, simulator.url, simulator.key) as joined:
             view = WatchingView(joined)
             wait_until(lambda: OWN in said(view), "the simulator's own score")
             own = view.screen.menu

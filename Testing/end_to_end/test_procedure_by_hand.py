@@ -126,7 +126,7 @@ def operate(trainee: ProcedureTrainee, lab: Lab, device: str) -> dict:
 
 
 def begin(trainee: ProcedureTrainee, device: str) -> None:
-    """Choose the biopsy beside Task 1, which is touched first."""
+    """Choose the biopsy after Task 1, whose fiducials are touched first."""
     trainee.read_introduction()
     if device == "gamepad":
         type_by_gamepad(trainee, TRAINEE)

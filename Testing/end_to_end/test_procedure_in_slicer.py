@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import threading
 import time
 
@@ -12,17 +11,13 @@ import pytest
 from rastrainer.commands import CommandName
 from rastrainer.protocol import DEFAULT_HOST, PROCEDURE_PHASES, Phase
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.logic.module_paths import ModulePaths
-from rastrainer.slicer.logic.module_session import ModuleSession
-from rastrainer.slicer.program.simulator_package import SimulatorPackage
 from rastrainer.slicer.scene.nodes import Role, nodesOf, nodesOfClass
 from rastrainer.slicer.scene.procedure_lines import LINE
 from rastrainer.study.database.study import Study
-from rastrainer_headless.connector import headlessKit
+from rastrainer_headless.headless_session import openSession, process
 from rastrainer_headless.scene import HeadlessScene
 from rastrainer_simulator.assets import asset_path
 from Testing.end_to_end.simulator_process import SimulatorProcess
-from Testing.end_to_end.study_side import ROOT
 from Testing.end_to_end.test_trial_over_openigtlink import SPEED, Player, play
 
 PROCEDURE = "biopsy"
@@ -34,16 +29,7 @@ class Leader:
     """The whole session of Slicer's module, whose timer the test is."""
 
     def __init__(self, folder, port: int):
-        places = ModulePaths(
-            assets=asset_path(),
-            python=sys.executable,
-            simulator=folder / "simulator",
-            study=folder / "study.db",
-            records=folder / "records",
-            library=folder / "scenarios",
-            package=SimulatorPackage.of(ROOT / "RASTrainer"),
-        )
-        self.session = ModuleSession(HeadlessScene().scene, places, headlessKit)
+        self.session = openSession(HeadlessScene(), folder, asset_path())
         self.session.isSeen = lambda _slices: True
         self.answers: list[str] = []
         self.session.procedure.answered.connect(self.answers.append)
@@ -65,9 +51,7 @@ class Leader:
     def until(self, condition) -> None:
         deadline = time.monotonic() + WITHIN_S
         while not condition():
-            if self.session.link.connector is not None:
-                self.session.link.connector.PeriodicProcess()
-            self.session.process()
+            process(self.session)
             self.session.work.yieldTime()
             time.sleep(0.005)
             assert time.monotonic() < deadline, (self.status, self.answers)

@@ -100,7 +100,7 @@ class Surgeon:
 
 @pytest.fixture(scope="module")
 def seen(tmp_path_factory) -> dict:
-    """What a client saw of a procedure with two lines."""
+    """A client's observations of a procedure with two lines."""
     surgeon = Surgeon(tmp_path_factory.mktemp("procedure"))
     try:
         return perform(surgeon) | {"surgeon": surgeon}
@@ -220,7 +220,7 @@ def test_the_record_holds_the_whole_procedure(seen):
     for instrument in procedure.instruments:
         assert instrument.self_aligned
         assert instrument.alignments == 1
-        # The next command comes while the tool is still fed by the one before.
+        # The next command comes while the previous command still feeds the tool.
         beyond = (
             instrument.drill_depth_mm - DRILLED_MM,
             instrument.instrument_depth_mm - PLACED_MM,

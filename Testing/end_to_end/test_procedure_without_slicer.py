@@ -30,7 +30,7 @@ class KilledSlicer:
 
     Attributes:
         points: how many touches the current process has received.
-        kills: in which phase the ones before were killed.
+        kills: the phases in which the previous simulators were killed.
     """
 
     def __init__(self, folder: Path, port: int):
@@ -81,7 +81,7 @@ class Interrupted(Player):
         return json.loads(found.content.text)
 
     def feed(self, to_mm: float) -> None:
-        """Feed what is in the guide to a depth."""
+        """Feed the instrument in the guide to a depth."""
         while (depth := self.state(bool)["procedure"]["feedMm"]) < to_mm:
             self.do("Feed", velocityMmS=5.0, durationS=2.0)
             self.state(lambda state, before=depth: state["procedure"]["feedMm"] > before)

@@ -1,12 +1,11 @@
 """A trial that was played and scored over OpenIGTLink, shown again by the simulator's process.
 
-First by itself, then as the ghost beside the arm in the next trial.
+First alone, then as a ghost next to the arm in the next trial.
 """
 
 from __future__ import annotations
 
 import math
-import secrets
 
 import pytest
 
@@ -29,16 +28,11 @@ SCORE = {"score": 81.0, "details": DETAILS}
 
 
 @pytest.fixture
-def key():
-    return secrets.token_hex(32)
-
-
-@pytest.fixture
-def simulator(tmp_path, key):
+def simulator(tmp_path):
     config = tmp_path / "records-config"
     config.mkdir()
     (config / "preferences.json").write_text('{"order": "any", "ghost": "own best"}')
-    with ViewedSimulator(tmp_path / "records", *SPEED, key=key) as simulator:
+    with ViewedSimulator(tmp_path / "records", *SPEED) as simulator:
         yield simulator
 
 
@@ -75,17 +69,17 @@ class GhostWatch(WatchingView):
 
 
 @pytest.fixture
-def views(loop_thread, simulator, key):
+def views(loop_thread, simulator):
     """Two pages that have joined: what each sends, and what each receives."""
     with (
-        ViewClient(loop_thread, simulator.url, key) as one,
-        ViewClient(loop_thread, simulator.url, key) as other,
+        ViewClient(loop_thread, simulator.url, simulator.key) as one,
+        ViewClient(loop_thread, simulator.url, simulator.key) as other,
     ):
         yield (one, GhostWatch(one)), (other, GhostWatch(other))
 
 
 def shown(view):
-    """Return the name of the menu; None where none is open."""
+    """Return the name of the menu; None if none is open."""
     menu = view.screen.menu
     return menu and menu.name
 

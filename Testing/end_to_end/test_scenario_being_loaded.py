@@ -1,10 +1,9 @@
-"""While the simulator loads a head or settings, no trial starts on what is about to be replaced."""
+"""While the simulator loads a head or settings, no trial starts on the old ones."""
 
 from __future__ import annotations
 
 import json
 import os
-import secrets
 import sys
 from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -30,7 +29,7 @@ pytestmark = pytest.mark.skipif(os.name == "nt", reason="Windows has no named pi
 LOADING = ENGLISH["being set up"]
 PATIENCE_S = 120.0
 MORE_THAN_AT_ONCE = 6
-"""Trials that may not be started at once: refused ones do not count."""
+"""Starts that must not all succeed; refused starts do not count."""
 HELD = """
 import sys
 from pathlib import Path
@@ -52,12 +51,11 @@ class HeldSimulator(ViewedSimulator):
     """A simulator that loads a scenario only when a test lets it."""
 
     def __init__(self, folder):
-        self.key = secrets.token_hex(32)
         self._pipe = folder / "pipe"
         os.mkfifo(self._pipe)
         self.records = folder / "records"
         self.command = (sys.executable, "-c", HELD.format(pipe=str(self._pipe)))
-        super().__init__(self.records, key=self.key)
+        super().__init__(self.records)
 
     @contextmanager
     def being_loaded(self) -> Iterator[None]:
@@ -185,7 +183,7 @@ def test_a_trial_waits_until_the_head_is_loaded_no_matter_who_starts_it(
     assert other.ask("MoveTipTo", positionMm=[450.0, 30.0, 420.0]).ok
     assert other.ask("Abort").ok
     assert simulator.stop()[0] == 0
-    # What was refused before left nothing behind that the trial depends on.
+    # The refused starts left nothing behind that the trial depends on.
     (journal,) = simulator.records.glob(f"*{SUFFIX}")
     assert replay(read_journal(journal), load_setup(ball)).difference is None
 

@@ -1,4 +1,4 @@
-"""Building scenarios through the real processes: what is broken or canceled leaves nothing."""
+"""Scenarios built through the real processes: a broken or canceled build leaves nothing."""
 
 import os
 import signal

@@ -32,7 +32,7 @@ def volume(tmp_path):
 
 @pytest.fixture
 def ball(tmp_path):
-    """A scenario with unusable tasks: their fiducials are within the head or beside it."""
+    """A scenario with unusable tasks, whose fiducials are inside the head or outside it."""
     with new_folder(tmp_path / "ball") as made:
         write_scenario(made, made_up_scenario(), ball_head())
         (made / "preview.png").write_bytes(png())

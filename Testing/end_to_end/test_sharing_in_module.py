@@ -1,4 +1,4 @@
-"""By a button a scenario is saved for others, without face and names, or copied with a plan."""
+"""A button saves a scenario for others, without face and names, or copies it with a plan."""
 
 from __future__ import annotations
 

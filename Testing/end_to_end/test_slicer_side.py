@@ -51,7 +51,7 @@ class SlicerSide:
         self.points = arrayFromMarkupsControlPoints(node)
 
     def open_logic(self):
-        find = ScenarioCache(COLIN).find
+        find = ScenarioCache(COLIN.parent).find
         services = TrialServices(
             self.scene, self.link, find, lambda: Study.open(self.study), self.work
         )
@@ -151,7 +151,7 @@ def test_the_trial_is_recovered_from_the_journal_and_stored_once(slicer_side):
         (trial,) = study.history("T-042")
     assert len(slicer_side.scored) == 1
     assert trial.record.task == "task-1"
-    # Points travel as 32-bit numbers, the record as text: the scene saw what was recorded.
+    # Points travel as 32-bit numbers, the record as text: the scene saw the recorded points.
     np.testing.assert_allclose(slicer_side.live_points, trial.record.positions_mm, atol=1e-3)
 
 

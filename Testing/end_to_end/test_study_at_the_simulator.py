@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import secrets
 import uuid
 
 import pytest
@@ -66,13 +65,12 @@ def states(screen):
 def test_the_trainees_menu_offers_what_slicer_sends_of_a_study_and_of_a_curriculum(
     loop_thread, tmp_path
 ):
-    key = secrets.token_hex(32)
     hello = {"protocolVersion": PROTOCOL_VERSION, "client": "Slicer"}
     step = StudyStep("P07", "trial", 3, 19, "task-2", "desktop")
     with (
-        ViewedSimulator(tmp_path / "records", key=key) as simulator,
+        ViewedSimulator(tmp_path / "records") as simulator,
         Client(port=simulator.port) as slicer,
-        ViewClient(loop_thread, simulator.url, key) as view,
+        ViewClient(loop_thread, simulator.url, simulator.key) as view,
     ):
         assert slicer.send_command("Hello", hello, timeout=60).ok
         assert slicer.send_command("StudyStep", record_to_json(step), timeout=60).ok
@@ -116,14 +114,14 @@ def test_the_trainees_menu_offers_what_slicer_sends_of_a_study_and_of_a_curricul
 def test_the_module_sends_the_simulator_a_trainees_progress_including_that_from_another_seat(
     loop_thread, tmp_path
 ):
-    path, key = tmp_path / STUDY, secrets.token_hex(32)
+    path = tmp_path / STUDY
     with Study.open(path) as study:
         study.create_trainee("P08")
         CurriculumStore(study).choose(TWO)
     with (
-        ViewedSimulator(tmp_path / "records", key=key) as simulator,
+        ViewedSimulator(tmp_path / "records") as simulator,
         StudySide(tmp_path, simulator.port),
-        ViewClient(loop_thread, simulator.url, key) as view,
+        ViewClient(loop_thread, simulator.url, simulator.key) as view,
     ):
         view.join(kind="desktop")
         go_to(view, "train", "introduction")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import random
-import secrets
 import time
 
 import pytest
@@ -45,7 +44,7 @@ class Lab:
 
     def __init__(self, folder, thread):
         self.folder, self.port = folder, free_port()
-        self._thread, self._key = thread, secrets.token_hex(32)
+        self._thread = thread
         with Study.open(folder / STUDY) as study:
             study.create_trainee(TRAINEE, True)
             progress = StudyProgress(study)
@@ -62,14 +61,14 @@ class Lab:
     def start_simulator(self):
         """Start it on the port of the previous one."""
         words = ("--speed", "10", "--port", str(self.port))
-        self.simulator = ViewedSimulator(self.folder / RECORDS, *words, key=self._key)
+        self.simulator = ViewedSimulator(self.folder / RECORDS, *words)
         self.port = self.simulator.port
 
     def start_slicer(self):
         self.slicer = StudySide(self.folder, self.port)
 
     def view(self):
-        return View(self._thread, self.simulator.url, self._key)
+        return View(self._thread, self.simulator.url, self.simulator.key)
 
     def progress(self):
         with Study.open(self.folder / STUDY) as study:
@@ -85,7 +84,7 @@ class Lab:
 
 
 class View(ViewClient):
-    """What the trainee sees and clicks; it must be read all the time, like a view."""
+    """The trainee's view, in which they click; it must be read all the time."""
 
     def __enter__(self):
         self.join(kind="desktop")
@@ -182,7 +181,7 @@ def test_a_study_is_completed_although_slicer_and_the_simulator_are_killed_durin
 
 
 def check_study(progress, player):
-    """Everything was done once, in its order, with what was played and answered."""
+    """Every step was done once, in order, with the trials played and the answers given."""
     assert [(entry.step, entry.outcome) for entry in progress.entries] == [
         (name, "done")
         for name in (

@@ -29,13 +29,12 @@ from Testing.simulator.landmarked import LANDMARKS, OVER_THE_FACE, write_landmar
 pytestmark = pytest.mark.soak
 
 SEED = 5
-KEY = "5" * 64
 TIMEOUT_S = 120.0
 
 
 @pytest.fixture(scope="module")
 def seen(tmp_path_factory) -> dict:
-    """What was seen of the trial: its simulator is killed amid the second stroke."""
+    """Observations of a trial whose simulator is killed during the second stroke."""
     folder = tmp_path_factory.mktemp("surface")
     records, scenario_folder = folder / "records", write_landmarked(folder / "scenario")
     options = ("--scenario", str(scenario_folder), "--speed", SPEED)
@@ -53,7 +52,7 @@ def seen(tmp_path_factory) -> dict:
         traced = trainee.state()["trace"]["kept"]
         wait_until(lambda: _written(records) >= traced, "the points of the stroke on the disk")
         simulator.kill()
-    with ViewedSimulator(records, *options, key=KEY) as simulator:
+    with ViewedSimulator(records, *options) as simulator:
         with Player(simulator.port) as player:
             trainee = TracingTrainee(player, scenario, SEED)
             seen["traced"], seen["paused"] = traced, trainee.state()

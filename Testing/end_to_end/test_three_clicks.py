@@ -1,4 +1,4 @@
-"""From an empty Slicer to a running trial: three clicks, with the real simulator's process."""
+"""Three clicks lead from an empty Slicer to a running trial, with the real simulator's process."""
 
 import pytest
 import slicer
@@ -18,7 +18,7 @@ FEEDBACK_HEIGHT = 120
 
 @pytest.fixture
 def options(host, tmp_path):  # noqa: ARG001 (the settings are the host's)
-    # The usual port may be in use by another test that runs beside this one.
+    # The usual port may be in use by another test that runs at the same time.
     slicer.app.settings().setValue(PORT.key, free_port())
     return (*FAST, "--records", str(tmp_path / "trials"))
 

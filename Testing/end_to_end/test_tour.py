@@ -47,7 +47,7 @@ def tour(host, tmp_path, options, *words):
     """Take the tour with a simulator that is installed elsewhere; return its steps, all good."""
     program = write_program(tmp_path / "rastrainer", tmp_path / "simulator.pid", options)
     slicer.app.settings().setValue(PROGRAM.key, str(program))
-    # The usual port may be in use by another test that runs beside this one.
+    # The usual port may be in use by another test that runs at the same time.
     slicer.app.settings().setValue(PORT.key, free_port())
     status = host.run_script(TOUR, "--", "--output", str(tmp_path / "tour"), *words)
     content = json.loads((tmp_path / "tour" / "tour.json").read_text())

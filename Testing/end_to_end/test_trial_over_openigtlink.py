@@ -95,7 +95,7 @@ def scenario() -> Scenario:
 
 @pytest.fixture(scope="module")
 def trial(scenario, tmp_path_factory) -> dict:
-    """What clients saw of a trial whose simulator crashes twice before it is acknowledged."""
+    """Clients' observations of a trial whose simulator crashes twice before it is acknowledged."""
     records = tmp_path_factory.mktemp("records")
     with (
         SimulatorProcess(records, "--no-views", "--speed", SPEED) as simulator,

@@ -1,4 +1,4 @@
-"""What a set-up from Slicer keeps is enough: trials and planning run on it."""
+"""The packages that a set-up from Slicer keeps are enough for trials and planning."""
 
 import sys
 from pathlib import Path
@@ -18,7 +18,6 @@ pytestmark = [
     pytest.mark.soak,
     pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="Linux tells"),
 ]
-KEY = "0" * 32
 NEVER_IMPORTED = ("embreex", "networkx", "Cython", "scipy/stats/tests")
 
 
@@ -38,7 +37,7 @@ def simulator(trimmed, tmp_path):
         command = tuple(private_command(Path(sys.executable), trimmed[0], SIMULATOR, "simulator"))
 
     arguments = ("--speed", "20", "--view-port", "0", "--log-folder", str(tmp_path / "logs"))
-    with TrimmedSimulator(tmp_path / "records", *arguments, key=KEY) as process:
+    with TrimmedSimulator(tmp_path / "records", *arguments) as process:
         yield process
 
 

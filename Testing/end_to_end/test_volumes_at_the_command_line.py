@@ -23,7 +23,7 @@ from Testing.slicer.head.placed import fiducials
 from Testing.slicer.head.volume_file import write_volume
 
 SIZE = 0.75
-"""Size of the heads: small ones are found faster."""
+"""Size of the heads; small heads are found faster."""
 NOTHING_SCANNED_BELOW = 5.0
 """Height (S) above which no phantom here lacks a part of its head, mm."""
 
@@ -159,7 +159,7 @@ ODD = {
     "1 × 1 × 5 mm": (head_nrrd(spacing=(1.0, 1.0, 5.0)), [], "5.0 mm apart", 1.0),
     "a folder of DICOM files": (dicom, [], "", 0.6),
 }
-"""What writes the volume, options, an expected warning, and the largest mean error, mm."""
+"""The volume's writer, options, an expected warning, and the largest mean error, mm."""
 QUICK = {"a folder of DICOM files"}
 
 

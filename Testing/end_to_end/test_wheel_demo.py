@@ -30,7 +30,7 @@ sys.exit(main())
 
 @pytest.fixture(scope="module")
 def installed(built_wheel, tmp_path_factory):
-    """A folder with the wheel alone; what it needs comes from this Python."""
+    """A folder with the wheel alone; its requirements come from this Python."""
     folder = tmp_path_factory.mktemp("installed")
     words = ["--no-deps", "--no-index", "--no-cache-dir", "-q", "--target", str(folder)]
     command = [sys.executable, "-m", "pip", "install", *words, str(built_wheel)]

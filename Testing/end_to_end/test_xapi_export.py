@@ -36,7 +36,7 @@ WITHIN_S = 60.0
 
 
 class Ralph:
-    """The server, on its own port; what it has accepted stays when it is killed."""
+    """The server, on its own port; accepted statements stay when it is killed."""
 
     def __init__(self, folder: Path):
         self._folder = folder

@@ -17,7 +17,7 @@ ABOVE_MM, LANDED_MM, PASSED_MM = 30.0, 0.6, 1.5
 SINK_MM, GLIDE_MM = 0.3, 0.15
 """How far below the skin the tip is sent to land, and above it to glide: neither is pressing."""
 LEANS = ((0.0, 0.0, -0.4), (0.0, 0.0, -0.8), (0.0, 0.0, 0.0), (0.0, 0.4, -0.4), (0.0, -0.4, -0.4))
-"""What is added to the direction into the skin, one after the other."""
+"""Additions to the direction into the skin, tried one after the other."""
 SPEED_MM_S = 60
 TIMEOUT_S = 60
 
@@ -71,7 +71,7 @@ class TracingTrainee:
         return json.loads(found.content.text)
 
     def _land(self, place) -> None:
-        """Lower the tip onto a place; where the tool meets the skin beside it, lean it again."""
+        """Lower the tip onto a place; if the tool meets the skin next to it, lean it again."""
         for lean in LEANS:
             self._lean = np.array(lean)
             self._go(place, ABOVE_MM, 400)

@@ -114,7 +114,7 @@ class VirtualMouse(_Device):
 
 
 class VirtualKeyboard(_Device):
-    """Presses keys on a display, for whichever window has the focus."""
+    """Presses keys on a display, for the window with the focus."""
 
     def hold(self, code: str, is_down: bool) -> None:
         """Press a key by its W3C code, or release it."""

@@ -105,7 +105,7 @@ class Plug:
 
 
 def main() -> int:
-    """Be the process: obey the pipe beside the ordinary program."""
+    """Be the process: run the ordinary program and obey the pipe."""
     felt = Path(sys.argv[1])
     threading.Thread(target=_obey, args=(felt,), daemon=True).start()
     return run(sys.argv[2:])

@@ -39,9 +39,9 @@ class Photographer:
         self._folder = folder
 
     def keep(self, name: str) -> None:
-        """Save what is shown, once the view has arrived."""
+        """Save a picture, once the view has arrived."""
         if self._lab.view.screen.menu is None:
-            # Beside a menu nothing changes, and nothing is drawn again.
+            # While a menu is open nothing changes, and nothing is drawn again.
             self._window.wait_for_tick(self._lab.view.state["tick"])
         time.sleep(FLIGHT_S + 1.5)
         keep_picture(self._window.page.screenshot(), self._folder / f"{name}.webp")
@@ -67,7 +67,7 @@ def main() -> None:
             play_trial(client, scenario, "task-1", TRAINEE, SEED)
             slicer.events_until("trial")
             trainee.until_menu("result")
-            # The hints are those of the device in use.
+            # The hints are for the device in use.
             trainee.focus("errors")
             trainee.focus("next")
             photographer.keep("result")

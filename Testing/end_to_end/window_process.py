@@ -1,4 +1,4 @@
-"""The simulator's page as an application of its own, on a display in memory."""
+"""The simulator's page as an application window, on a display in memory."""
 
 from __future__ import annotations
 

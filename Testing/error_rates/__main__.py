@@ -1,7 +1,7 @@
 """`python -m Testing.error_rates [--write]`: simulate again how often the statistics err.
 
-Prints the tables of `tables.md`, each with what is asked of it, in a few minutes on one core;
-`--write` puts them into the page. The exit status is 1 where something asked does not hold.
+Prints the tables of `tables.md`, each with its requirements, in a few minutes on one core;
+`--write` puts them into the page. The exit status is 1 if a requirement does not hold.
 """
 
 from __future__ import annotations

@@ -34,11 +34,11 @@ LOWEST, HIGHEST = 1, 5
 TOTALS = ((0.3, 0.6), (1.0, 0.5), (1.0, 1.0))
 """Standard deviations between raters and of the rest, in those between replays."""
 MARKS = ((0.3, 0.4), (0.3, 0.8))
-"""By how much the second rater is milder, and the standard deviation of a mark, in those between
+"""The second rater's mildness, and the standard deviation of a mark, in standard deviations between
 replays."""
 ASKED = 0.94
 ASKED_OF_FEW = 0.92
-"""Of kappa, below 40 replays."""
+"""Least coverage of kappa below 40 replays."""
 SEED = 20240
 
 
@@ -85,8 +85,8 @@ def _measured(
     widths = [each.interval[1] - each.interval[0] for each in agreements]
     share = share_of([holds(each.interval, truth) for each in agreements])
     previous = share_text(share_of(before)) if before else "–"
-    beside = (fixed(truth, 2), fixed(float(np.mean(widths)), 2), share_text(missing / sets))
-    return Measured(case, share, len(agreements), at_least=asked, beside=(*beside, previous))
+    further = (fixed(truth, 2), fixed(float(np.mean(widths)), 2), share_text(missing / sets))
+    return Measured(case, share, len(agreements), at_least=asked, further=(*further, previous))
 
 
 def _totals(

@@ -1,8 +1,8 @@
-"""What aiming beside every fiducial gains, in every direction: by simulated registrations.
+"""The gain of missing every fiducial in one direction, by simulated registrations.
 
 Playing one trial takes seconds, and chance may hide what a direction pays. So the errors of the
-touches are drawn here: those of honest hands, and a common bias that the skin leaves of 2 mm in one
-of many directions. Time and safety are those of the stored trials of the usual hands.
+touches are drawn here: errors of honest hands, and a common bias that the skin leaves of 2 mm in
+one of many directions. Time and safety come from the stored trials of the usual hands.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from Testing.simulator.virtual.cheating_trainees import BIAS_MM, FLE_MM
 
 DIRECTIONS = 60
 MAX_ABOVE = 0.02
-"""Of the trials in the direction that pays most."""
+"""Requirements for the trials in the direction that pays most."""
 HEADER = (
     "task",
     "trials above 40, best direction",

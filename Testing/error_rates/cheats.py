@@ -41,7 +41,7 @@ class Scored:
     Attributes:
         case: the strategy, in words.
         scores: of each trial, by task.
-        at_most: what no score may exceed; None where they are only reported.
+        at_most: no score may exceed it; None if scores are only reported.
     """
 
     case: str
@@ -150,18 +150,18 @@ def _trainees(
     """Simulate trainees; `aborting` is the share of the bad trials that they abort."""
     counted, uncounted, until_finished, finished = [], [], [], []
     for _ in range(sets):
-        # Enough for 30 finished ones, however many are aborted.
+        # Enough for 30 finished trials, however many are aborted.
         failed = random.random(20 * TRIALS) >= passing
         aborted = failed & (random.random(len(failed)) < aborting)
         counted.append(_is_competent(failed[:TRIALS]))
         uncounted.append(_is_competent(failed[:TRIALS][~aborted[:TRIALS]]))
         until_finished.append(_is_competent(failed[~aborted][:TRIALS]))
         finished.append(int(np.sum(~aborted[:TRIALS])))
-    beside = (
+    further = (
         *(f"{fixed(100 * share_of(each), 1)} %" for each in (uncounted, until_finished)),
         fixed(float(np.mean(finished)), 1),
     )
-    return Measured(case, share_of(counted), sets, at_most, at_least, beside)
+    return Measured(case, share_of(counted), sets, at_most, at_least, further)
 
 
 def _is_competent(failed: np.ndarray) -> bool:
@@ -187,10 +187,10 @@ def offsets(sets: int, seed: int = 8) -> list[Measured]:
             ours, standard = _throughputs(offset, random)
             rates.append(ours)
             by_sd.append(standard)
-        beside = fixed(float(np.mean(rates)), 2), fixed(float(np.mean(by_sd)), 2)
+        further = fixed(float(np.mean(rates)), 2), fixed(float(np.mean(by_sd)), 2)
         above = share_of(np.array(rates) > 8)
         limit = 0.0 if offset else None
-        found.append(Measured(f"{offset:g} mm", above, sets, at_most=limit, beside=beside))
+        found.append(Measured(f"{offset:g} mm", above, sets, at_most=limit, further=further))
     return found
 
 
@@ -198,11 +198,11 @@ def _throughputs(offset: float, random: np.random.Generator) -> tuple[float, flo
     """Return our throughput and the standard's, for targets alternating on a line."""
     there = DISTANCE_MM * (np.arange(TOUCHES) % 2)
     ahead = np.where(np.arange(TOUCHES) % 2, 1.0, -1.0)
-    beside = (offset + random.normal(0, 0.05, TOUCHES)) * ahead
+    further = (offset + random.normal(0, 0.05, TOUCHES)) * ahead
     targets, touches = (
-        np.column_stack([x, np.zeros((TOUCHES, 2))]) for x in (there, there + beside)
+        np.column_stack([x, np.zeros((TOUCHES, 2))]) for x in (there, there + further)
     )
     result = effective_throughput(targets, touches, np.arange(float(TOUCHES)))
-    width = WIDTH_FACTOR * np.std((beside * ahead)[1:], ddof=1)
+    width = WIDTH_FACTOR * np.std((further * ahead)[1:], ddof=1)
     standard = np.log2(np.array(result.effective_distances_mm) / width + 1).mean()
     return result.bits_per_s, float(standard)

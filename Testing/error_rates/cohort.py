@@ -1,6 +1,6 @@
-"""A cohort that is really played with all effects at once, and what its report gives back.
+"""A cohort that is really played with all effects at once, and the estimates of its report.
 
-`played_cohort.csv` holds what the report is made of. `python -m Testing.error_rates.cohort FOLDER`
+`played_cohort.csv` has the numbers of the report. `python -m Testing.error_rates.cohort FOLDER`
 plays the study into a folder, some seconds a trial, and writes the file; an interrupted study
 resumes.
 """
@@ -57,7 +57,7 @@ VALUES = (
     "tre_common_bias_sd_mm",
     "undone_touches",
 )
-"""What the sources of variation are estimated from."""
+"""Values from which the sources of variation are estimated."""
 HEADER = (
     "parameter",
     "deviation, standard errors",
@@ -72,7 +72,7 @@ MOST = 2.0
 
 @dataclass(frozen=True)
 class PlayedParameter:
-    """One parameter of the cohort: what was asked for, and what its report says."""
+    """One parameter of the cohort: its true value, and the estimate of the report."""
 
     case: str
     truth: float
@@ -140,7 +140,7 @@ def asked_for() -> dict[str, float]:
 def _effects_of_views() -> tuple[dict[str, float], dict[str, float]]:
     """Return what each mode's bias alone does.
 
-    The first is the mean square by which it displaces the target, mm². The second is what it adds
+    The first is the mean square by which it displaces the target, mm². The second is its addition
     to the mean logarithm of the RMSE of touches that scatter as the hands of the trial do.
     """
     squares, added = defaultdict(list), defaultdict(list)
@@ -161,7 +161,7 @@ def _alone(task: str, seed: int, bias_mm: np.ndarray) -> tuple[float, float]:
     head_to_world = scenario.perturbed_head_to_world(seed)
     fiducials = np.asarray(scenario.task(task).fiducials, dtype=float)
     normals = fiducial_normals(scenario, task) @ head_to_world[:3, :3].T
-    # What leads off the skin moves no touch.
+    # Errors perpendicular to the skin move no touch.
     along = bias_mm - normals * (normals @ bias_mm)[:, None]
     fit = register(transforms.apply(head_to_world, fiducials) + along, fiducials)
     target = scenario.target.position_ras[None]
@@ -207,7 +207,7 @@ def write(data: StudyData) -> None:
 
 
 def play_cohort(folder: Path, workers: int | None = None) -> StudyData:
-    """Play the whole study, or what is missing of it, into a folder."""
+    """Play the whole study, or the rest of it, into a folder."""
     run = simulate_cohort(
         STUDY_PROTOCOL, POPULATION, TRAINEES, SEED, folder, PlaySettings(), workers=workers
     )

@@ -10,7 +10,7 @@ import numpy as np
 from scipy import stats
 
 from rastrainer.study.study_data import StudyData, TrialRow
-from rastrainer_simulator.report.method_comparison import TITLES
+from rastrainer_simulator.report.target_errors import TITLES
 from rastrainer_simulator.statistics.intervals import ALPHA
 from rastrainer_simulator.statistics.paired import fit_differences, holm, is_separable
 from Testing.error_rates.measured import Measured, share_of, share_text
@@ -27,7 +27,7 @@ BETWEEN, PRACTICE = 0.3, 0.15
 
 @dataclass(frozen=True)
 class Decisions:
-    """What is decided of each pair of methods, arrays of shape (sets, pairs).
+    """Decisions on each pair of methods, arrays of shape (sets, pairs).
 
     Attributes:
         adjusted: Whether p, adjusted over the pairs, is below the level.
@@ -93,7 +93,7 @@ def study_of(errors: np.ndarray, places: np.ndarray) -> StudyData:
 
 
 def differences(sets: int, seed: int = 31) -> list[Measured]:
-    """Return how often any difference is found between methods, equal ones and others."""
+    """Return how often any difference is found between methods, equal or not."""
     random = np.random.default_rng(seed)
     return [
         _case(count, trainees, factor, sets, random)
@@ -120,5 +120,5 @@ def _case(
         sets,
         at_most=0.06 if factor == 1.0 else None,
         at_least=0.8 if factor != 1.0 and trainees == 24 else None,
-        beside=(share_text(share_of(found.unadjusted.any(axis=-1))), coverage),
+        further=(share_text(share_of(found.unadjusted.any(axis=-1))), coverage),
     )

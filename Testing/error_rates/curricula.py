@@ -40,7 +40,7 @@ DAY = 10
 """Trials on a day, which is good or bad by chance."""
 START, TASK_SD, TRAINEE_SD, TRIAL_SD, CEILING = 52.0, 12.0, 6.0, 8.0, 88.0
 LEARNING, TRANSFER = 0.12, 0.03
-"""Share of what is left up to the ceiling that a trial adds to its task, and to each other one."""
+"""Share of the way to the ceiling that a trial adds to its task, and to each other task."""
 CURRICULUM = Curriculum(
     "c",
     "C",
@@ -121,7 +121,7 @@ def next_best(standing: CurriculumStanding, _random: np.random.Generator) -> Ass
 
 
 def in_rotation(standing: CurriculumStanding, _random: np.random.Generator) -> AssignmentStanding:
-    """Choose the one that was played least."""
+    """Choose the task that was played least."""
     return min(_open(standing), key=lambda each: each.played)
 
 
@@ -159,8 +159,8 @@ def weakest(sets: int) -> list[Measured]:
             missed.append(skill[chosen] - skill.min())
             by_chance.append(skill.mean() - skill.min())
         case = f"{count} trial{'' if count == 1 else 's'} of each of {TASKS} tasks"
-        beside = (fixed(fmean(missed), 1), fixed(fmean(by_chance), 1))
-        found.append(Measured(case, share_of(hits), sets, at_least=0.5, beside=beside))
+        further = (fixed(fmean(missed), 1), fixed(fmean(by_chance), 1))
+        found.append(Measured(case, share_of(hits), sets, at_least=0.5, further=further))
     return found
 
 
@@ -203,12 +203,12 @@ def choices(sets: int) -> list[Measured]:
     for name, choose in CHOICES.items():
         courses = [course(choose, seed) for seed in range(sets)]
         within = share_of([each.trials <= 40 for each in courses])
-        beside = (
+        further = (
             fixed(fmean(each.trials for each in courses), 1),
             fixed(fmean(each.weakest for each in courses), 1),
         )
         asked = 0.8 if choose is next_best else None
-        found.append(Measured(name, within, sets, at_least=asked, beside=beside))
+        found.append(Measured(name, within, sets, at_least=asked, further=further))
     return found
 
 

@@ -1,14 +1,13 @@
 """Surface matches of traces as people draw them: are interval and warning right?
 
-Points of a drawn trace lie side by side, so that a hundred of them are in a few places of the face.
-`drawn_traces.csv` holds what was matched, a trace a row. `python -m
-Testing.error_rates.drawn_traces` matches what it lacks of `SEEDS` traces for each head and case,
+The points of a drawn trace are neighbors, so that a hundred are in a few places of the face.
+`drawn_traces.csv` has the matched traces, one a row. `python -m
+Testing.error_rates.drawn_traces` matches the missing traces of `SEEDS` for each head and case,
 all cases in turn. It can be stopped at any time: the table says how many traces there were.
 """
 
 from __future__ import annotations
 
-import csv
 import itertools
 import sys
 from collections.abc import Iterator
@@ -31,6 +30,7 @@ from rastrainer.registration.surface_error import (
 )
 from rastrainer.registration.surface_match import match_surface
 from rastrainer.registration.target_error import COMMON_BIAS_SD_MM
+from rastrainer_simulator.statistics.intervals import rms
 from Testing.domain.registration.drawing_hands import EYE, draw_by_guidance, draw_in_strokes
 from Testing.domain.registration.traces import coarse_start, head_pose
 from Testing.error_rates.match_warnings import (
@@ -38,10 +38,10 @@ from Testing.error_rates.match_warnings import (
     HEADS,
     NOISE_MM,
     head_of,
-    play_missing,
     rows_of,
 )
 from Testing.error_rates.measured import Measured, share_of, share_text
+from Testing.error_rates.row_files import play_missing, stored_rows
 
 HEADER = (
     "trace, points, and shift of the skin",
@@ -92,11 +92,6 @@ class Drawn:
     warnings: str
 
     @property
-    def key(self) -> tuple[str, str, int, float, int]:
-        """What there is one trace of."""
-        return self.head, self.how, self.points, self.shift_mm, self.seed
-
-    @property
     def slides(self) -> bool:
         """Whether it is called sliding."""
         return self.slide_mm > SLIDE_LIMIT_MM
@@ -140,7 +135,7 @@ def _drawn(
 def measured(traces: int) -> list[Measured]:
     """Return the table: of what the file holds if so many are asked for, else played anew."""
     if traces >= SEEDS:
-        drawn = stored()
+        drawn = stored_rows(FILE, Drawn)
     else:
         drawn = [play(FIRST_HEAD, *case, seed) for case in CASES for seed in range(traces)]
     rows = []
@@ -148,9 +143,9 @@ def measured(traces: int) -> list[Measured]:
         own = [one for one in drawn if (one.how, one.points, one.shift_mm) == (how, points, shift)]
         matched = [one for one in own if one.warnings != REFUSED]
         is_off = [one.farthest_mm > SLIDE_LIMIT_MM for one in matched]
-        beside = (
-            fixed(_rms([one.expected_mm for one in matched]), 2),
-            fixed(_rms([one.error_mm for one in matched]), 2),
+        further = (
+            fixed(rms([one.expected_mm for one in matched]), 2),
+            fixed(rms([one.error_mm for one in matched]), 2),
             *(share_text(share_of([one.slides for one in matched])), share_text(share_of(is_off))),
             share_text(share_of([one.farthest_mm <= one.slide_mm for one in matched])),
             str(len(own)),
@@ -162,36 +157,18 @@ def measured(traces: int) -> list[Measured]:
                 share_of([bool(one.holds) for one in matched]),
                 len(matched),
                 at_least=LEAST_HELD if is_asked else None,
-                beside=beside,
+                further=further,
             )
         )
     return rows
 
 
-def _rms(values: list[float]) -> float:
-    return float(np.sqrt(np.mean(np.square(values))))
-
-
 def keys(seeds: int) -> Iterator[tuple[str, str, int, float, int]]:
-    """Yield what is matched: head, how it is drawn, points, shift and seed."""
+    """Yield the key of each trace: head, way of drawing, points, shift and seed."""
     for seed in range(seeds):
         for case, head in itertools.product(CASES, HEADS):
             yield (head, *case, seed)
 
 
-def stored() -> list[Drawn]:
-    """Return what the file holds."""
-    with FILE.open(encoding="utf-8", newline="") as file:
-        return [
-            Drawn(
-                *(row["head"], row["how"], int(row["points"]), float(row["shift_mm"])),
-                int(row["seed"]),
-                *(float(row["error_mm"]), float(row["expected_mm"]), int(row["holds"])),
-                *(float(row["farthest_mm"]), float(row["slide_mm"]), row["warnings"]),
-            )
-            for row in csv.DictReader(file)
-        ]
-
-
 if __name__ == "__main__":
-    sys.exit(play_missing(FILE, Drawn, stored, keys(SEEDS), play))
+    sys.exit(play_missing(FILE, Drawn, keys(SEEDS), play, names=5))

@@ -2,8 +2,8 @@
 
 Time, contacts and every touch were played. A single score scatters by some ten points, mostly
 because of how fifteen errors happen to add up, so that the mean of a dozen says little about two
-points. So the trials that are scored are put together: the error of each touch is that of a played
-one, turned about the skin's normal by chance, and the time is that of one of the task's trials.
+points. So the scored trials are put together: each touch has the error of a played touch, turned
+about the skin's normal by chance, and each trial has the time of one of the task's trials.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from Testing.error_rates.hands import HEADS, SLOW, TASKS, USUAL, HandsTrial, sce
 from Testing.error_rates.registered import common_biases, registered_errors
 
 MAX_OFF = 2.0
-"""Points by which a task's mean score may be off that of all tasks."""
+"""Points by which a task's mean score may differ from the mean of all tasks."""
 MAX_OFF_SLOW = 3.5
 """The same of hands that the references were not made for: one task is off by more than 2."""
 MORE = 4
 """Times as many sets for the deviation that is asked for."""
 RESAMPLES = 25
-"""Of the played trials, for a standard error, each with a quarter of the sets."""
+"""Parts of the played trials, each with a quarter of the sets, for a standard error."""
 HEADER = (
     "task",
     "deviation, points",
@@ -45,7 +45,7 @@ HEADER = (
 
 @dataclass(frozen=True)
 class Deviation:
-    """A task's mean score, its deviation from that of all tasks, and its standard error."""
+    """A task's mean score, its deviation from the mean of all tasks, and its standard error."""
 
     score: float
     standard_error: float
@@ -63,7 +63,7 @@ class EqualScore:
         trials: number of played trials.
         time_s, tre_mm, safety: mean time, RMS of the true TRE, mean square root of safety.
         reference: of the task.
-        at_most: the deviation of `equal` that is allowed; None where nothing is asked.
+        at_most: the deviation of `equal` that is allowed; None if nothing is required.
     """
 
     case: str
@@ -191,7 +191,7 @@ class PlayedTask:
     def assemble(
         self, touches: np.ndarray, sets: int, random: np.random.Generator
     ) -> list[ScoreMeasures]:
-        """Return what is scored of `sets` trials with the errors of `touches`, (k, 3), skin, mm."""
+        """Return the measures of `sets` trials with the errors of `touches`, (k, 3), skin, mm."""
         shape = (sets, len(self._fiducials))
         chosen = touches[random.integers(0, len(touches), shape)]
         along = chosen[..., 0] + 1j * chosen[..., 1]
@@ -201,7 +201,7 @@ class PlayedTask:
         return self._of([self.trials[i % len(self.trials)] for i in range(sets)], errors)
 
     def played(self) -> list[ScoreMeasures]:
-        """Return what is scored of the trials as they were played."""
+        """Return the measures of the trials as they were played."""
         return self._of(self.trials, np.array([one.errors_mm for one in self.trials]))
 
     def scores(self, measures: Sequence[ScoreMeasures]) -> np.ndarray:
@@ -225,7 +225,7 @@ def errors_on_skin(head: str, task: str, trials: Sequence[HandsTrial]) -> np.nda
 
 
 def _gentle(measures: ScoreMeasures) -> ScoreMeasures:
-    """Return what is scored of a trial without any contact."""
+    """Return the measures of a trial without any contact."""
     return replace(measures, contact_time_s=0.0, contact_path_mm=0.0, pressing_depth_mm=0.0)
 
 

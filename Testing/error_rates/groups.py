@@ -41,8 +41,8 @@ def one_population(sets: int, seed: int = 3) -> list[Measured]:
 def several_populations(sets: int, seed: int = 4) -> list[Measured]:
     """Return how often groups that are there are found.
 
-    The distance of two groups is that of their means in standard deviations within a group, over
-    all metrics together: 5 are 2.5 in each of four metrics.
+    The distance of two groups is measured between their means in standard deviations within a
+    group, over all metrics together: 5 are 2.5 in each of four metrics.
     """
     cases = [
         (2, distance, trainees, None)
@@ -59,8 +59,8 @@ def several_populations(sets: int, seed: int = 4) -> list[Measured]:
         detected = share_of([_is_detected(values) for values in drawn[: max(1, sets // 20)]])
         apart = f"{distance} SD apart" if groups == 2 else f"{distance} SD between neighbors"
         words = f"{groups} groups of {trainees // groups}, {apart}"
-        beside = (share_text(detected),)
-        found.append(Measured(words, share_of(parted), sets, at_least=at_least, beside=beside))
+        further = (share_text(detected),)
+        found.append(Measured(words, share_of(parted), sets, at_least=at_least, further=further))
     return found
 
 

@@ -41,7 +41,7 @@ SKILLS = {
     ),
 }
 SEEDS = {USUAL: range(1, 16), SLOW: range(1, 13)}
-"""Of the head's pose and of the hands."""
+"""Seeds of the head's pose and of the hands."""
 
 
 class SafetyMeasures(NamedTuple):
@@ -149,7 +149,7 @@ def _folder() -> tempfile.TemporaryDirectory:
 
 
 def main() -> int:
-    """Play what is missing."""
+    """Play the missing trials."""
     trials = dict(stored()) if FILE.is_file() else {}
     for key in keys():
         if key in trials:

@@ -7,8 +7,7 @@ import numpy as np
 from rastrainer.study.outcomes import MAIN_OUTCOMES
 from rastrainer.study.study_data import StudyData
 from rastrainer_simulator.report.comparisons import CONFIRMATORY, compare_modes
-from rastrainer_simulator.report.learning import learning_trends
-from rastrainer_simulator.report.trainees import groups
+from rastrainer_simulator.report.trainees import groups, learning_trends
 from rastrainer_simulator.statistics.trend import ALPHA, TrendVerdict, cohort_trend_p, falling_trend
 from rastrainer_simulator.virtual.outcome_model import OutcomeModel
 from Testing.drawn_study import draw_study
@@ -76,7 +75,7 @@ def _series(
         sets,
         at_most=0.06 if asked == "≤" else None,
         at_least=0.8 if asked == "≥" else None,
-        beside=tuple(
+        further=tuple(
             share_text(shares[one]) for one in (TrendVerdict.STEADY, TrendVerdict.UNDECIDED)
         ),
     )
@@ -120,7 +119,7 @@ def null_cohorts(sets: int, seed: int = 3) -> list[Measured]:
             share_of(said[:, column]),
             len(cohorts),
             at_most=0.06 if statement != "any" else 0.11,
-            beside=(share_text(share_of(uncorrected[:, column])),),
+            further=(share_text(share_of(uncorrected[:, column])),),
         )
         for column, statement in enumerate(words)
     ]

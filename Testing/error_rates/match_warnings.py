@@ -1,19 +1,17 @@
 """The warnings of a surface match: how often they are false, and how often they are missing.
 
-`match_warnings.csv` holds what was matched, five traces a row. `python -m
-Testing.error_rates.match_warnings` matches what it lacks of `CHUNKS` rows for each head and case,
+`match_warnings.csv` has the matched traces, five a row. `python -m
+Testing.error_rates.match_warnings` adds the missing rows of `CHUNKS` for each head and case,
 all cases in turn. It can be stopped at any time: the table says how many traces there were.
 """
 
 from __future__ import annotations
 
-import csv
 import functools
 import sys
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import astuple, dataclass, fields
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.random import Generator
@@ -26,6 +24,7 @@ from rastrainer.registration.surface_checks import SLIDE_LIMIT_MM, TARGETS_ASIDE
 from rastrainer.registration.surface_match import SurfaceMatch, match_surface
 from Testing.domain.registration.traces import coarse_start, head_pose, places, random_walk
 from Testing.error_rates.measured import Measured, share_text
+from Testing.error_rates.row_files import play_missing, stored_rows
 from Testing.simulator.authoring import heads
 
 FILE = Path(__file__).with_name("match_warnings.csv")
@@ -78,11 +77,6 @@ class Chunk:
     off_named: int
     near_slides: int
     near_named: int
-
-    @property
-    def key(self) -> tuple[str, str, int, float, int]:
-        """What there is one chunk of."""
-        return self.head, self.where, self.points, self.shift_mm, self.chunk
 
 
 @functools.cache
@@ -137,7 +131,7 @@ def matched(
 def play(
     name: str, where: str, points: int, shift_mm: float, chunk: int, traces: int = CHUNK
 ) -> Chunk:
-    """Match the traces of a chunk, or the first ones of it."""
+    """Match the traces of a chunk, or the first of them."""
     counts = dict.fromkeys(("refused", "off", "off_named", "near_slides", "near_named"), 0)
     for seed in range(FIRST_SEED + CHUNK * chunk, FIRST_SEED + CHUNK * chunk + traces):
         try:
@@ -164,7 +158,7 @@ def keys(chunks: int) -> Iterator[tuple[str, str, int, float, int]]:
 def measured(traces: int) -> list[Measured]:
     """Return the table: of what the file holds if many are asked for, else of new traces."""
     chunks = (
-        stored()
+        stored_rows(FILE, Chunk)
         if traces > CHUNK
         else [play(*key, traces) for key in keys(1) if key[0] == FIRST_HEAD]
     )
@@ -183,7 +177,7 @@ def measured(traces: int) -> list[Measured]:
                 slides / near if near else 0.0,
                 max(near, 1),
                 at_most=MOST_FALSE if is_good else None,
-                beside=(
+                further=(
                     share_text(off / max(count - refused, 1)),
                     f"{off - named} of {off}",
                     str(refused),
@@ -194,46 +188,5 @@ def measured(traces: int) -> list[Measured]:
     return rows
 
 
-def stored() -> list[Chunk]:
-    """Return what the file holds."""
-    with FILE.open(encoding="utf-8", newline="") as file:
-        return [
-            Chunk(
-                row["head"],
-                row["where"],
-                int(row["points"]),
-                float(row["shift_mm"]),
-                *(int(row[field.name]) for field in fields(Chunk)[4:]),
-            )
-            for row in csv.DictReader(file)
-        ]
-
-
-def play_missing(
-    path: Path,
-    kind: type,
-    stored: Callable[[], Iterable[Any]],
-    keys: Iterable[tuple],
-    play: Callable[..., Any],
-) -> None:
-    """Play what a file lacks, and add each outcome to it at once.
-
-    Args:
-        path: The file; it is begun with a header where it is missing.
-        kind: Dataclass of an outcome, one row of the file.
-        stored: Reads the file.
-        keys: Of all outcomes, as their property `key` has them.
-        play: Returns the outcome of a key.
-    """
-    if not path.exists():
-        header = ",".join(field.name for field in fields(kind))
-        path.write_text(header + "\n", encoding="utf-8")
-    known = {one.key for one in stored()}
-    for key in keys:
-        if key not in known:
-            with path.open("a", encoding="utf-8", newline="") as file:
-                csv.writer(file, lineterminator="\n").writerow(astuple(play(*key)))
-
-
 if __name__ == "__main__":
-    sys.exit(play_missing(FILE, Chunk, stored, keys(CHUNKS), play))
+    sys.exit(play_missing(FILE, Chunk, keys(CHUNKS), play, names=5))

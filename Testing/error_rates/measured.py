@@ -19,9 +19,9 @@ class Measured:
         case: What was simulated, in words.
         share: From 0 to 1.
         sets: Of how many data sets.
-        at_most: What the share may not exceed; None where it is only reported.
-        at_least: What it may not fall below; None where it is only reported.
-        beside: Further figures of the same data sets, as text.
+        at_most: Upper limit of the share; None if it is only reported.
+        at_least: Lower limit of the share; None if it is only reported.
+        further: Further figures of the same data sets, as text.
     """
 
     case: str
@@ -29,7 +29,7 @@ class Measured:
     sets: int
     at_most: float | None = None
     at_least: float | None = None
-    beside: tuple[str, ...] = ()
+    further: tuple[str, ...] = ()
 
     def holds(self, standard_errors: float = 0.0) -> bool:
         """Return whether the share is within the limit, with a tolerance in standard errors."""
@@ -51,7 +51,7 @@ class Measured:
             asked = f"≤ {share_text(self.at_most, 0)}"
         elif self.at_least is not None:
             asked = f"≥ {share_text(self.at_least, 0)}"
-        return [self.case, share_text(self.share), asked, *self.beside]
+        return [self.case, share_text(self.share), asked, *self.further]
 
 
 def holds(interval: tuple[float, float] | None, truth: float) -> bool:

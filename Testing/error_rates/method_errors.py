@@ -1,13 +1,12 @@
 """Every method of registration on Colin27: does its interval hold the truth, and which is better?
 
-`method_errors.csv` holds what was played, fifty trials a row. `python -m
+`method_errors.csv` has the played trials, fifty a row. `python -m
 Testing.error_rates.method_errors` plays the rows that it lacks of 2,000 trials for each method and
 shift, all methods in turn. It can be stopped at any time: the table says how many were played.
 """
 
 from __future__ import annotations
 
-import csv
 import functools
 import itertools
 import sys
@@ -22,7 +21,8 @@ from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.virtual.method_trials import METHODS, MethodStudy
-from Testing.error_rates.measured import Measured, share_text
+from Testing.error_rates.measured import Measured
+from Testing.error_rates.row_files import play_missing, stored_rows
 from Testing.simulator.landmarked import with_landmarks
 
 HEADER = (
@@ -34,11 +34,10 @@ HEADER = (
     "trials",
 )
 FILE = Path(__file__).with_name("method_errors.csv")
-COLUMNS = ("method", "shift_mm", "chunk", "trials", "held", "residual2", "expected2", "true2")
 SHIFTS_MM = (0.0, 2.0)
 CHUNK, TRIALS = 50, 2000
 STARTS = 1
-"""Of a surface match: more of them are to find gross errors of the landmarks, and cost time."""
+"""Starts of a surface match: more would find gross errors of the landmarks, and cost time."""
 LEAST_HELD, MOST_HELD = 0.93, 0.97
 
 
@@ -55,15 +54,14 @@ class Chunk:
     expected2: float
     true2: float
 
-    @property
-    def key(self) -> tuple[str, float, int]:
-        """What there is one chunk of."""
-        return self.method, self.shift_mm, self.chunk
-
 
 def measured(trials: int) -> list[Measured]:
     """Return the table: of what the file holds if all trials are asked for, else played anew."""
-    chunks = stored() if trials >= TRIALS else [play(*key, trials) for key in keys(trials)]
+    chunks = (
+        stored_rows(FILE, Chunk)
+        if trials >= TRIALS
+        else [play(*key, trials) for key in keys(trials)]
+    )
     rows = []
     for shift, method in itertools.product(SHIFTS_MM, METHODS):
         own = [c for c in chunks if (c.method, c.shift_mm) == (method.value, shift)]
@@ -80,17 +78,17 @@ def measured(trials: int) -> list[Measured]:
                 count,
                 at_most=None if shift else MOST_HELD,
                 at_least=None if shift else LEAST_HELD,
-                beside=(*means, str(count)),
+                further=(*means, str(count)),
             )
         )
     return rows
 
 
-def keys(trials: int) -> Iterator[tuple[RegistrationMethod, float, int]]:
+def keys(trials: int) -> Iterator[tuple[str, float, int]]:
     """Yield method, shift and chunk of all chunks for so many trials."""
     for chunk in range(-(-trials // CHUNK)):
         for shift, method in itertools.product(SHIFTS_MM, METHODS):
-            yield method, shift, chunk
+            yield method.value, shift, chunk
 
 
 @functools.cache
@@ -100,15 +98,15 @@ def study(shift_mm: float) -> MethodStudy:
     return MethodStudy(scenario, "task-3", shift_mm, starts=STARTS)
 
 
-def play(method: RegistrationMethod, shift_mm: float, chunk: int, trials: int = CHUNK) -> Chunk:
-    """Play the trials of a chunk, or the first ones of it."""
+def play(method: str, shift_mm: float, chunk: int, trials: int = CHUNK) -> Chunk:
+    """Play the trials of a chunk, or the first of them."""
     seeds = range(CHUNK * chunk, CHUNK * chunk + min(trials, CHUNK))
-    results = [study(shift_mm).trial(method, seed) for seed in seeds]
+    results = [study(shift_mm).trial(RegistrationMethod(method), seed) for seed in seeds]
     expected = [error.expected_mm**2 for one in results for error in one.errors]
     true = np.concatenate([one.true_mm for one in results if one.true_mm is not None])
     share = len(results) / len(true)
     return Chunk(
-        method.value,
+        method,
         shift_mm,
         chunk,
         len(results),
@@ -119,34 +117,5 @@ def play(method: RegistrationMethod, shift_mm: float, chunk: int, trials: int = 
     )
 
 
-def stored() -> list[Chunk]:
-    """Return what the file holds."""
-    with FILE.open(encoding="utf-8", newline="") as file:
-        return [
-            Chunk(
-                row["method"],
-                float(row["shift_mm"]),
-                *(int(row[n]) for n in COLUMNS[2:5]),
-                *(float(row[n]) for n in COLUMNS[5:]),
-            )
-            for row in csv.DictReader(file)
-        ]
-
-
-def play_missing() -> None:
-    """Play what the file lacks, and add each chunk to it at once."""
-    if not FILE.exists():
-        FILE.write_text(",".join(COLUMNS) + "\n", encoding="utf-8")
-    known = {one.key for one in stored()}
-    missing = [key for key in keys(TRIALS) if (key[0].value, *key[1:]) not in known]
-    for number, key in enumerate(missing, start=1):
-        one = play(*key)
-        values = [one.method, f"{one.shift_mm:g}", one.chunk, one.trials, one.held]
-        sums = [f"{value:.6g}" for value in (one.residual2, one.expected2, one.true2)]
-        with FILE.open("a", encoding="utf-8", newline="") as file:
-            csv.writer(file, lineterminator="\n").writerow([*values, *sums])
-        print(f"{number} of {len(missing)}: {share_text(one.held / one.trials)} {key}", flush=True)
-
-
 if __name__ == "__main__":
-    sys.exit(play_missing())
+    sys.exit(play_missing(FILE, Chunk, keys(TRIALS), play, names=3))

@@ -69,8 +69,8 @@ def _sequences(
             reach = students.ppf(0.975, fit.dof) * fit.standard_error
             coverage = share_of(np.abs(fit.mean - difference) <= reach)
     ranks = share_of([rank_test(row, order).p < 0.05 for row in rows])
-    beside = tuple(share_text(share) for share in (shares[1], ranks, coverage))
-    return Measured(words, shares[0], sets, at_most, at_least, beside)
+    further = tuple(share_text(share) for share in (shares[1], ranks, coverage))
+    return Measured(words, shares[0], sets, at_most, at_least, further)
 
 
 def studies(sets: int, seed: int = 6) -> list[Measured]:
@@ -94,7 +94,7 @@ def studies(sets: int, seed: int = 6) -> list[Measured]:
                     rates.holm,
                     sets,
                     at_most=0.06 if time == 1.0 else None,
-                    beside=(share_text(rates.t_test), share_text(rates.ranks), coverage),
+                    further=(share_text(rates.t_test), share_text(rates.ranks), coverage),
                 )
             )
     return found
@@ -109,7 +109,7 @@ TRUTHS = (0.0, 0.5, 1.5)
 MORE = 10
 """Times as many data sets as are asked for: a share of 95 % is to be distinguished from 94 %."""
 COMPUTED = 20
-"""Of them, those whose interval is computed: to see whether t lies in its tails is the same."""
+"""Sets whose interval is computed: to see whether t is in its tails is the same."""
 
 
 def coverage(sets: int, seed: int = 7) -> list[Measured]:
@@ -128,13 +128,13 @@ def _coverage(
     fit = fit_differences(rows, order)
     held = _holds(fit.mean / fit.standard_error, fit.dof, truth * np.sqrt(n))
     for row, expected in zip(rows[:COMPUTED], held, strict=False):
-        low, high = compare_paired(np.zeros(n), row, order).gz_interval
+        low, high = compare_paired(np.zeros(n), row, order).effect.interval
         assert (low <= truth <= high) == expected
     # Limits times J hold the truth where the limits hold the truth over J.
     shrunk = truth / small_sample_factor(fit.dof) * np.sqrt(n)
     before = share_of(_holds(fit.mean / fit.standard_error, fit.dof, shrunk))
     words = f"{n}, true effect {truth:g}" + (", two sequences" if in_sequences else "")
-    return Measured(words, share_of(held), sets, at_least=0.94, beside=(share_text(before),))
+    return Measured(words, share_of(held), sets, at_least=0.94, further=(share_text(before),))
 
 
 def _holds(t: np.ndarray, dof: int, noncentrality: float) -> np.ndarray:

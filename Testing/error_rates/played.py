@@ -1,8 +1,8 @@
-"""Trials that honest and cheating trainees have played on Colin27, kept beside their tables.
+"""Trials that honest and cheating trainees have played on Colin27.
 
 `python -m Testing.error_rates.played` plays all of them that `played_trials.csv` does not hold,
-some seconds each. What is kept is what is scored, so that another score needs no new trials unless
-it measures more.
+some seconds each. The measures of a score are kept, so that another score needs no new trials
+unless it measures more.
 """
 
 from __future__ import annotations
@@ -68,13 +68,12 @@ def seeds(way: str) -> range:
 
 @dataclass(frozen=True)
 class Played:
-    """What is scored of one played trial, and what it was.
+    """The measures of one played trial.
 
     Attributes:
         way: one of `WAYS`.
         task: of the head.
         seed: of the head's pose and the hands.
-        measures: what is scored.
     """
 
     way: str
@@ -89,7 +88,7 @@ class Played:
 
 
 def measures_of(setup: SimulationSetup, played: PlayedTrial) -> ScoreMeasures:
-    """Return what is scored of a trial: of the rigid registration of all its touches."""
+    """Return the measures of a trial, with the rigid registration of all its touches."""
     record, truth = played.record, played.truth
     fiducials = np.array([truth.fiducials_ras[label] for label in record.labels])
     fit = register(record.positions_mm, fiducials)
@@ -145,7 +144,7 @@ def write(trials: list[Played]) -> None:
 
 
 def main() -> int:
-    """Play what is missing."""
+    """Play the missing trials."""
     trials = list(stored())
     there = {one.key for one in trials}
     for key in all_keys():

@@ -31,14 +31,14 @@ HEADER = (
 TASK, PROCEDURE = "task-3", "dbs"
 FLE_MM, BIAS_MM = (0.3, 1.0, 2.0), 2.0
 LOWEST, HIGHEST, MAX_OFF = 0.93, 0.97, 0.05
-"""Of the coverage of the 95 % interval, and of the ratio from 1."""
+"""Tolerances of the coverage of the 95 % interval, and of the ratio's distance from 1."""
 SPREAD = 0.4
-"""Of the ratio of a single procedure, about."""
+"""Approximate tolerance of the ratio of a single procedure."""
 
 
 @dataclass(frozen=True)
 class PropagatedError:
-    """Target point errors of many procedures, and what was to be expected and seen.
+    """Target point errors of many procedures, expected and seen.
 
     Attributes:
         case: the errors of the touches, in words.
@@ -48,7 +48,7 @@ class PropagatedError:
         expected_mm: RMS of the expected TRE at the targets, from the known FLE.
         fre_mm: RMS of the FRE, which the trainee sees.
         checkpoint_mm: RMS of the errors at checkpoints, which the trainee sees.
-        at_least: required coverage; None where it is only reported.
+        at_least: required coverage; None if it is only reported.
     """
 
     case: str
@@ -63,7 +63,7 @@ class PropagatedError:
 
     @property
     def ratio(self) -> float:
-        """Of the true to the expected error."""
+        """Ratio of the true to the expected error."""
         return self.target_mm / self.expected_mm
 
     def holds(self, standard_errors: float = 0.0) -> bool:
@@ -125,8 +125,8 @@ class Bench:
 
         Args:
             fle_mm: RMS length of the error of each touch, independent and alike in all directions.
-            bias: (3,) float, mm, World: of all touches, also those of checkpoints.
-            seed: the same one gives the same pose and errors, whatever the bias.
+            bias: (3,) float, mm, World: of all touches, also of checkpoints.
+            seed: the same seed gives the same pose and errors with any bias.
         """
         random = np.random.default_rng(seed)
         truth = self.scenario.perturbed_head_to_world(int(random.integers(2**31)))

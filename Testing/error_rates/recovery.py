@@ -25,7 +25,7 @@ from Testing.error_rates.measured import Measured, holds, share_of
 
 @dataclass(frozen=True)
 class DrawnTrials:
-    """What was drawn; all arrays are (trainees, modes, tasks).
+    """The drawn values; all arrays are (trainees, modes, tasks).
 
     Attributes:
         times_s: Completion times.
@@ -65,7 +65,7 @@ def draw_protocol_study(
     """Return a simulated study whose modes and tasks follow the protocol's orders.
 
     Args:
-        model: The true parameters; its tasks are those of the protocol.
+        model: The true parameters, with the protocol's tasks.
         protocol: The protocol.
         trainees: Number of trainees.
         random: Random generator.

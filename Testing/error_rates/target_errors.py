@@ -22,7 +22,7 @@ HEADER = (
 )
 COUNT, RADIUS_MM, FLE_MM = 15, 90.0, 1.0
 Errors = Callable[[np.ndarray, np.random.Generator], np.ndarray]
-"""Of the outward normals (n, 3) at the fiducials: the errors of their touches, (n, 3), mm."""
+"""From the outward normals (n, 3) at the fiducials to the errors of their touches, (n, 3), mm."""
 
 
 def intervals(sets: int, seed: int = 10) -> list[Measured]:
@@ -87,8 +87,8 @@ def _measured(
         inside.append(_holds(widened, true[-1]))
         before.append(_holds(without, true[-1]))
         expected.append(widened.expected_mm)
-    beside = share_text(share_of(before)), *(fixed(_rms(each), 2) for each in (true, expected))
-    return Measured(words, share_of(inside), sets, at_least=at_least, beside=beside)
+    further = share_text(share_of(before)), *(fixed(_rms(each), 2) for each in (true, expected))
+    return Measured(words, share_of(inside), sets, at_least=at_least, further=further)
 
 
 def _holds(error: TargetError, true_mm: float) -> bool:

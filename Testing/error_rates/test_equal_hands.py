@@ -64,7 +64,7 @@ def test_the_touches_of_a_trial_are_independent_and_have_hardly_any_common_direc
 
 @pytest.mark.parametrize("which", [USUAL, SLOW])
 def test_the_touches_are_equally_accurate_on_all_tasks(which):
-    """Otherwise those of all tasks could not stand for those of one."""
+    """Otherwise the errors of all tasks could not stand for the errors of one."""
     squares = [np.sum(errors_along(which, *place) ** 2, axis=2) for place in PLACES]
     assert scipy.stats.f_oneway(*(each.mean(axis=1) for each in squares)).pvalue > 0.001
 

@@ -131,7 +131,7 @@ def test_many_registrations_at_once_match_those_of_the_program():
 
 @pytest.mark.parametrize("task", ["trial-run", "task-3"])
 def test_a_larger_aiming_bias_lowers_the_mean_score(task):
-    """Of one trial chance may decide: a small bias may cancel what the touches happen to share."""
+    """Chance may decide in one trial: a small bias may cancel the common error of the touches."""
     random = np.random.default_rng(6)
     normals = fiducial_normals(scenario_of("colin27"), task)
     along = np.eye(3) - normals[:, :, None] * normals[:, None, :]

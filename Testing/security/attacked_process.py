@@ -24,7 +24,7 @@ COUNTED = re.compile(r"(\d+) × 127\.0\.0\.1: ([^;\n]+)")
 
 @dataclass(frozen=True)
 class Cost:
-    """Of a process at one moment: MB in use and open descriptors."""
+    """A process at one moment: MB in use and open descriptors."""
 
     resident_mb: float
     descriptors: int
@@ -47,7 +47,7 @@ def settled(pid: int, client: Client, wanted: Cost) -> Cost:
 
 
 def summary(before: Cost, after: Cost, watched: WatchedLoop) -> str:
-    """Return in words what has changed, and how punctual the loop was meanwhile."""
+    """Return the changes in words, and how punctual the loop was meanwhile."""
     still = watched.undisturbed
     return (
         f"{100.0 * watched.measured.on_time:.3f} % of {watched.measured.ticks} ticks on time "
@@ -69,7 +69,7 @@ def check_unharmed(before: Cost, after: Cost) -> None:
 
 
 def check_punctual(watched: WatchedLoop) -> None:
-    """Check that an attack has not kept the loop from its ticks: nothing else may run beside it."""
+    """Check that an attack has not kept the loop from its ticks; nothing else may run meanwhile."""
     assert watched.measured.on_time >= watched.bare.on_time - MAX_MORE_MISSED
 
 

@@ -1,4 +1,4 @@
-"""What a malicious input file may hold."""
+"""Content of malicious input files."""
 
 import json
 import random
@@ -47,7 +47,7 @@ HOSTILE_XML = {
 
 
 def glb(tree: dict) -> bytes:
-    """Return a GLB file without any data of its own."""
+    """Return a GLB file without data."""
     text = json.dumps(tree).encode()
     text += b" " * (-len(text) % 4)
     chunk = struct.pack("<II", len(text), 0x4E4F534A) + text

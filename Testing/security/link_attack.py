@@ -64,7 +64,7 @@ class LinkAttack:
             reading = asyncio.create_task(self._read(reader, is_policed))
             try:
                 await asyncio.wait_for(self._send(messages, reading, writer), TIMEOUT_S)
-                # What is closed on both sides has been read to its end.
+                # A connection closed on both sides has been read to its end.
                 await asyncio.wait_for(reading, TIMEOUT_S)
             finally:
                 reading.cancel()

@@ -1,4 +1,4 @@
-"""Views that send invalid messages: mutated ones in mutated WebSocket frames."""
+"""Views that send invalid messages: mutated text in mutated WebSocket frames."""
 
 import json
 import random

@@ -1,4 +1,4 @@
-"""Whatever is sent to the OpenIGTLink port ends at worst the connection on which it came."""
+"""Any bytes sent to the OpenIGTLink port end at worst their own connection."""
 
 import pytest
 

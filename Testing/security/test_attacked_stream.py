@@ -1,6 +1,4 @@
-"""Whatever a view sends ends at worst that view."""
-
-import secrets
+"""Any message of a view ends at worst that view."""
 
 import pytest
 
@@ -20,17 +18,16 @@ from Testing.simulator.net.views.served import ViewClient
 
 
 def attack(folder, warm_up: int, count: int, capsys) -> WatchedLoop:
-    key = secrets.token_urlsafe()
     arguments = (folder, "--view-port", "0", "--seed", "1")
     with (
         LoopThread() as thread,
-        ViewedSimulator(*arguments, key=key) as simulator,
+        ViewedSimulator(*arguments) as simulator,
         Client(port=simulator.port) as slicer,
-        ViewClient(thread, simulator.url, key) as view,
+        ViewClient(thread, simulator.url, simulator.key) as view,
     ):
         view.join()
         slicer.wait_for("SimServer", timeout=60)
-        attacked = StreamAttack(simulator.view_port, key, seed=7)
+        attacked = StreamAttack(simulator.view_port, simulator.key, seed=7)
         attacked.run(warm_up)
         before = settled(simulator.pid, slicer, cost_of(simulator.pid, slicer))
         with WatchedLoop(slicer) as watched:

@@ -47,7 +47,7 @@ def played(tmp_path_factory, scenario):
 
 
 def received(folder, port, scenario, **protocol):
-    """Receive one trial in a study with a protocol; return its score, and what was reported."""
+    """Receive one trial in a study with a protocol; return its score and the reported sentences."""
     path = folder / "study.db"
     with Study.open(path) as study:
         published = StudyProtocol.read(STUDIES / "published-protocol.json")

@@ -19,7 +19,7 @@ SEED = 5
 SESSION_SEED = 3
 PLACES = 12
 AS_BEFORE_MM = 1.0
-"""With the clearance in the states, the fit was far better than this."""
+"""If states carried the clearance, the fit would be far better than this."""
 
 
 class Eavesdropper(Player):

@@ -19,7 +19,7 @@ from Testing.security.wire_checker import SENT_TYPES, OffenseError, WireChecker
 SIMULATOR = Path(__file__).parents[2] / "RASTrainerSimulatorServer/rastrainer_simulator"
 LINK = SIMULATOR / "net" / "igtl"
 SENDING = ("sendall", "sendto", "sock_sendall", "writelines", "create_connection")
-# Whatever may go wrong in the calling code: any text, any number, with what is at the edges.
+# Any text and any number, with edge cases: the calling code may be wrong in every way.
 NUMBERS = some.floats(width=64) | some.sampled_from([3.4e38, 3.5e38, 1e308])
 TEXTS = some.text(max_size=300) | some.sampled_from(["", "\0", "x" * 65_535, "x" * 65_536])
 NAMES = some.text(max_size=70) | some.sampled_from(["command", "x" * 20, "x" * 21, "", " "])

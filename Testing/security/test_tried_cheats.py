@@ -1,10 +1,9 @@
-"""Ways around the score that were tried on the real simulator, and what comes of each."""
+"""Cheats that were tried on the real simulator, and the outcome of each."""
 
 from __future__ import annotations
 
 import json
 import os
-import secrets
 import signal
 import time
 from types import SimpleNamespace
@@ -108,10 +107,10 @@ def place(loop_thread, tmp_path_factory):
     config.mkdir()
     (config / "preferences.json").write_text('{"order": "any", "ghost": "own best"}')
     InstructorPin(config).set(PIN)
-    scenario, key, heard = load_scenario(COLIN), secrets.token_hex(32), []
+    scenario, heard = load_scenario(COLIN), []
     with (
-        ViewedSimulator(records, key=key) as simulator,
-        ViewClient(loop_thread, simulator.url, key) as client,
+        ViewedSimulator(records) as simulator,
+        ViewClient(loop_thread, simulator.url, simulator.key) as client,
         Board(loop_thread, simulator) as board,
         SlowPlayer(simulator) as player,
         Client(port=simulator.port, on_message=heard.append) as listener,
@@ -167,7 +166,7 @@ def test_neither_a_ghost_nor_a_replay_tells_a_client_where_the_head_is(place):
         if type(message.content) is Transform:
             poses.setdefault(message.device, []).append(np.array(message.content.matrix))
     assert poses.keys() <= POSES
-    # What moves on the screen is not the arm, which is at rest.
+    # The screen moves, not the arm, which is at rest.
     assert all(np.allclose(pose, each[0], atol=1e-3) for each in poses.values() for pose in each)
 
 

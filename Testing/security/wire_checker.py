@@ -1,4 +1,4 @@
-"""What may be sent to 3D Slicer, checked on the bytes; knows nothing of our own code.
+"""Checks the bytes sent to 3D Slicer, without the code that sends them.
 
 The rules are measured: see "Sent to Slicer" in SECURITY.md.
 """
@@ -6,7 +6,7 @@ The rules are measured: see "Sent to Slicer" in SECURITY.md.
 import struct
 
 SENT_TYPES = {b"TRANSFORM", b"STRING", b"POINT", b"STATUS", b"COMMAND", b"RTS_COMMAND"}
-"""Slicer crashes on prefixed types such as GET_STATUS; RTS_COMMAND is the one it understands."""
+"""Slicer crashes on prefixed types such as GET_STATUS; of these it understands only RTS_COMMAND."""
 LARGEST_BODY = 16 * 2**20
 HEADER = struct.Struct(">H12s20sIIQQ")
 EXTENDED = struct.Struct(">HHII")
@@ -18,7 +18,7 @@ class OffenseError(AssertionError):
 
 
 class WireChecker:
-    """Reads a stream of what was sent, in any pieces, and raises at what must not be.
+    """Reads a stream of sent bytes, in any pieces, and raises at forbidden messages.
 
     Attributes:
         seen: how many messages of each type have passed.

@@ -13,7 +13,11 @@ ROOT = Path(__file__).parents[2]
 MODULE = ROOT / "RASTrainer"
 SOURCES = sorted(MODULE.rglob("*.py"))
 RESOURCES = sorted(
-    path for path in (MODULE / "Resources").rglob("*") if path.is_file() and ".whl" not in path.name
+    path
+    for path in MODULE.rglob("*.*")
+    if path.parts[-2] != MODULE.name
+    and path.suffix not in (".py", ".pyc")
+    and ".whl" not in path.name
 )
 """Without the simulator's wheel, which a release builds."""
 

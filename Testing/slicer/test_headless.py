@@ -78,7 +78,8 @@ def colin_record(make_record):
 
 def arguments(output, port, *more):
     return [
-        "--port", str(port), "--scenario", str(COLIN), "--output", str(output), *more
+        "--port", str(port), "--output", str(output),
+        "--assets", str(ASSETS), *more,
     ]  # fmt: skip
 
 
@@ -88,9 +89,8 @@ def lines_of(text, event):
 
 
 def test_a_trial_is_played_and_its_files_are_written(colin_record, tmp_path, capfd):
-    cohort = str(ASSETS / "studies" / "published.csv")
     with PlayingDouble(colin_record) as simulator:
-        words = arguments(tmp_path, simulator.port, "--timeout", "300", "--cohort", cohort)
+        words = arguments(tmp_path, simulator.port, "--timeout", "300")
         assert headless.main(words) == 0
     text = capfd.readouterr().out
     points = lines_of(text, "point")
@@ -159,8 +159,8 @@ def test_trials_that_do_not_arrive_exit_with_status_1_and_a_message(simulator, t
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        (["--scenario", "nowhere"], "nowhere does not exist"),
-        (["--cohort", "nowhere.csv"], "There is no file nowhere.csv"),
+        (["--scenario", "nowhere"], 'The scenario "nowhere" is not here'),
+        (["--assets", "nowhere"], "There is no file nowhere"),
         (["--port", "0"], "port must be a number from 1 to 65535"),
         (["--trials", "0"], "at least one trial"),
         (["--timeout", "nan"], "seconds above 0"),

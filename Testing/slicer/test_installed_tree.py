@@ -87,8 +87,9 @@ def test_a_wheel_other_than_the_one_that_was_built_is_refused(repository, wheel,
 
 def test_the_installed_tree_holds_the_whole_module(tree):
     assert relative(tree, "*.py") == relative(ROOT / "RASTrainer", "*.py")
-    ours = relative(ROOT / "RASTrainer" / "Resources")
-    assert {name for name in ours if ".whl" not in name} <= set(relative(tree / "Resources"))
+    for folder in ("Logic", "Resources"):
+        ours = {name for name in relative(ROOT / "RASTrainer" / folder) if ".pyc" not in name}
+        assert {name for name in ours if ".whl" not in name} <= set(relative(tree / folder))
 
 
 def test_the_installed_tree_holds_everything_that_the_scenario_and_the_robot_reference(tree):

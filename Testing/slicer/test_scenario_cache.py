@@ -24,7 +24,7 @@ def build(folder, title):
 
 def test_a_rebuilt_scenario_is_read_again(tmp_path):
     build(tmp_path / "ball", "First")
-    cache = ScenarioCache(tmp_path, areLibraries=True)
+    cache = ScenarioCache(tmp_path)
     first = cache.find("ball")
     assert cache.find("ball") is first
     build(tmp_path / "ball", "Second")
@@ -41,7 +41,7 @@ def test_listing_reads_only_the_scenarios_whose_files_have_changed(tmp_path, mon
     monkeypatch.setattr("rastrainer.slicer.logic.scenario_cache.list_folder", watched)
     for name in ("ball", "egg"):
         build(tmp_path / name, name.title())
-    cache = ScenarioCache(tmp_path, areLibraries=True)
+    cache = ScenarioCache(tmp_path)
     cache.listed()
     assert sorted(read) == ["ball", "egg"]
     read.clear()
@@ -53,7 +53,7 @@ def test_listing_reads_only_the_scenarios_whose_files_have_changed(tmp_path, mon
 
 def test_a_removed_scenario_is_reported(tmp_path):
     build(tmp_path / "ball", "First")
-    cache = ScenarioCache(tmp_path, areLibraries=True)
+    cache = ScenarioCache(tmp_path)
     cache.find("ball")
     shutil.rmtree(tmp_path / "ball")
     with pytest.raises(InputError, match="is not here"):
@@ -66,14 +66,14 @@ def test_for_a_title_in_use_a_free_one_is_suggested(tmp_path):
         text = (tmp_path / name / "scenario.json").read_text()
         (tmp_path / name / "scenario.json").write_text(text.replace('"ball"', f'"{name}"'))
     with pytest.raises(InputError, match=r"another title, such as Ball 3\.$"):
-        ScenarioCache(tmp_path, areLibraries=True).newName("Ball")
+        ScenarioCache(tmp_path).newName("Ball")
 
 
 def test_a_users_own_scenario_may_be_moved_away_to_make_it_again(tmp_path, monkeypatch):
     monkeypatch.setenv("HOME", str(tmp_path))
     mine = user_library()
     build(mine / "ball", "Ball")
-    cache = ScenarioCache(mine, areLibraries=True)
+    cache = ScenarioCache(mine)
     with pytest.raises(InputError, match=r"Ball 2, or first move the folder .*ball elsewhere"):
         cache.newName("Ball")
     (mine / "ball").rename(tmp_path / "elsewhere")

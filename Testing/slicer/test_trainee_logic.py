@@ -27,6 +27,7 @@ from rastrainer.slicer.scene.tables import showCalibration, showHistory, showLea
 from rastrainer.study.database.study import Study
 from rastrainer.study.tidy_csv import write_histories, write_history
 from rastrainer.study.trainee_data import export_trainee
+from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.ctps import CTPS_WARNING, Trial
 from rastrainer.trial.scoring import score_trial
 from Testing.domain.trial.trial_records import REFERENCE, gentle_score, make_traced
@@ -59,7 +60,9 @@ def add_trial(logic, make_record, scenario):
         analysis = scored_analysis(record, scenario)
         fits, errors = analysis.fits.values(), analysis.target_errors
         logic.study.add_trial(record, fits, errors, analysis.score)
-        logic.study.set_truth(record["trialId"], 0.2 * number, [0.0] * 16)
+        logic.study.add_results(
+            record["trialId"], truth=RevealedTruth(tuple([0.0] * 16), 0.2 * number)
+        )
         return logic.study.trial(record["trialId"])
 
     return add

@@ -42,8 +42,8 @@ def _delay_others() -> None:
         run(thread)
 
     def late_submit(pool, work, /, *arguments, **named):
-        # Of a journal's lines only those that reach the disk are slow: each line late would be a
-        # disk that no simulator can write to.
+        # Only journal lines that reach the disk are slow: each line late would be a disk that no
+        # simulator can write to.
         is_journal = pool._thread_name_prefix == "journal"
 
         def late_work(*arguments, **named):

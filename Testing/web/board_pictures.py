@@ -15,7 +15,7 @@ from playwright.sync_api import sync_playwright
 
 from rastrainer.number_text import with_units
 from rastrainer.protocol import Phase
-from rastrainer_simulator.board.class_table import ClassReader, ClassStanding
+from rastrainer_simulator.board.class_table import ClassReader, Standings
 from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
 from rastrainer_simulator.presentation.messages import SeatNews, message_text
 from rastrainer_simulator.state import TouchStage
@@ -32,10 +32,10 @@ SIZE, WIDE = {"width": 1180, "height": 640}, {"width": 1300, "height": 640}
 SAY = Texts().say
 
 
-def assignments(found: ClassStanding, trainee: str) -> str:
+def assignments(found: Standings, trainee: str) -> str:
     """Return where a trainee stands, as the seat reports it."""
     words = AssignmentTexts(Texts(), lambda task: SAY(f"task.{task}"), str.capitalize)
-    return words.in_brief(found.standings[trainee].message(trainee))
+    return words.in_brief(found[trainee].message(trainee))
 
 
 def seat(
@@ -52,7 +52,7 @@ def seat(
     return with_units(message_text(SeatNews(**{**known, **others}, **trial, touch=touch)))
 
 
-def seats(found: ClassStanding) -> dict[str, str]:
+def seats(found: Standings) -> dict[str, str]:
     """Return what each seat reports, by its name; two report where their trainees stand."""
     far, warning = (Phase.RUNNING, TouchStage.FAR), SAY("warning.elsewhere")
     paused, scored = (Phase.PAUSED, TouchStage.FAR), (Phase.SCORED, TouchStage.FAR)

@@ -100,7 +100,7 @@ def launch(playwright: Playwright, *arguments: str) -> Browser:
 
 
 def emulator() -> str:
-    """Return the script of the emulated headset, which npm installs beside what the page needs."""
+    """Return the script of the emulated headset, which npm installs with the page."""
     if not IWER.exists():
         install_packages()
     return IWER.read_text(encoding="utf-8")
@@ -162,7 +162,7 @@ def open_page(
 
 
 def draw_nothing(page: Page) -> None:
-    """Let a page draw no scene in what it loads from now on; menus and texts stay."""
+    """Have a page draw no scene from its next load on; menus and texts stay."""
     page.add_init_script(_DRAW_NOTHING)
 
 
@@ -195,7 +195,7 @@ def leave_headset(page: Page) -> None:
 
 @contextmanager
 def _rejoining(page: Page) -> Iterator[None]:
-    """Wait until a page has joined again: what is pressed or sent before is lost."""
+    """Wait until a page has joined again: earlier input is lost."""
     page.evaluate("void (window.posesBefore = page.poses)")
     yield
     wait_for(page, _HAS_REJOINED)

@@ -13,7 +13,7 @@ from Testing.web.place import PATIENT
 
 @pytest.fixture(scope="module")
 def driver():
-    """Starts browsers; ends with its module: others could run no event loop beside it."""
+    """Starts browsers; ends with its module, as other tests need the event loop."""
     with sync_playwright() as driver:
         yield driver
 

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import secrets
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -22,7 +20,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.flow.session.chosen_trial import FIRST_ID
 from Testing.end_to_end.onto_skin import lowered
-from Testing.end_to_end.simulator_process import SERVES, SimulatorProcess
+from Testing.end_to_end.simulator_process import SERVES, SimulatorProcess, paired_key
 from Testing.end_to_end.stream_trainee import StreamTrainee, WatchingView
 from Testing.end_to_end.virtual_gamepad import SimulatorWithGamepad
 from Testing.simulator.net.igtl.servers import LoopThread
@@ -47,7 +45,7 @@ class Place:
 
     Attributes:
         simulator: the process; its `url` is where the page is, its `code` pairs a browser.
-        view: one that watches.
+        view: a spectator.
         records: folder of the journals.
     """
 
@@ -68,18 +66,14 @@ class Place:
         (config / "preferences.json").write_text(json.dumps(preferences), encoding="utf-8")
         views = {camel_case(name): value for name, value in limits.items()}
         (config / "limits.json").write_text(json.dumps({"views": views}), encoding="utf-8")
-        key = secrets.token_urlsafe(32)
         options = ["--view-port", "0", "--seed", "7", *arguments]
         if not has_gamepad:
             options.append("--no-gamepad")
         process = SimulatorWithGamepad if has_gamepad else SimulatorProcess
-        os.environ["RASTRAINER_VIEW_KEY"] = key
-        try:
-            self.simulator = self._stack.enter_context(process(self.records, *options))
-        finally:
-            del os.environ["RASTRAINER_VIEW_KEY"]
+        self.simulator = self._stack.enter_context(process(self.records, *options))
         served = SERVES.search(self.simulator.next_line())
         self.simulator.url, self.simulator.code = served.groups()
+        key = paired_key(*served.groups())
         thread = self._stack.enter_context(LoopThread())
         watcher = self._stack.enter_context(ViewClient(thread, self.simulator.url, key))
         self.view = WatchingView(watcher)
@@ -110,7 +104,7 @@ class Place:
         process = subprocess.Popen(
             [
                 *(*SLICER, "--port", str(self.simulator.port), "--trials", "1"),
-                *("--scenario", str(asset_path("scenarios", "colin27"))),
+                *("--assets", str(asset_path())),
                 *("--output", str(self._folder / "study")),
             ],
             stdout=subprocess.PIPE,
@@ -142,7 +136,7 @@ class Trainee(StreamTrainee):
     def focus(self, item: str) -> None:
         """Move the focus to an item, and see that it stays there.
 
-        What is tapped is held until the next picture: where that takes long, the focus moves on.
+        A tapped key is held until the next picture: if that takes long, the focus moves on.
         """
         settled = 0
         while settled < SETTLED_STATES:
@@ -247,14 +241,14 @@ class CarriedTrainee(Trainee):
 
     def __init__(self, view: WatchingView, hands: object, client: Client):
         super().__init__(view, hands)
-        self._client = client
+        self.client = client
 
     def steer_to(self, place: np.ndarray, near: float, fine: bool = False) -> None:  # noqa: ARG002
         if self.menu is not None:
             # A machine that is too busy to draw counts as a headset that is not worn.
             self.choose("resume")
         target = {"positionMm": (MM_PER_M * place).tolist(), "speedMmS": 400}
-        reply = self._client.send_command("MoveTipTo", target, timeout=60)
+        reply = self.client.send_command("MoveTipTo", target, timeout=60)
         assert reply.ok, reply.error
         give_up = self.view.state["timeS"] + 4.0
         while np.linalg.norm(place - self.tip) > 0.002 and self.view.state["timeS"] < give_up:
@@ -272,7 +266,7 @@ class CarriedTrainee(Trainee):
         self.steer_to(place, 0.002)
         below = lowered(MM_PER_M * place, MM_PER_M * self.head_center)
         target = {"positionMm": below, "speedMmS": 400}
-        assert self._client.send_command("MoveTipTo", target, timeout=60).ok
+        assert self.client.send_command("MoveTipTo", target, timeout=60).ok
         self.until(lambda: self.view.state["proximity"] == "contact", f"contact at {label}")
         return True
 
@@ -282,7 +276,7 @@ class CarriedTrainee(Trainee):
             label = self.view.state["next"]
             self.approach(label, 0.004)
             self.lower_onto(label)
-            assert self._client.send_command("Capture", {}, timeout=60).ok
+            assert self.client.send_command("Capture", {}, timeout=60).ok
             self.until(lambda k=kept: self.touched > k, f"touch {label}")
 
 

@@ -42,11 +42,11 @@ class Relay:
         self._thread.call(self._goes.clear)
 
     def resume(self) -> None:
-        """Pass on what is waiting, and everything after it."""
+        """Pass on the waiting bytes, and everything after them."""
         self._thread.call(self._goes.set)
 
     def cut(self) -> None:
-        """Break all connections; new ones can be made."""
+        """Break all connections; clients can connect anew."""
         self._thread.call(self._close_all)
 
     def _close_all(self) -> None:

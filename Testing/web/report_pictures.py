@@ -23,7 +23,7 @@ from rastrainer.json_records import record_from_json
 from rastrainer.scenario.scenario import Scenario, Task, load_scenario
 from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
-from rastrainer.trial.analysis import analyze_trial
+from rastrainer.trial.analysis import RevealedTruth, analyze_trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.report.report import write_report
@@ -36,11 +36,11 @@ PICTURE = ROOT / "Screenshots" / "report-target-errors.png"
 COHORT_PICTURE = ROOT / "docs" / "pictures" / "report-of-a-cohort.png"
 COHORT_SECTIONS = ("What completion time and error vary with", "Expected and true target error")
 COLORS = 128
-"""Of the picture of the cohort, so that its file is small."""
+"""Size of the cohort's picture, for a small file."""
 MARGIN = 24
 TRAINEES, MODES = 8, ("desktop", "hmd")
 SCATTER_MM = (0.4, 1.1)
-"""Of touches on each axis: of the best trainee and of the worst."""
+"""Standard deviation of touches on each axis: the best trainee's and the worst's."""
 VIEW_BIAS_MM = {"desktop": np.zeros(3), "hmd": np.array([0.9, 0.3, -0.4])}
 SIZE = {"width": 900, "height": 800}
 
@@ -81,7 +81,12 @@ def _add_trial(
     study.add_trial(record, analysis.fits.values(), analysis.target_errors, analysis.score)
     target = scenario.target.position_ras[None]
     there = transforms.apply(analysis.rigid.matrix @ head_to_world, target)
-    study.set_truth(trial_id, float(np.linalg.norm(there - target)), head_to_world.ravel().tolist())
+    study.add_results(
+        trial_id,
+        truth=RevealedTruth(
+            tuple(head_to_world.ravel().tolist()), float(np.linalg.norm(there - target))
+        ),
+    )
 
 
 def main(cohort: str = "") -> None:

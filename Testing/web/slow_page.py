@@ -1,4 +1,4 @@
-"""Pages as on a slow, busy machine: what they receive and send is late.
+"""Pages as on a slow, busy machine: their messages are late in both directions.
 
 `make test SLOW=7` has every page of the tests do so (see `Testing/slow_machine`): what the watching
 view has received, a page may show only later.

@@ -60,7 +60,7 @@ def test_a_moved_arm_is_drawn_over_the_kept_background_as_with_all_of_the_scene(
     page.evaluate(DRAW, 0.0)
     whole = pixels(page)
     assert np.abs(kept - before).max() > 50, "the arm has not moved"
-    # Edges alone differ, which are smoothed in what is kept.
+    # Only edges differ, which are smoothed in the kept background.
     assert np.median(np.abs(kept - whole)) == 0
     assert np.mean(np.abs(kept - whole).max(axis=2) > 40) < 0.02
 

@@ -42,7 +42,7 @@ def count_of_next(page):
 
 
 def is_at_best(trainee, label):
-    """Return whether the view looks at a fiducial, and so does the one along the skin."""
+    """Return whether both the view and the inset along the skin look at a fiducial."""
     state = trainee.view.state
     place = trainee.place_of(label)
     focus = np.array(state["view"]["focalPoint"])

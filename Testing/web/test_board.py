@@ -55,7 +55,7 @@ CELLS = """() => {
   scroller.scrollLeft = 0;
   return found;
 }"""
-"""The table scrolls in its region, beside the trainees' names."""
+"""The table scrolls in its region, next to the trainees' names."""
 KEEP_NOTICES = """() => {
   const { setTimeout } = window;
   window.setTimeout = (act, ms) => setTimeout(act, 100 * ms);

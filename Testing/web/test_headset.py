@@ -61,7 +61,7 @@ def worn(page):
 def trainee(place, worn):
     """A trainee in the headset at a running trial, the tip over the first point.
 
-    What a test has held is released, even if it has failed.
+    Release all held inputs, even if the test has failed.
     """
     trainee = place.carried_trainee(Controllers(worn))
     if trainee.menu is not None and trainee.menu.name == "trial":

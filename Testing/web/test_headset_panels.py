@@ -19,7 +19,7 @@ from Testing.web.chromium import EYES_M, enter_headset, open_page, show
 from Testing.web.test_page_access import at_work
 
 BEHIND_M = 1.24
-"""From where the trainee stands to the other side of the head."""
+"""A step from the trainee's place to the other side of the head."""
 TURNED = (0.0, 1.2, -1.2, 3.0)
 
 PANEL = """(name) => {
@@ -183,7 +183,7 @@ def test_a_clock_that_runs_does_not_have_its_panel_drawn_again(work):
 
 @pytest.mark.parametrize("name", ["menu", "work"])
 def test_a_panel_is_drawn_as_it_is_laid_out(worn, name):
-    """Else the part that is pointed at would not be the one that is seen."""
+    """Otherwise the pointed part would differ from the part that is drawn."""
     worn.evaluate("page.headset.showScreen(page.screen)" if name == "menu" else WORK)
     worn.evaluate(PAINTED)
     drawn = worn.evaluate(f"page.headset.panels.{name}.canvas.toDataURL()")

@@ -116,7 +116,7 @@ def checked_page(browser, url: str, code: str, has_touch: bool = False):
 
 
 def complaints(page, screen: str, sizes: tuple[str, ...]) -> list[str]:
-    """Return what is wrong with what is shown, at these sizes of the window."""
+    """Return the faults of the shown elements, at these sizes of the window."""
     found = []
     for name in sizes:
         resize(page, *SIZES[name])
@@ -239,7 +239,7 @@ def test_the_page_declares_its_language(told_page, served):
         served.tell(Screen(language=language))
         told_page.wait_for_selector(f"html[lang={language}]")
         assert told_page.get_attribute("#picture", "aria-label") == name
-        # What was said before the language changed is translated, too.
+        # Sentences shown before the language changed are translated, too.
         told_page.wait_for_selector(f"#control:has-text('{NOBODY_DRIVES[language]}')")
 
 

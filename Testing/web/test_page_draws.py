@@ -1,4 +1,4 @@
-"""What the page draws in its scene: touches, ghost, trace and procedure, and in a headset, too."""
+"""The page draws touches, ghost, trace and procedure in its scene, and in a headset, too."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ DRAW = """
 
 @pytest.fixture
 def draw(page):
-    """Return a function that draws a state with some changes and returns what is visible."""
+    """Return a function that draws a state with some changes and returns the visible marks."""
     return lambda **changes: page.evaluate(DRAW, changes)
 
 

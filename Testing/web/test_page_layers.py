@@ -1,4 +1,4 @@
-"""Who may import whom on the page: layers of folders, read from every import."""
+"""The page's folders are layers: each imports only those below, by every import statement."""
 
 from __future__ import annotations
 

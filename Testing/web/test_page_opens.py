@@ -1,4 +1,4 @@
-"""Opening the page: the pairing code, from this computer or the network; and what is missing."""
+"""Opening the page: the pairing code, from this computer or the network; and missing parts."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ addEventListener("DOMContentLoaded", () => {
   new MutationObserver(note).observe(place, { attributes: true, childList: true, subtree: true });
 });
 """
-"""What is shown while a scene is loading may be gone by the time it is checked."""
+"""The loading panel may be gone by the time it is checked."""
 
 
 @pytest.fixture(scope="module")
@@ -219,7 +219,7 @@ def test_an_expired_code_is_reported_as_such_and_so_is_a_new_one(place, browser)
     # The place has another code afterward: this test is the last.
     url, code = place.simulator.url, place.simulator.code
     with browser.new_context() as other:
-        # After a right code, the wrong ones of other tests do not count.
+        # After a right code, wrong codes of other tests do not count.
         assert other.request.post(f"{url}/pair", data={"code": code}).ok
     page = new_page(browser, locale="de-DE")
     draw_nothing(page)

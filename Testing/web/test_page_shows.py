@@ -1,4 +1,4 @@
-"""What the page shows of a screen: errors, plots, a legend and menus, and what it reads aloud."""
+"""The page shows a screen's errors, plots, legend and menus, and reads sentences aloud."""
 
 from __future__ import annotations
 

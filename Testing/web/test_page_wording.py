@@ -24,7 +24,7 @@ DRAWN = {
     "part.leftShift": "keyboard.ShiftLeft",
     "part.rightShift": "keyboard.ShiftRight",
 }
-"""What a drawing colors, and the name of the input that the simulator's menus have for it."""
+"""Each colored part of a drawing, and the name of its input in the simulator's menus."""
 
 
 def tables(language: str) -> list[dict[str, str]]:

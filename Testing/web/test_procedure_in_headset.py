@@ -36,7 +36,7 @@ class TurningControllers(Controllers):
 
 
 class HeadsetSurgeon(ProcedureTrainee, Trainee):
-    """Carries out the procedure by what is drawn, and waits for rare pictures as a trainee does."""
+    """Carries out the procedure by the picture alone, however rare pictures are."""
 
 
 @pytest.fixture(scope="module")
@@ -77,7 +77,7 @@ def operated(tmp_path_factory, browser) -> dict:
 
 
 def begin(surgeon: HeadsetSurgeon, page: Page) -> None:
-    """Choose the biopsy beside Task 1, which is touched first."""
+    """Choose the biopsy after Task 1, whose fiducials are touched first."""
     surgeon.go_to_experiment()
     surgeon.type_id(page)
     surgeon.focus("procedure")

@@ -1,6 +1,6 @@
-"""From the start menu through fifteen steered touches to the result, with every input device.
+"""A session from the start menu to the result by every input device: fifteen steered touches.
 
-Nothing here is done but by the hands, and Slicer's side registers and scores what they touched.
+Only the hands act, and Slicer's side registers and scores their touches.
 """
 
 from __future__ import annotations

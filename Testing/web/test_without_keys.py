@@ -57,7 +57,7 @@ class ClickingTrainee(OnPage, Trainee):
 
 
 class HandTrainee(OnPage, Trainee):
-    """Pinches at what is written on panels; elsewhere the tip follows the pinching hand."""
+    """Pinches at the panels' buttons; elsewhere the tip follows the pinching hand."""
 
     def __init__(self, view, page):
         super().__init__(view, TrackedHands(page))

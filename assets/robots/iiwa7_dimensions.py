@@ -36,6 +36,14 @@ JOINTS = (
 )
 FLANGE_OFFSET = 0.035
 TOOL_LENGTH = 0.2
+ARM = {
+    "shoulder": 0.33999999999999997,
+    "upper": 0.3999999999999999,
+    "fore": 0.40000000000000024,
+    "tool": 0.32600000000000007,
+}
+"""The shoulder's height, and the lengths to elbow, wrist and tip, as the least-squares fit of the
+joints' axes gave them: recorded trials depend on their last bit."""
 
 LINK_MASSES = (4.855658, 3.394011, 4.031991, 3.394011, 4.031989, 1.529239, 2.403626, 0.259474)
 TOOL_MASS = 0.25

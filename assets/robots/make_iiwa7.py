@@ -4,20 +4,35 @@ python assets/robots/make_iiwa7.py [--output FOLDER]
 """
 
 import argparse
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import trimesh
 from iiwa7_base import base, plain_base
-from iiwa7_dimensions import LINK_NAMES, LINK_PREFIX, MASSES, TOOL_LINK, TOOL_TIP_LINK
+from iiwa7_dimensions import (
+    ARM,
+    COLORS,
+    FLANGE_OFFSET,
+    JOINTS,
+    LINK_NAMES,
+    LINK_PREFIX,
+    MASSES,
+    TOOL_LENGTH,
+    TOOL_LINK,
+    TOOL_TIP_LINK,
+)
 from iiwa7_shells import plain_shells, shells
 from iiwa7_urdf import LinkBody, urdf_text
 from pointer_tool import plain_tool, tip, tool
 
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.robot_shape import robot_shape
-from rastrainer_simulator.core.setup import model_to_json, shape_to_json, write_prepared
-from rastrainer_simulator.robot.model import load_robot
+from rastrainer_simulator.robot.model import PREPARED_NAME, robot_model
 
 RINGS = 25
 SEGMENTS = 40
@@ -29,7 +44,7 @@ MESH_DECIMALS = 6
 
 
 def main() -> None:
-    """Write `iiwa7.urdf` and `meshes` into a folder, in place of older ones."""
+    """Write `iiwa7.urdf`, `meshes` and `prepared.json` into a folder, in place of older ones."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--output", type=Path, default=Path(__file__).parent / "iiwa7")
     folder = parser.parse_args().output
@@ -54,10 +69,59 @@ def main() -> None:
         )
     tip_file = _write(visuals[TOOL_TIP_LINK]["blue"], folder, "visual/tool_tip_blue.stl")
     text = urdf_text(bodies, (tip_file, "blue"))
-    urdf = folder / "iiwa7.urdf"
-    urdf.write_text(text, encoding="utf-8", newline="\n")
-    model = load_robot(urdf)
-    write_prepared(urdf, model_to_json(model, folder), shape_to_json(robot_shape(model)))
+    (folder / "iiwa7.urdf").write_text(text, encoding="utf-8", newline="\n")
+    model = model_json(bodies, tip_file)
+    shape = asdict(robot_shape(robot_model(model, folder)))
+    text = json.dumps(
+        {"model": model, "shape": shape}, indent=1, sort_keys=True, default=np.ndarray.tolist
+    )
+    (folder / PREPARED_NAME).write_text(text + "\n", encoding="utf-8", newline="\n")
+
+
+def model_json(bodies: Mapping[str, LinkBody], tip_file: str) -> dict[str, Any]:
+    """Return the JSON object that `robot_model` reads: what the URDF says."""
+    joints = [
+        {
+            "name": joint.name,
+            "origin": shifted(*joint.origin),
+            "axis": np.array(joint.axis, dtype=float),
+            "lower": -math.radians(joint.limit_deg),
+            "upper": math.radians(joint.limit_deg),
+            "velocity": math.radians(joint.speed_deg_s),
+        }
+        for joint in JOINTS
+    ]
+    offsets = {TOOL_LINK: FLANGE_OFFSET, TOOL_TIP_LINK: FLANGE_OFFSET + TOOL_LENGTH}
+    links = [
+        {"name": name, "joint": min(number, 7), "offset": shifted(0.0, 0.0, offsets.get(name, 0.0))}
+        for number, name in enumerate((*LINK_NAMES, TOOL_TIP_LINK))
+    ]
+    files = [
+        *((link, "visual", file, color) for link in bodies for file, color in bodies[link].visuals),
+        *((link, "collision", body.collision, "") for link, body in bodies.items()),
+        (TOOL_TIP_LINK, "visual", tip_file, "blue"),
+    ]
+    meshes = [
+        {
+            "link": link,
+            "kind": kind,
+            "path": file,
+            "origin": np.eye(4),
+            "scale": [1.0, 1.0, 1.0],
+            "color": COLORS.get(color, (0.8, 0.8, 0.8, 1.0)),
+        }
+        for link, kind, file, color in files
+    ]
+    names = {"name": "iiwa7", "tip": TOOL_TIP_LINK}
+    arm = ARM | {"signs": [float(sum(joint.axis)) for joint in JOINTS]}
+    return {**names, "arm": arm, "joints": joints, "links": links, "meshes": meshes}
+
+
+def shifted(x: float, y: float, z: float) -> np.ndarray:
+    """Return a frame (4, 4) that is parallel to the one before, m."""
+    pose = np.eye(4)
+    pose[:3, 3] = x, y, z
+    return pose
 
 
 def visual_parts() -> dict[str, dict[str, trimesh.Trimesh]]:

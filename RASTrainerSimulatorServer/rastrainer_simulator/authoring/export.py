@@ -9,10 +9,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkImageData
+import scipy.ndimage
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
-from vtkmodules.vtkImagingGeneral import vtkImageEuclideanDistance
 from vtkmodules.vtkImagingStencil import vtkImageStencilToImage, vtkPolyDataToImageStencil
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer
 
@@ -72,7 +71,8 @@ class Grid:
         image.SetInputConnection(stencil.GetOutputPort())
         image.SetOutputScalarTypeToUnsignedChar()
         image.Update()
-        return _array(image.GetOutput()) > 0
+        scalars = vtk_to_numpy(image.GetOutput().GetPointData().GetScalars())
+        return scalars.reshape(self.shape, order="F") > 0
 
     def at(self, places: np.ndarray) -> np.ndarray:
         """Return which voxels (i, j, k) bool contain one of the points (n, 3), RAS mm."""
@@ -84,20 +84,8 @@ class Grid:
 
     def distances(self, marked: np.ndarray) -> np.ndarray:
         """Return the distance (i, j, k) float, mm, of each voxel to the nearest marked one."""
-        image = vtkImageData()
-        image.SetDimensions(self.shape)
-        image.SetSpacing(*np.linalg.norm(self.ijk_to_ras[:3, :3], axis=0).tolist())
-        unmarked = np.asarray(~marked, np.uint8).ravel(order="F")
-        image.GetPointData().SetScalars(numpy_to_vtk(unmarked, deep=True))
-        squared = vtkImageEuclideanDistance()
-        squared.SetInputData(image)
-        squared.Update()
-        return np.sqrt(_array(squared.GetOutput()))
-
-
-def _array(image: vtkImageData) -> np.ndarray:
-    scalars = vtk_to_numpy(image.GetPointData().GetScalars())
-    return scalars.reshape(image.GetDimensions(), order="F")
+        spacing = np.linalg.norm(self.ijk_to_ras[:3, :3], axis=0)
+        return scipy.ndimage.distance_transform_edt(~marked, spacing)
 
 
 LEAST_DEPTH_MM = 15.0
@@ -113,8 +101,8 @@ _SAMPLES = 6
 def without_face_in(volume: HeadVolume, head: HeadMesh) -> HeadVolume:
     """Return the images of a head without its face and without anything around the head.
 
-    What is removed depends on the shield of `without_face`, not on the face: the images reveal no
-    more about it than the exported surface.
+    The shield of `without_face` alone decides what is removed, so that the images reveal no more
+    about the face than the exported surface.
     """
     shield, tip = without_face(head), nose_tip(head)
     grid = Grid(volume.values.shape, volume.ijk_to_ras)
@@ -157,11 +145,10 @@ def _middle(volume: HeadVolume, head: HeadMesh) -> np.ndarray:
     places = head.middle + float(head.size.max()) * 1.1 * np.stack(
         [np.zeros_like(depths), -depths, -heights], axis=-1
     )
-    to_ijk = np.linalg.inv(volume.ijk_to_ras)
-    voxels = np.rint(places @ to_ijk[:3, :3].T + to_ijk[:3, 3]).astype(int)
-    is_within = ((voxels >= 0) & (voxels < volume.values.shape)).all(axis=-1)
-    values = np.full((SIDE, SIDE), float(volume.values.min()))
-    values[is_within] = volume.values[tuple(voxels[is_within].T)]
+    voxels = np.moveaxis(transforms.apply(transforms.inverse(volume.ijk_to_ras), places), -1, 0)
+    values = scipy.ndimage.map_coordinates(
+        volume.values, voxels, float, order=0, cval=float(volume.values.min())
+    )
     share = np.clip((values - volume.level) / volume.window + 0.5, 0.0, 1.0)
     return np.repeat((255 * share).astype(np.uint8)[:, :, None], 3, axis=2)
 
@@ -207,7 +194,7 @@ def draw_face_removal(folder: Path, picture: Path) -> str:
 def pack_for_sharing(
     folder: Path, package: Path, keeps_face: bool = False, keeps_names: bool = False
 ) -> str:
-    """Write a scenario as one zip file and return a sentence about what was removed.
+    """Write a scenario as one zip file, and return a sentence that lists the removed parts.
 
     Args:
         keeps_face: keep the head, its picture, its images and its skull; otherwise head, picture

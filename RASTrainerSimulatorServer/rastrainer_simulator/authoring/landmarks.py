@@ -1,10 +1,10 @@
 """Landmarks of a head: proposed on it, read from a file, and checked.
 
-Proposed are those of the head of Colin27, carried to where the head is alike: the reference head is
-turned, shifted and scaled along its three axes until it lies on the other one (ICP; the worst tenth
-of the points does not count). Then the skin around each landmark is moved as a rigid patch until it
-lies on the skin there, because eyes, nose and ears are not where the size of the head alone puts
-them. The result is a proposal, to be checked.
+A proposal carries the landmarks of Colin27's head to similar places of another head: the reference
+head is turned, shifted and scaled along its three axes until it fits the other head (ICP; the worst
+tenth of the points does not count). Then the skin around each landmark is moved as a rigid patch
+until it fits the skin there, because the size of a head alone does not say where eyes, nose and
+ears are. The user checks the result.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+import scipy.spatial
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
@@ -97,7 +98,7 @@ def landmarks_on(mesh: HeadMesh) -> tuple[Landmark, ...]:
 
 
 def _whole(reference: HeadMesh, mesh: HeadMesh) -> np.ndarray:
-    """Return the transform (4, 4) that lays the reference on the head: rigid after a scaling.
+    """Return the transform (4, 4) that fits the reference to the head: rigid after a scaling.
 
     Distances are measured along the normals of the other head (point to plane: Chen and Medioni
     1992), to its vertices, which are thinned out.
@@ -106,7 +107,7 @@ def _whole(reference: HeadMesh, mesh: HeadMesh) -> np.ndarray:
     points = reference.vertices[points].astype(float)
     others = _thinned(np.arange(len(mesh.vertices)), OTHER_POINTS)
     places, normals = mesh.vertices[others].astype(float), mesh.vertex_normals[others]
-    is_skin = _is_skin(mesh)[others]
+    is_skin, tree = _is_skin(mesh)[others], scipy.spatial.KDTree(places)
     # At first scaled and shifted to the same top, width and length.
     own, other = (
         np.array([each.vertices.min(axis=0), each.vertices.max(axis=0)])
@@ -119,8 +120,7 @@ def _whole(reference: HeadMesh, mesh: HeadMesh) -> np.ndarray:
     pose[2, 3] = other[1, 2] - scales[2] * own[1, 2]
     for _ in range(ROUNDS):
         moved = transforms.apply(pose, points * scales)
-        nearest = _nearest(moved, places)
-        away = np.linalg.norm(places[nearest] - moved, axis=1)
+        away, nearest = tree.query(moved)
         counts = is_skin[nearest]
         counts &= away <= np.quantile(away[counts], COUNTED_SHARE)
         normal, q, p = normals[nearest[counts]], moved[counts], points[counts]
@@ -134,12 +134,6 @@ def _whole(reference: HeadMesh, mesh: HeadMesh) -> np.ndarray:
         pose = transforms.rigid(turned, shift) @ pose
         scales = np.clip(scales + step[6:], *SCALES)
     return pose @ np.diag([*scales, 1.0])
-
-
-def _nearest(points: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Return which of the `places` (m, 3) is nearest to each of the `points` (n, 3), (n,) int."""
-    squares = np.einsum("ij,ij->i", places, places)
-    return (squares - 2.0 * points @ places.T).argmin(axis=1)
 
 
 def _is_skin(mesh: HeadMesh) -> np.ndarray:
@@ -161,10 +155,9 @@ def _local(reference: HeadMesh, place: np.ndarray, onto: np.ndarray, mesh: HeadM
     others = mesh.vertices[(away < 2.0 * PATCH_MM) & _is_skin(mesh)].astype(float)
     if len(others) < LEAST_PATCH:
         return start[0]
-    points = start
+    points, tree = start, scipy.spatial.KDTree(others)
     for _ in range(PATCH_ROUNDS):
-        nearest = _nearest(points[1:], others)
-        least = np.linalg.norm(points[1:] - others[nearest], axis=1)
+        least, nearest = tree.query(points[1:])
         counts = least <= np.quantile(least, COUNTED_SHARE)
         step = fit(points[1:][counts], others[nearest[counts]], RIGID)
         points = transforms.apply(step, points)

@@ -52,7 +52,7 @@ from rastrainer_simulator.rendering.picture import draw_preview
 
 CENTER = "Center of the head"
 LEAST_START_CLEARANCE_MM = 30.0
-"""Of the tip above the head where a trial starts."""
+"""Least distance of the tip from the head at the start of a trial."""
 
 
 @dataclass(frozen=True)
@@ -188,13 +188,13 @@ def copy_with_plan(
 ) -> Scenario:
     """Write a copy of a scenario with another plan into a new folder and return it.
 
-    What is empty or None is kept.
+    Arguments that are empty or None change nothing.
 
     Args:
         targets: RAS mm, replacing all others; the first is where the error is reported.
         trajectory: RAS mm, replacing the other one.
         warn: called if the first target is too deep for trials to start above it.
-        procedure: replacing the one of the same name, or added.
+        procedure: added, or replacing the procedure of the same name.
         landmarks: RAS mm, replacing all others; those near the skin are moved onto it.
     """
     before = checked_scenario(folder)

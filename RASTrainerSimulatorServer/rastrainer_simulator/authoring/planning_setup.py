@@ -48,14 +48,14 @@ def touchable(
         for place in np.flatnonzero(can_be):
             position = transforms.apply(pose, positions[place] / MM_PER_M)
             normal = pose[:3, :3] @ normals[place]
-            found = planner.working_direction(position, normal, int(likely[place]))
+            found = planner.touch(position, normal, int(likely[place]))
             can_be[place] = found is not None
-            likely[place] = found or 0
+            likely[place] = 0 if found is None else found.number
     return can_be
 
 
 WIDER = 1.2
-"""Factor by which the perturbation of poses for planning exceeds that of trials: a margin."""
+"""Perturbation of the poses for planning over the perturbation in trials: a margin."""
 
 
 class PlanningSetup:

@@ -12,7 +12,6 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
-from rastrainer.number_text import fixed
 from rastrainer.procedure.checks import (
     MeasuredProcedure,
     check_procedure,
@@ -55,7 +54,7 @@ def is_guide_held(
 def check_procedures(planning: PlanningSetup) -> list[str]:
     """Return a sentence for each error in the procedures of a scenario.
 
-    Reach is checked in the nominal pose of the head and in those of some seeds.
+    Reach is checked in the nominal pose of the head and in some seeded poses.
     """
     wrong = []
     for procedure in planning.scenario.procedures:
@@ -134,8 +133,8 @@ def with_procedure(
 ) -> tuple[Scenario, dict[str, HeadMesh]]:
     """Return a scenario with a procedure, in place of one of the same name.
 
-    The second value has the meshes of all its no-go structures by file name. A new mesh whose file
-    name another procedure has for another structure gets a name of its own.
+    The second value has the meshes of all its no-go structures by file name. A new mesh gets
+    another file name if another procedure uses its name for another structure.
     """
     _skull(scenario)
     others = [each for each in scenario.procedures if each.name != procedure.name]
@@ -169,36 +168,3 @@ def _skull(scenario: Scenario) -> Path:
             "make it again with a skull."
         )
     return scenario.skull.file
-
-
-HEADER = (
-    *("line", "length (mm)", "angle to the skull (°)", "nearest no-go structure (mm)"),
-    *("nearest other line (mm)", "reach"),
-)
-REACH = {True: "yes", False: "no", None: "not tried"}
-
-
-def line_table(procedures: Iterable[MeasuredProcedure]) -> list[str]:
-    """Return the lines of a text: each procedure with its table, and what is wrong with it."""
-    text = []
-    for measured in procedures:
-        rows = [HEADER]
-        for line in measured.lines:
-            angle, near, other = line.skull_angle_deg, line.nearest_no_go, line.nearest_line_mm
-            rows.append(
-                (
-                    line.name,
-                    fixed(line.length_mm, 1),
-                    "–" if angle is None else fixed(angle, 1),
-                    f"{fixed(line.no_go_mm[near], 1)} {near}" if near else "–",
-                    "–" if other is None else f"{fixed(other, 1)} {line.nearest_line}",
-                    REACH[line.is_held],
-                )
-            )
-        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-        text.append(f"{measured.title} ({measured.procedure})")
-        for row in rows:
-            cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
-            text.append("  ".join(cells).rstrip())
-        text += [*measured.wrong, ""]
-    return text[:-1] or ["The scenario has no procedure."]

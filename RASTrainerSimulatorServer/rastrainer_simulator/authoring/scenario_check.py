@@ -28,7 +28,7 @@ from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.viewpoint.best_view import WIDEST_DEG
 
 ROBOT_FOOT_MM = 110.0
-"""From the middle of the robot's base to its outermost screws, rounded up."""
+"""Distance of the outermost screws from the middle of the robot's base, rounded up."""
 
 
 def check_standing(scenario: Scenario, head: HeadMesh) -> list[str]:
@@ -170,7 +170,7 @@ def measured(planning: PlanningSetup, task: Task) -> Task:
 def check_tasks(planning: PlanningSetup, tasks: Iterable[Task], first_seed: int = 0) -> list[str]:
     """Return a sentence for each error in tasks.
 
-    Reach is checked in the nominal pose of the head and in those of some seeds from `first_seed`.
+    Reach is checked in the nominal pose of the head and in seeded poses from `first_seed` on.
     """
     tasks = list(tasks)
     wrong = []
@@ -276,7 +276,7 @@ _DECIMALS = 4
 def read_placed_tasks(
     planning: PlanningSetup, files: tuple[Path, ...], progress: Progress, warn: Warn
 ) -> tuple[tuple[Task, ...], list[str]]:
-    """Return the tasks of markups files, and what is wrong with them, one sentence each.
+    """Return the tasks of markups files, and a sentence for each of their errors.
 
     The files are the trial run's, Task 1's and so on. Fiducials within 5 mm of the skin are moved
     onto it; `warn` is called for each task with such.

@@ -22,13 +22,13 @@ from rastrainer_simulator.authoring.touch_order import (
 )
 
 SPACING_MM = 20.0
-"""Between any two fiducials of a task: numbers must not cover each other."""
+"""Least distance of two fiducials of a task: numbers must not cover each other."""
 
 DRAWS = 30
 """Number of random choices of fiducials, the best of which (by target TRE) is used."""
 
 RISE = 1.1
-"""Least ratio of a task's complexity index to that of the task before."""
+"""Least ratio of the complexity indices of a task and of the task before it."""
 
 ATTEMPTS = 20
 ROUGHLY = 0.8
@@ -123,7 +123,7 @@ class TaskProposer:
             eye: (3,) float, position of the default view, RAS mm.
             target: (3,) float, to be located well, RAS mm.
             usable: returns which of some points (n, 3) can be used, (n,) bool; it is expensive, so
-                it is called for chosen points only, and unusable ones are not chosen again.
+                it is called for chosen points only, and unusable points are not chosen again.
         """
         self._mesh = mesh
         self._graph = SurfaceGraph(mesh)
@@ -136,7 +136,7 @@ class TaskProposer:
     def propose_rising(
         self, plans: Sequence[TaskPlan], seed: int, begins_easy: bool = False
     ) -> list[Proposal]:
-        """Return a task for each plan, each more demanding than the one before.
+        """Return a task for each plan, each more demanding than its predecessor.
 
         With `begins_easy` the first task is the easiest of many draws, for a head of which little
         can be touched: there the others are not much harder.
@@ -187,7 +187,7 @@ class TaskProposer:
                 f"The head has no room for the fiducials of {plan.title}: too few places are "
                 "smooth, within the robot's reach and far enough from each other."
             )
-        # The one that locates the target best.
+        # This draw locates the target best.
         best = min(draws, key=lambda draw: target_spread(places.positions[draw], self._target))
         positions, normals = places.positions[best], places.normals[best]
         transitions = transitions_between(positions, normals, arc_lengths(positions, normals))

@@ -64,7 +64,7 @@ FACE_MARGIN_MM = 10.0
 """Least distance of fiducials from the face, so that it can be removed without moving any."""
 
 WIDE_SEEDS, TRIAL_SEEDS = range(1000, 1006), range(2000, 2012)
-"""Of the poses in which a fiducial must be touchable: beyond those of trials, and like them."""
+"""Seeds of the poses in which a fiducial must be touchable: wider than in trials, and like them."""
 
 ATTEMPTS = 6
 WIDEN_DEG, WIDEST_DEG = 10.0, 75.0
@@ -90,7 +90,7 @@ class TaskSetProposer:
         self._share = 0.0
 
     def propose(self, seed: int) -> tuple[Task, ...]:
-        """Return the tasks, each more demanding than the one before.
+        """Return the tasks, each more demanding than its predecessor.
 
         Their fiducials are on the skin, off the face, touchable in many poses of the head, and
         spread so that the target is located well; their numbers do not overlap.
@@ -107,7 +107,7 @@ class TaskSetProposer:
             )
             self._report("Placing fiducials", 0.3 + 0.1 * attempt)
             try:
-                # With further attempts the easy ones have more room.
+                # Easy tasks have more room in each further attempt.
                 wider = WIDEN_DEG * attempt
                 plans = [
                     replace(plan, off_axis_deg=min(WIDEST_DEG, plan.off_axis_deg + wider))

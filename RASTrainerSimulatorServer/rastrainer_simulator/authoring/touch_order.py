@@ -9,8 +9,8 @@ default (close-up) view; R the total rotation of the tool to stay normal to the 
 Each unit is about one more action: a hand's width of travel, one corner, one change of the view,
 one quarter turn of the tool. The weights of 1 are a convention, not a measured effort.
 
-Shortest paths are searched in a graph of the mesh's vertices. Besides the edges, it has for every
-edge the straight path between the opposite corners of its two triangles, unfolded into one plane.
+Shortest paths are searched in a graph of the mesh's vertices. It has the edges and, for every edge,
+the straight path between the opposite corners of its two triangles, unfolded into one plane.
 Lengths are never shorter than the geodesic and, on a sphere, about 2.5 % longer on average.
 """
 
@@ -97,7 +97,7 @@ def is_hidden(point: np.ndarray, normal: np.ndarray, mesh: HeadMesh, eye: np.nda
 
 
 def _angles_deg(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return the angles (n,) between vectors (n, 3), degrees; 0 where one has no length."""
+    """Return the angles (n,) between vectors (n, 3), degrees; 0 if one has no length."""
     across = np.linalg.norm(np.cross(a, b), axis=1)
     return np.degrees(np.arctan2(across, np.einsum("ij,ij->i", a, b)))
 
@@ -289,7 +289,7 @@ def _paths_across(mesh: HeadMesh) -> tuple[np.ndarray, np.ndarray]:
 def shortest_path_mm(fiducials: np.ndarray, mesh: HeadMesh, graph: SurfaceGraph) -> float:
     """Return the length in mm of the shortest free path through (n, 3) fiducials in order.
 
-    Between two fiducials it is the straight line or, if the head is in the way, the path along the
+    It joins two fiducials by the straight line or, if the head is in the way, by the path along the
     skin, about 2.5 % too long in the graph. Takes about half a second.
     """
     fiducials = np.asarray(fiducials, dtype=float)
@@ -307,5 +307,5 @@ def _is_free(mesh: HeadMesh, ends: np.ndarray, normals: list[np.ndarray]) -> boo
     along = ends[1] - ends[0]
     if along @ normals[0] <= 0 or -along @ normals[1] <= 0:
         return False
-    # The first triangle met would be the one that the line starts on.
+    # The line would meet the triangle that it starts on first.
     return not hides(mesh, ends[0] + along / np.linalg.norm(along), ends[1])

@@ -31,7 +31,7 @@ class SeatLink(str, Enum):
 
 @dataclass(frozen=True)
 class TileNews:
-    """What a board shows of a seat; `seat` is None while it is not watched."""
+    """A seat on the board; `seat` is None while it is not watched."""
 
     id: Words
     name: Words

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import aiohttp
 from aiohttp import WSMsgType, hdrs, web
+from aiohttp.typedefs import Handler
 
 from rastrainer.errors import InputError
 from rastrainer.study.database.database import StudyPlace
@@ -30,9 +31,10 @@ from rastrainer_simulator.board.seats import (
     RefusedError,
     SeatClient,
     SeatEntry,
-    SeatList,
     checked_address,
     checked_fingerprint,
+    read_seats,
+    write_seats,
 )
 from rastrainer_simulator.board.watched_seat import WatchedSeat
 from rastrainer_simulator.net.views.access_control import (
@@ -54,7 +56,7 @@ from rastrainer_simulator.presentation.messages import (
 )
 
 TILES_S = 0.25
-"""Between two messages to a teacher's page."""
+"""Time between two messages to a teacher's page."""
 HEARTBEAT_S = 20.0
 SEAT_PATH = "/seat/{seat:[0-9a-f]{12}}"
 FILES = (
@@ -62,9 +64,9 @@ FILES = (
     "sounds/{name:[a-z-]{1,32}}.wav",
     "scenarios/{name:[a-z0-9-]{1,40}}.png",
 )
-"""What a page may request of a simulator."""
+"""Files that a page may request from a simulator."""
 FILE_TYPES = {"glb": "model/gltf-binary", "wav": "audio/wav", "png": "image/png"}
-"""Their types, whatever the simulator says."""
+"""Their types; the simulator's own statement is ignored."""
 _KEPT_HEADERS = (hdrs.CONTENT_ENCODING, hdrs.CACHE_CONTROL, hdrs.VARY, "X-File-Size")
 _SPECTATOR_HELLO = message_text(Hello("spectator"))
 _HELLO_S = 5.0
@@ -84,11 +86,11 @@ class BoardServer:
     ) -> None:
         """Watch the seats in the folder of settings, and the class of a study if there is one."""
         self._client = client
-        self._list = SeatList(config)
+        self._config = config
         self._changed = asyncio.Event()
         self._pages: set[asyncio.Event] = set()
         self._seats = {
-            entry.id: WatchedSeat(entry, self._client, self._notify) for entry in self._list
+            entry.id: WatchedSeat(entry, self._client, self._notify) for entry in read_seats(config)
         }
         self._pins: dict[str, str] = {}
         self._class = ClassWatch(study)
@@ -103,10 +105,11 @@ class BoardServer:
             *(web.get(f"{SEAT_PATH}/{path}", self._send_file) for path in FILES),
             web.get("/tiles", self._send_tiles),
             web.get("/class", self._class.send),
-            web.get("/paired", _confirm_pairing),
-            web.post("/seats", self._add),
-            web.delete(SEAT_PATH, self._remove),
-            web.post(f"{SEAT_PATH}/order", self._order),
+            # A browser cannot read its cookie; without one it is refused.
+            web.get("/paired", _send_nothing),
+            web.post("/seats", _for_teachers(self._add)),
+            web.delete(SEAT_PATH, _for_teachers(self._remove)),
+            web.post(f"{SEAT_PATH}/order", _for_teachers(self._order)),
         ]
         self._http = GuardedServer(Sessions(), self.code, routes, self._page)
 
@@ -208,37 +211,30 @@ class BoardServer:
 
     async def _add(self, request: web.Request) -> web.Response:
         """Pair with a simulator. Without its fingerprint, return it for comparison."""
-        _check_teacher(request)
         asked = await read_body(request, NewSeat)
-        try:
-            name, address = asked.name.strip(), checked_address(asked.address)
-            fingerprint = ""
-            if address.startswith("https:"):
-                if not asked.fingerprint:
-                    shown = await self._client.fingerprint(address)
-                    return web.json_response({"fingerprint": shown})
-                fingerprint = checked_fingerprint(asked.fingerprint)
-            key = await self._client.pair(address, fingerprint, asked.code)
-            known = (each.id for each in self._list if each.address == address)
-            entry = SeatEntry(
-                next(known, secrets.token_hex(6)), name or address, address, key, fingerprint
-            )
-            self._list.put(entry)
-        except InputError as error:
-            raise _conflict(error) from None
+        name, address = asked.name.strip(), checked_address(asked.address)
+        fingerprint = ""
+        if address.startswith("https:"):
+            if not asked.fingerprint:
+                shown = await self._client.fingerprint(address)
+                return web.json_response({"fingerprint": shown})
+            fingerprint = checked_fingerprint(asked.fingerprint)
+        key = await self._client.pair(address, fingerprint, asked.code)
+        entries = {seat.entry.address: seat.entry for seat in self._seats.values()}
+        known = entries.get(address)
+        seat_id = secrets.token_hex(6) if known is None else known.id
+        entry = SeatEntry(seat_id, name or address, address, key, fingerprint)
+        write_seats(self._config, {**entries, address: entry}.values())
         await self._forget(entry.id)
         self._seats[entry.id] = WatchedSeat(entry, self._client, self._notify)
         self._notify()
         return web.json_response({"id": entry.id})
 
     async def _remove(self, request: web.Request) -> web.Response:
-        _check_teacher(request)
-        seat = self._entry(request).id
-        try:
-            self._list.remove(seat)
-        except InputError as error:
-            raise _conflict(error) from None
-        await self._forget(seat)
+        entry = self._entry(request)
+        others = [seat.entry for seat in self._seats.values() if seat.entry is not entry]
+        write_seats(self._config, others)
+        await self._forget(entry.id)
         self._notify()
         return web.json_response({})
 
@@ -250,28 +246,37 @@ class BoardServer:
 
     async def _order(self, request: web.Request) -> web.Response:
         """Have something done at a seat; its PIN is remembered until the board ends."""
-        _check_teacher(request)
         entry = self._entry(request)
         asked = await read_body(request, SeatOrder)
         pin = asked.pin or self._pins.get(entry.id, "")
         if not pin:
             return web.json_response({"needsPin": True})
+        order = OrderRequest(pin, asked.order, asked.text)
         try:
-            await self._client.request(
-                entry, "/instructor", OrderRequest(pin, asked.order, asked.text)
-            )
-        except RefusedError as error:
+            await self._client.request(entry, "/instructor", order)
+        except RefusedError:
             self._pins.pop(entry.id, None)
-            raise _conflict(error) from None
-        except InputError as error:
-            raise _conflict(error) from None
+            raise
         self._pins[entry.id] = pin
         return web.json_response({})
 
 
-async def _confirm_pairing(_request: web.Request) -> web.Response:
-    """Confirm to a browser, which cannot read its cookie, that it has one; else refuse it."""
+async def _send_nothing(_request: web.Request) -> web.Response:
     return fresh_json({})
+
+
+def _for_teachers(act: Handler) -> Handler:
+    """Refuse browsers that only watch; say why something could not be done."""
+
+    async def handle(request: web.Request) -> web.StreamResponse:
+        if request[ROLE] is not ViewRole.VIEW:
+            raise web.HTTPForbidden(text=ONLY_TEACHERS)
+        try:
+            return await act(request)
+        except InputError as error:
+            raise web.HTTPConflict(text=str(error)) from None
+
+    return handle
 
 
 async def _pass_on(simulator: aiohttp.ClientWebSocketResponse, page: web.WebSocketResponse) -> None:
@@ -297,12 +302,3 @@ async def _pass_on(simulator: aiohttp.ClientWebSocketResponse, page: web.WebSock
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
-
-
-def _check_teacher(request: web.Request) -> None:
-    if request[ROLE] is not ViewRole.VIEW:
-        raise web.HTTPForbidden(text=ONLY_TEACHERS)
-
-
-def _conflict(error: InputError) -> web.HTTPConflict:
-    return web.HTTPConflict(text=str(error))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Mapping
-from dataclasses import dataclass
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from aiohttp import web
@@ -26,19 +26,15 @@ from rastrainer_simulator.board.board_messages import (
 )
 from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
 from rastrainer_simulator.net.views.access_control import fresh_json
-from rastrainer_simulator.ops.study_thread import StudyThread
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 
 MOST_TRAINEES = 500
 LOCK_WAIT_S = 5.0
-
-
-@dataclass(frozen=True)
-class ClassStanding:
-    """The standings of the active trainees of a study."""
-
-    standings: Mapping[str, CurriculumStanding]
-    without: tuple[str, ...]
+ROUND_S = 2.0
+UNEXPECTED = "The study cannot be read because of an unexpected error; the board's log has more."
+_log = logging.getLogger(__name__)
+Standings = Mapping[str, "CurriculumStanding | None"]
+"""Standings of the active trainees of a study, by name; None without a curriculum."""
 
 
 class ClassReader:
@@ -52,9 +48,9 @@ class ClassReader:
         self._study: Study | None = None
         self._version: int | None = None
         self._file: tuple[int, ...] = ()
-        self._found: ClassStanding | None = None
+        self._found: Standings | None = None
 
-    def read(self) -> ClassStanding:
+    def read(self) -> Standings:
         """Return everybody's standing; the same object as before if nothing has changed."""
         try:
             file = _file(self._place)
@@ -93,50 +89,46 @@ def _file(place: StudyPlace) -> tuple[int, ...]:
     return found.st_ino, found.st_size, found.st_mtime_ns
 
 
-def _standing(study: Study) -> ClassStanding:
+def _standing(study: Study) -> Standings:
     names = [trainee.pseudonym for trainee in study.trainees()]
     if len(names) > MOST_TRAINEES:
         raise InputError(
             f"The study has {len(names)} active trainees, and a table shows at most "
             f"{MOST_TRAINEES}: archive those who no longer train."
         )
-    standings = CurriculumStore(study).standings()
-    without = tuple(name for name in names if name not in standings)
-    return ClassStanding(standings, without)
-
-
-_log = logging.getLogger(__name__)
-ROUND_S = 2.0
-UNEXPECTED = "The study cannot be read because of an unexpected error; the board's log has more."
+    store = CurriculumStore(study)
+    return {name: store.standing(name) for name in names}
 
 
 class ClassWatch:
-    """Keeps what was last read of a study, also while it cannot be read."""
+    """Keeps the standings that were last read, also while the study cannot be read."""
 
     def __init__(self, place: StudyPlace | None) -> None:
         """Read nothing yet; without a study nothing is ever read."""
-        self._thread = None if place is None else StudyThread(lambda: ClassReader(place))
-        self._found: ClassStanding | None = None
+        self._reader = None if place is None else ClassReader(place)
+        self._thread = ThreadPoolExecutor(1, "study")
+        self._found: Standings | None = None
         self._tables: dict[str, tuple[CurriculumTable, ...]] = {}
         self._problem = self._as_of = ""
         self._task: asyncio.Task[None] | None = None
 
     async def begin(self) -> None:
         """Read once now, and repeatedly from now on."""
-        if self._thread is None:
+        if self._reader is None:
             return
         try:
-            await self._read(self._thread)
+            await self._read(self._reader)
         except StudyBusyError as error:
             self._problem = str(error)
-        self._task = asyncio.create_task(self._keep_reading(self._thread))
+        self._task = asyncio.create_task(self._keep_reading(self._reader))
 
     async def close(self) -> None:
         if self._task is not None:
             self._task.cancel()
             await asyncio.gather(self._task, return_exceptions=True)
-        if self._thread is not None:
-            await self._thread.close()
+        if self._reader is not None:
+            self._thread.submit(self._reader.close)
+        self._thread.shutdown()
 
     async def send(self, request: web.Request) -> web.Response:
         asked = request.query.get("language", "")
@@ -148,18 +140,18 @@ class ClassWatch:
         if found is not None and language not in self._tables:
             self._tables[language] = class_table(found, language)
         return ClassNews(
-            has_study=self._thread is not None,
+            has_study=self._reader is not None,
             problem=self._problem,
             as_of=self._as_of,
             curricula=self._tables.get(language, ()),
-            without=() if found is None else found.without,
+            without=tuple(name for name, each in (found or {}).items() if each is None),
         )
 
-    async def _keep_reading(self, thread: StudyThread[ClassReader]) -> None:
+    async def _keep_reading(self, reader: ClassReader) -> None:
         while True:
             await asyncio.sleep(ROUND_S)
             try:
-                await self._read(thread)
+                await self._read(reader)
             except InputError as error:
                 self._problem = str(error)
             except Exception:
@@ -167,14 +159,14 @@ class ClassWatch:
                 _log.exception(UNEXPECTED)
                 self._problem = UNEXPECTED
 
-    async def _read(self, thread: StudyThread[ClassReader]) -> None:
-        found = await thread.do(ClassReader.read)
+    async def _read(self, reader: ClassReader) -> None:
+        found = await asyncio.get_running_loop().run_in_executor(self._thread, reader.read)
         if found is not self._found:
             self._found, self._tables = found, {}
         self._problem, self._as_of = "", utc_now()
 
 
-def class_table(found: ClassStanding, language: str) -> tuple[CurriculumTable, ...]:
+def class_table(found: Standings, language: str) -> tuple[CurriculumTable, ...]:
     texts = Texts(LANGUAGES[language])
 
     def task_title(name: str) -> str:
@@ -183,7 +175,7 @@ def class_table(found: ClassStanding, language: str) -> tuple[CurriculumTable, .
 
     words = AssignmentTexts(texts, task_title, _spoken)
     tables = []
-    for curriculum, group in by_curriculum(found.standings).items():
+    for curriculum, group in by_curriculum(found).items():
         first = next(iter(group.values()))
         columns = tuple(
             AssignmentColumn(each.name, words.label(each), words.goal(each))

@@ -9,7 +9,7 @@ import asyncio
 import hashlib
 import re
 import ssl
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -65,32 +65,19 @@ class SeatsFile:
                 checked_fingerprint(entry.fingerprint)
 
 
-class SeatList:
-    """The seats in a file that only its owner can read."""
+def read_seats(config: Path) -> tuple[SeatEntry, ...]:
+    """Return the seats in the folder of settings; without a file there are none."""
+    path = config / SEATS_FILE
+    if not path.exists():
+        return ()
+    values = read_json(path, _MAX_BYTES)
+    return record_from_json(SeatsFile, values, str(path), only_known=True).seats
 
-    def __init__(self, config: Path) -> None:
-        """Read the file in the folder of settings; without one there are no seats."""
-        self._path = config / SEATS_FILE
-        self._entries: dict[str, SeatEntry] = {}
-        if self._path.exists():
-            values = read_json(self._path, _MAX_BYTES)
-            file = record_from_json(SeatsFile, values, str(self._path), only_known=True)
-            self._entries = {entry.id: entry for entry in file.seats}
 
-    def __iter__(self) -> Iterator[SeatEntry]:
-        return iter(tuple(self._entries.values()))
-
-    def put(self, entry: SeatEntry) -> None:
-        self._write({**self._entries, entry.id: entry})
-
-    def remove(self, seat: str) -> None:
-        """Forget a seat; an unknown one is no error."""
-        self._write({id_: entry for id_, entry in self._entries.items() if id_ != seat})
-
-    def _write(self, entries: dict[str, SeatEntry]) -> None:
-        file = SeatsFile(tuple(entries.values()))
-        write_private_json(self._path, record_to_json(file, with_defaults=True))
-        self._entries = entries
+def write_seats(config: Path, seats: Iterable[SeatEntry]) -> None:
+    """Write a file that only its owner can read."""
+    file = record_to_json(SeatsFile(tuple(seats)), with_defaults=True)
+    write_private_json(config / SEATS_FILE, file)
 
 
 def checked_address(address: str) -> str:
@@ -143,7 +130,7 @@ NOT_OURS = "The server at {address} is not a simulator of this version."
 
 
 class OtherCertificateError(InputError):
-    """The certificate is not the one whose fingerprint was compared."""
+    """The certificate has another fingerprint than the compared one."""
 
 
 class UnpairedError(InputError):
@@ -208,9 +195,9 @@ class SeatClient:
                 ssl=_certificate(entry),
             )
         except aiohttp.WSServerHandshakeError as error:
-            raise _refusal(entry, error.status) from None
+            raise _away(entry, error.status) from None
         except (aiohttp.ClientError, OSError, asyncio.TimeoutError) as error:
-            raise _no_connection(entry, error) from None
+            raise _away(entry, error) from None
 
     async def request(
         self, entry: SeatEntry, path: str, body: PairingRequest | OrderRequest | None = None
@@ -230,11 +217,11 @@ class SeatClient:
             ) as response:
                 content = await _content(response)
         except (aiohttp.ClientError, OSError, asyncio.TimeoutError) as error:
-            raise _no_connection(entry, error) from None
+            raise _away(entry, error) from None
         if response.status == 200:
             return content, response.headers
         if response.status in (401, 503):
-            raise _refusal(entry, response.status)
+            raise _away(entry, response.status)
         raise RefusedError(content[:MAX_REASON].decode(errors="replace"))
 
 
@@ -261,13 +248,10 @@ def _certificate(entry: SeatEntry) -> aiohttp.Fingerprint | bool:
     return aiohttp.Fingerprint(bytes.fromhex(entry.fingerprint.replace(":", "")))
 
 
-def _no_connection(entry: SeatEntry, error: Exception) -> InputError:
-    if isinstance(error, aiohttp.ServerFingerprintMismatch):
+def _away(entry: SeatEntry, reason: Exception | int) -> InputError:
+    """Return what an error, or the status of an answer, says of a simulator."""
+    if isinstance(reason, aiohttp.ServerFingerprintMismatch):
         return OtherCertificateError(OTHER_CERTIFICATE)
-    return InputError(AWAY.format(address=entry.address))
-
-
-def _refusal(entry: SeatEntry, status: int) -> InputError:
-    if status == 401:
+    if reason == 401:
         return UnpairedError("The simulator no longer knows this board: pair again.")
     return InputError(AWAY.format(address=entry.address))

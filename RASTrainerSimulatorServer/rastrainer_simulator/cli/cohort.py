@@ -13,9 +13,10 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.protocol.study_protocol import StudyProtocol, mode_order
 from rastrainer.trial.score_reference import score_reference
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Subcommand, text_table
+from rastrainer_simulator.cli.printing import text_table
+from rastrainer_simulator.virtual.cohort import simulate_cohort
 from rastrainer_simulator.virtual.outcome_model import OutcomeModel, rejection_rates
+from rastrainer_simulator.virtual.play import PlaySettings
 from rastrainer_simulator.virtual.population import ModeEffect, Population
 from rastrainer_simulator.virtual.scripted_trainee import Skill
 
@@ -23,21 +24,15 @@ SHIPPED_PROTOCOL = ("studies", "published-protocol.json")
 TYPICAL_FLE_MM = 1.5
 TRIAL_TIME_SD = 0.12
 """SD of the logarithm of drawn times besides the tempo: heads, paths and slips of the hand."""
-MAX_TRAINEES = 100_000
-MAX_STUDIES = 100_000
 
 
-def run(arguments: argparse.Namespace) -> int:
+def simulate(arguments: argparse.Namespace) -> int:
     protocol = StudyProtocol.read(arguments.protocol or asset_path(*SHIPPED_PROTOCOL))
     if arguments.power is not None:
         print(_power(protocol, arguments))
         return 0
     if arguments.output is None:
         raise InputError("Name the folder of the study with -o.")
-    # Only here: the robot and the scenario take time to import.
-    from rastrainer_simulator.virtual.cohort import simulate_cohort
-    from rastrainer_simulator.virtual.play import PlaySettings
-
     trials = arguments.trainees * len(protocol.modes) * len(protocol.tasks) * protocol.repetitions
 
     def show_progress(count: int) -> None:
@@ -138,67 +133,3 @@ def _power(protocol: StudyProtocol, arguments: argparse.Namespace) -> str:
         f"drawn from a model of outcomes (not played)\norder of the modes {order}\n"
         + text_table(header, rows)
     )
-
-
-SKILLS = arg.group(
-    "the trainees",
-    arg.number("--speed", 120.0, "of the tip between points", 5.0, 450.0, metavar="MM/S"),
-    arg.number("--aim", 0.8, "SD along each axis", 0.0, 3.0, metavar="MM"),
-    arg.number("--hmd-speed", 1.0, "of the speed in the headset", metavar="FACTOR"),
-    arg.number("--hmd-aim", 1.0, "of the SD in the headset", metavar="FACTOR"),
-    arg.option(
-        "--hmd-bias",
-        type=float,
-        nargs=3,
-        default=(0.0, 0.0, 0.0),
-        metavar=("X", "Y", "Z"),
-        help="systematic error of the aim in the headset, mm",
-    ),
-    arg.number("--spread", 0.15, "between trainees"),
-    arg.number("--interaction", 0.05, "between trainees and modes"),
-    arg.number("--tempo-spread", 0.0, "between trials"),
-    arg.number("--learning", 0.15, "of the time over the trials", metavar="EXPONENT"),
-    arg.number("--accuracy-learning", 0.0, "of the scatter", metavar="EXPONENT"),
-    arg.number("--trade-off", 0.0, "of a trial's tempo in its scatter", metavar="EXPONENT"),
-    arg.option(
-        "--lapses",
-        type=float,
-        metavar="SHARE",
-        help="of trials in which a touch slips and is undone (default: all played trials)",
-    ),
-)
-ENGINE = arg.group(
-    "the engine",
-    arg.option(
-        "--engine", choices=("processes", "dask"), default="processes", help="what plays the trials"
-    ),
-    arg.number(
-        "--workers", None, "that play at once (default: one per core)", 1, 1024, metavar="N"
-    ),
-    arg.option("--address", metavar="URL", help="of a Dask scheduler"),
-    arg.number("--step", 0.05, "of the simulation", 0.002, 0.1, metavar="S"),
-    arg.path("--scenario", "DIR", "whose head and tasks are used (default: Colin27)"),
-)
-COMMANDS = (
-    Subcommand(
-        "simulate-cohort",
-        "simulate a study of virtual trainees whose parameters you set",
-        run,
-        (
-            arg.number("--trainees", 20, "how many", 2, MAX_TRAINEES, metavar="N"),
-            arg.path("--protocol", "FILE", "of the study (default: the published one)"),
-            arg.number("--seed", 0, "of everything that is drawn", 0),
-            arg.output("an empty folder, or one to resume"),
-            arg.flag("--records", "write the journals too"),
-            arg.number(
-                "--power", None, "number of studies to draw", 10, MAX_STUDIES, metavar="STUDIES"
-            ),
-            SKILLS,
-            ENGINE,
-        ),
-        "Play a study's trials with seeded virtual trainees, faster than real time, on all cores, "
-        "and store them like a real study (study.db, for rastrainer report). After an interruption "
-        "the same command resumes. With --power, draw many studies from a model of times and "
-        "errors instead, and print how often the tests find the effect.",
-    ),
-)

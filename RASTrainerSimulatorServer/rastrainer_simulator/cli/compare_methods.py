@@ -20,12 +20,13 @@ from rastrainer.study.tidy_csv import csv_text
 from rastrainer.trial.score_reference import region_of
 from rastrainer.trial.touch_registration import GivenPoints
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Subcommand, json_text, text_table
+from rastrainer_simulator.cli.printing import json_text, text_table
 from rastrainer_simulator.report.charts import grouped_bars
 from rastrainer_simulator.virtual.method_trials import (
+    METHODS,
     PUBLISHED_NOISE,
     MethodResult,
+    MethodStudy,
     mean_of,
     points_of_trial,
     register_by,
@@ -42,10 +43,9 @@ NOTE = (
     " Residuals of different methods are of different points: they do not show which is better."
 )
 COLORS = {"expected TRE": "#0b6fa4", "true TRE": "#d1661b"}
-MOST_TRIALS = 10_000
 
 
-def run(arguments: argparse.Namespace) -> int:
+def compare_methods(arguments: argparse.Namespace) -> int:
     folder = arguments.scenario or asset_path("scenarios", "colin27")
     scenario = load_scenario(folder)
     notes: list[str] = [NOTE]
@@ -70,9 +70,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _simulated(arguments: argparse.Namespace, scenario: Scenario, notes: list[str]) -> Found:
-    # Only here: a study is compared without the virtual trials.
-    from rastrainer_simulator.virtual.method_trials import METHODS, MethodStudy
-
     task = arguments.task or scenario.tasks[-1].name
     scenario.task(task)
     trials = MethodStudy(scenario, task, arguments.skin_shift, arguments.indentation)
@@ -184,31 +181,3 @@ def picture(found: Found) -> str:
     ]
     names = [method.value for method in found]
     return grouped_bars("Target registration error (mm)", names, series, "method")
-
-
-COMMANDS = (
-    Subcommand(
-        "compare-methods",
-        "register the same trials by every method and compare residual, expected and true TRE",
-        run,
-        (
-            arg.study(nargs="?"),
-            arg.path("--scenario", "DIR", "default: Colin27"),
-            arg.option("--task", help="of simulated trials; default: the scenario's last one"),
-            arg.number("--trials", 20, "number of simulated trials", 1, MOST_TRIALS),
-            arg.number("--seed", 0, "of the first", 0),
-            arg.number(
-                "--skin-shift",
-                0.0,
-                "between imaging and operation, RMS; default: none",
-                metavar="MM",
-            ),
-            arg.number("--indentation", 0.0, "of the skin under the tip", metavar="MM"),
-            arg.output("write CSV, JSON, text and a picture"),
-            arg.JSON,
-        ),
-        "Without STUDY, trials are simulated on the scenario, with the noise of "
-        "docs/registration-methods.md. With it, its played trials are registered by every method "
-        "that their points allow.",
-    ),
-)

@@ -34,8 +34,6 @@ from rastrainer.trial.ctps import CTPS_WARNING
 from rastrainer.trial.procedure_outcome import procedure_outcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Subcommand
 from rastrainer_simulator.core.setup import DEFAULT_SCENARIO
 
 TASKS = (TRIAL_RUN, "task-1")
@@ -47,7 +45,7 @@ BAR_WIDTH = 30
 SLICER_TIMEOUT_S = 60.0
 
 
-def run(arguments: argparse.Namespace) -> int:
+def play_demo(arguments: argparse.Namespace) -> int:
     """Play the trial run and Task 1, write the results into a folder, and print a summary."""
     if importlib.util.find_spec("slicer") is None:
         raise InputError(
@@ -59,7 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
     move_aside(output)
     output.mkdir(parents=True)
     with Study.open(output / STUDY_FILE) as study:
-        # With consent to research, the study can be reported and exported.
+        # Reports and exports need the consent to research.
         study.create_trainee(TRAINEE, consent=True)
     scenario = load_scenario(asset_path(*DEFAULT_SCENARIO))
     with _simulator(output, seed, speed) as port, _slicer(output, port) as slicer:
@@ -121,8 +119,7 @@ def _simulator(output: Path, seed: int, speed: float) -> Iterator[int]:
 def _slicer(output: Path, port: int) -> Iterator[subprocess.Popen]:
     """Run Slicer's side without Slicer, which ends when it has stored all trials."""
     words = ["rastrainer_headless.main", "--port", str(port), "--output", str(output)]
-    words += ["--scenario", str(asset_path(*DEFAULT_SCENARIO)), "--trials", str(len(TASKS))]
-    words += ["--cohort", str(asset_path("studies", "published.csv"))]
+    words += ["--assets", str(asset_path()), "--trials", str(len(TASKS))]
     with (output / "slicer.log").open("w") as log, _process(words, log, stdout=log) as process:
         yield process
 
@@ -291,17 +288,3 @@ def procedure_summary(record: TrialRecord, scenario: Scenario, head_to_world: np
 
 def _line(name: str, value: float, unit_and_remark: str) -> str:
     return f"  {name:<34} {value:8.2f} {unit_and_remark}"
-
-
-COMMANDS = (
-    Subcommand(
-        "demo",
-        "play two trials with a virtual trainee and show the results",
-        run,
-        (
-            arg.path("--output", "DIR", "folder to write into", default=Path("rastrainer-demo")),
-            arg.number("--seed", 2026, "of the trainee and the head's pose"),
-            arg.number("--speed", 10.0, "simulated seconds a second"),
-        ),
-    ),
-)

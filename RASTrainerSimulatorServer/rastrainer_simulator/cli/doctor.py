@@ -16,10 +16,8 @@ from importlib import import_module, metadata
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DEFAULT_VIEW_PORT
+from rastrainer.protocol import DEFAULT_HOST
 from rastrainer_simulator.assets import page_folder
-from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Subcommand
 from rastrainer_simulator.input.gamepads import NoGamepadsError, start_sdl
 from rastrainer_simulator.net.listener import listening_socket
 from rastrainer_simulator.ops.application_window import application_browser
@@ -32,7 +30,7 @@ Answers = Iterator[tuple[str, str]]
 """Verdicts, each with a sentence about the finding."""
 
 
-def run(arguments: argparse.Namespace) -> int:
+def check_computer(arguments: argparse.Namespace) -> int:
     findings = [
         {"check": title, "verdict": verdict, "sentence": sentence, "remedy": remedy}
         for title, test, advice in CHECKS
@@ -213,18 +211,3 @@ CHECKS = (
     ("disk", check_disk, "Free some space there and allow writing, or choose another folder."),
 )
 """Title, test and remedy of each check."""
-COMMANDS = (
-    Subcommand(
-        "doctor",
-        "check this computer, and suggest remedies for problems",
-        run,
-        (
-            arg.port("--port", DEFAULT_PORT, "of OpenIGTLink"),
-            arg.port("--view-port", DEFAULT_VIEW_PORT, "of the views"),
-            arg.RECORDS,
-            arg.path("--config", "DIR", "of your settings"),
-            arg.flag("--json", "print the findings as JSON"),
-        ),
-        "Exit status: 0 without problems (warnings leave something out), 1 with one.",
-    ),
-)

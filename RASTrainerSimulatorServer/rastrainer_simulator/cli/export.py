@@ -10,32 +10,23 @@ from rastrainer.errors import InputError
 from rastrainer.files.writing import make_empty_folder, write_text
 from rastrainer.journal.recording import read_trajectory
 from rastrainer.number_text import counted
-from rastrainer.protocol import Mode, RegistrationMethod
+from rastrainer.protocol import RegistrationMethod
+from rastrainer.study import tidy_csv
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.study_data import StudyData, TrialRow
-from rastrainer.study.tidy_csv import (
-    aborted_csv,
-    aborted_touches_csv,
-    answers_csv,
-    procedures_csv,
-    ratings_csv,
-    scores_csv,
-    touches_csv,
-    trials_csv,
-)
-from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Subcommand, json_text, read_known_study
-from rastrainer_simulator.export.grades import PLATFORMS, RULES, grade, grades_csv
+from rastrainer_simulator.cli.printing import json_text, read_known_study
+from rastrainer_simulator.export.grades import grade, grades_csv
 from rastrainer_simulator.export.trial_files import write_motion_bids, write_slicer_files
-from rastrainer_simulator.export.xapi import HOME_PAGE, statements
+from rastrainer_simulator.export.xapi import statements
 from rastrainer_simulator.report.published_tables import with_ctps
 
 FORMATS = ("csv", "bids", "xapi", "slicer")
 
 
-def run(arguments: argparse.Namespace) -> int:
+def export_study(arguments: argparse.Namespace) -> int:
+    arguments.home_page = _home_page(arguments.home_page)
     if arguments.grades:
         return _export_grades(arguments)
     formats = arguments.format or [f for f in FORMATS if f != "bids" or arguments.records]
@@ -54,7 +45,7 @@ def _export_grades(arguments: argparse.Namespace) -> int:
     with Study.open_for_reading(arguments.study) as opened:
         found = {
             trainee.pseudonym: grade(
-                opened.past_trials(trainee.pseudonym),
+                opened.attempts(trainee.pseudonym),
                 arguments.task,
                 arguments.mode,
                 RegistrationMethod(arguments.method),
@@ -80,14 +71,14 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
     make_empty_folder(folder)
     if name == "csv":
         tables = {
-            "trials": trials_csv(data.trials),
-            "touches": touches_csv(_stored(data, arguments.study)),
-            "procedures": procedures_csv(data.trials),
-            "aborted": aborted_csv(data.aborted),
-            "aborted_touches": aborted_touches_csv(data.aborted),
-            "scores": scores_csv(data),
-            "answers": answers_csv(data),
-            "ratings": ratings_csv(data),
+            "trials": tidy_csv.trials_csv(data.trials),
+            "touches": tidy_csv.touches_csv(_stored(data, arguments.study)),
+            "procedures": tidy_csv.procedures_csv(data.trials),
+            "aborted": tidy_csv.aborted_csv(data.aborted),
+            "aborted_touches": tidy_csv.aborted_touches_csv(data.aborted),
+            "scores": tidy_csv.scores_csv(data),
+            "answers": tidy_csv.answers_csv(data),
+            "ratings": tidy_csv.ratings_csv(data),
         }
         for table, text in tables.items():
             write_text(folder / f"{table}.csv", text)
@@ -104,10 +95,10 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
 def _home_page(value: str) -> str:
     """Accept the address of a lab's own system, from which IRIs are made."""
     parts = urlsplit(value)
-    # What stands before an "@", such as a password, would be in every statement.
+    # Every statement would show the password before an "@".
     is_safe = not any(sign in value for sign in "@?# ") and parts.hostname
     if parts.scheme not in ("https", "http") or not is_safe:
-        raise argparse.ArgumentTypeError("give an address such as https://lab.example.org")
+        raise InputError("--home-page: give an address such as https://lab.example.org.")
     return value.rstrip("/")
 
 
@@ -119,48 +110,3 @@ def _stored(data: StudyData, place: StudyPlace) -> Iterator[tuple[TrialRow, Stor
     with Study.open_for_reading(place) as opened:
         for trial in known:
             yield trial, opened.trial(trial.trial_id)
-
-
-COMMANDS = (
-    Subcommand(
-        "export",
-        "export a study: tidy CSV, Motion-BIDS, xAPI, Slicer's files, grades",
-        run,
-        (
-            arg.study(),
-            arg.output("an empty folder", required=True),
-            arg.option(
-                "--format", action="append", choices=FORMATS, help="may be repeated; default: all"
-            ),
-            arg.path("--records", "DIR", "the simulator's journals, for Motion-BIDS"),
-            arg.option(
-                "--home-page",
-                type=_home_page,
-                default=HOME_PAGE,
-                metavar="URL",
-                help="of the lab's system, which makes pseudonyms unique among labs, for xAPI",
-            ),
-            arg.option("--grades", choices=PLATFORMS, help="write only what this platform imports"),
-            arg.option("--task", metavar="TASK", help="whose trials give the grade (default: any)"),
-            arg.option(
-                "--mode",
-                choices=[each.value for each in Mode],
-                help="whose trials give the grade (default: both)",
-            ),
-            arg.option(
-                "--method",
-                choices=[each.value for each in RegistrationMethod],
-                default=RegistrationMethod.FIDUCIALS.value,
-                metavar="METHOD",
-                help="of registration, whose trials give the grade",
-            ),
-            arg.option(
-                "--rule", choices=RULES, default="best", help="which acceptable trial gives it"
-            ),
-            arg.INCOMPLETE,
-        ),
-        "Write a study into an empty folder, a folder a format. Trainees appear by their "
-        "pseudonyms, and only those who consented to research. With --grades, write only the "
-        "grades of a course: of all active trainees, whether they consented or not.",
-    ),
-)

@@ -12,12 +12,12 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer.study.database.database import StudyPlace
-from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Subcommand, announce
+from rastrainer_simulator.board.board_server import BoardServer
+from rastrainer_simulator.board.seats import SeatClient
+from rastrainer_simulator.cli.printing import announce
 from rastrainer_simulator.ops.instructor_pin import PIN_WORDS, InstructorPin
+from rastrainer_simulator.ops.processes import stop_on_signals
 from rastrainer_simulator.ops.system_paths import config_folder
-
-DEFAULT_BOARD_PORT = 18955
 
 
 def serve_board(arguments: argparse.Namespace) -> int:
@@ -27,10 +27,6 @@ def serve_board(arguments: argparse.Namespace) -> int:
 
 
 async def _serve(config: Path, port: int, place: StudyPlace | None) -> None:
-    from rastrainer_simulator.board.board_server import BoardServer
-    from rastrainer_simulator.board.seats import SeatClient
-    from rastrainer_simulator.ops.processes import stop_on_signals
-
     tell, stop = partial(announce, "board"), asyncio.Event()
     async with SeatClient() as client:
         board = BoardServer(
@@ -67,36 +63,3 @@ def set_pin(arguments: argparse.Namespace) -> int:
     pin.set(chosen)
     print("The PIN is set; a simulator that is running asks for it from now on.")
     return 0
-
-
-COMMANDS = (
-    Subcommand(
-        "board",
-        "watch several simulators in one page of live tiles",
-        serve_board,
-        (
-            arg.study(
-                "--study",
-                f"also show the class of this study, which is only read: {arg.STUDY_HELP}",
-            ),
-            arg.port(
-                "--port", DEFAULT_BOARD_PORT, "for browsers on this computer, 0 for any free one"
-            ),
-            arg.CONFIG,
-        ),
-        "Serves a teacher's board to browsers on this computer until Ctrl-C: who trains where, "
-        "task, point, time, contact and last score of each seat, and each seat's scene; with a "
-        "study, also where every trainee stands in the curriculum. The seats' addresses and keys "
-        "stay on this computer.",
-    ),
-    Subcommand(
-        "instructor-pin",
-        "set the PIN that instructors need at this seat",
-        set_pin,
-        (arg.flag("--remove", "have no PIN any more"), arg.CONFIG),
-        f"Asks for a PIN of {PIN_WORDS}, twice, or reads it from a pipe. With it, a teacher's "
-        "board may pause this simulator, show the trainee a sentence and start a replay; and at "
-        "the simulator, settings, order of tasks and another view's taking the control are locked "
-        "until it is entered. Without a PIN, no board can do anything, and nothing is locked.",
-    ),
-)

@@ -5,24 +5,21 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import Integrity, read_journal
-from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Subcommand, json_text, text_table
-
-if TYPE_CHECKING:
-    from rastrainer.study.database.study import Study
+from rastrainer.journal.recording import Recording
+from rastrainer.motion.trial_motion import trial_motion
+from rastrainer.study.database.study import Study
+from rastrainer.study.outcomes import MOTION_METRICS
+from rastrainer_simulator.cli.printing import json_text, text_table
 
 
 def verify(arguments: argparse.Namespace) -> int:
     if arguments.study is None:
-        return max([_verify(path) for path in arguments.journals])
-    from rastrainer.study.database.study import Study
-
+        return max([_verify(path) for path in arguments.journal])
     with Study.open_for_reading(arguments.study) as opened:
-        return max([_verify(path, opened) for path in arguments.journals])
+        return max([_verify(path, opened) for path in arguments.journal])
 
 
 def _verify(path: Path, study: Study | None = None) -> int:
@@ -45,11 +42,6 @@ def _verify(path: Path, study: Study | None = None) -> int:
 
 
 def measure(arguments: argparse.Namespace) -> int:
-    # Only here: to verify a journal, no metric need be imported.
-    from rastrainer.journal.recording import Recording
-    from rastrainer.motion.trial_motion import trial_motion
-    from rastrainer.study.outcomes import MOTION_METRICS
-
     reading = read_journal(arguments.journal)
     motion = trial_motion(Recording.of(reading.entries).trajectory())
     if arguments.json:
@@ -61,28 +53,3 @@ def measure(arguments: argparse.Namespace) -> int:
     if arguments.explain:
         print("\n".join(f"\n{d.title}: {d.definition} Source: {d.source}." for d in known))
     return 0
-
-
-COMMANDS = (
-    Subcommand(
-        "verify",
-        "check whether journals of trials are intact, cut short or altered",
-        verify,
-        (
-            arg.option("journals", nargs="+", type=Path, metavar="JOURNAL"),
-            arg.study(
-                "--study", "whose trials must be those of the journals; a file or an address"
-            ),
-        ),
-        "Exit status: 0 all intact (and those of the study's trials), 1 one cut short, altered or "
-        "another, 2 one not a journal. Whether a trial was played as its journal says is found by "
-        "`rastrainer replay --verify`.",
-    ),
-    Subcommand(
-        "measure",
-        "compute the motion metrics of a trial from its journal",
-        measure,
-        (arg.path("journal", "JOURNAL"), arg.flag("--explain", "explain each metric"), arg.JSON),
-        "The numbers are those of the trial's record, to the last bit.",
-    ),
-)

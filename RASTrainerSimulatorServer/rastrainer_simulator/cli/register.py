@@ -13,7 +13,6 @@ from rastrainer.errors import InputError
 from rastrainer.files.point_files import read_point_numbers, read_points
 from rastrainer.files.point_list import PointList, pair
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.registration.fits import KINDS, RIGID
 from rastrainer.registration.localization_error import (
     degrees_of_freedom,
     expected_fre,
@@ -24,8 +23,7 @@ from rastrainer.registration.registration import Registration, register
 from rastrainer.registration.surface_error import knowledge_of, surface_target_error
 from rastrainer.registration.surface_match import SurfaceMatch, match_surface
 from rastrainer.registration.target_error import INTERVAL_NOTE, TargetError, target_error
-from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Subcommand, json_text, picked, text_table
+from rastrainer_simulator.cli.printing import json_text, picked, text_table
 
 FRE_NOTE = (
     "FRE is the error at the fiducials; it does not predict the error at a target in a single case."
@@ -49,7 +47,9 @@ class StatedErrors:
     misfit_probability: float
 
 
-def run(arguments: argparse.Namespace) -> int:
+def register_points(arguments: argparse.Namespace) -> int:
+    if arguments.fle is not None and arguments.weights is not None:
+        raise InputError("--fle and --weights exclude each other.")
     left_out: dict[str, tuple[str, ...]] = {}
 
     def read(name: str) -> PointList:
@@ -220,52 +220,3 @@ def match_text(match: SurfaceMatch, error: TargetError) -> str:
     if match.warnings:
         lines += ["", *(f"Warning: {warning.message}" for warning in match.warnings)]
     return "\n".join(lines)
-
-
-COMMANDS = (
-    Subcommand(
-        "register",
-        "register moving points to fixed points",
-        run,
-        (
-            arg.option("moving", metavar="MOVING", help="the points to be mapped"),
-            arg.option("fixed", metavar="FIXED", help="the points to map them to"),
-            arg.option("--type", choices=KINDS, default=RIGID, help="of the transform"),
-            arg.option(
-                "--target",
-                nargs=3,
-                type=float,
-                metavar=("X", "Y", "Z"),
-                help="point in the fixed space (mm) whose error is estimated; default: the "
-                "centroid",
-            ),
-            arg.one_of(
-                arg.option(
-                    "--fle",
-                    metavar="FILE.csv",
-                    help="weight each point by 1/FLE² (rigid only): a CSV file with the header "
-                    "label,fle, the RMS localization error of each point in mm; may be MOVING "
-                    "itself with that column",
-                ),
-                arg.option(
-                    "--weights",
-                    metavar="FILE.csv",
-                    help="weight the points (rigid only): a CSV file with the header label,weight; "
-                    "only the ratios matter, and the size of the errors is estimated from the "
-                    "residuals",
-                ),
-            ),
-            arg.option(
-                "--surface",
-                metavar="TRACE",
-                help="points drawn over the skin, in the frame of MOVING: CSV, .mrk.json or .ply",
-            ),
-            arg.path("--head", "HEAD.ply", "the head's mesh for --surface, RAS mm"),
-            arg.JSON,
-        ),
-        "Register two files of points: CSV with the header label,x,y,z (mm), or Slicer's "
-        ".mrk.json, .fcsv or exported table. Points are paired by label, or by order where the "
-        "labels are left out; what is deselected or not placed in Slicer is not used. With "
-        "--surface they are landmarks, and a trace over the skin is matched to a head.",
-    ),
-)

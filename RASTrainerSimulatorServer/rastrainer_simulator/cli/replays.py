@@ -9,29 +9,26 @@ import sys
 from dataclasses import asdict
 from functools import partial
 
-from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import read_journal
+from rastrainer.journal.recording import read_track
 from rastrainer.study.database.study import Study
-from rastrainer.study.ratings import FORMS, RatingStore, find_form
-from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Subcommand, announce
-
-REPLAYS = 20
+from rastrainer.study.ratings import FORMS, RatingStore
+from rastrainer_simulator.cli.printing import announce
+from rastrainer_simulator.rating.rating_work import RatingWork
+from rastrainer_simulator.record.trial_context import setup_of
+from rastrainer_simulator.replay import resimulation
+from rastrainer_simulator.replay.film import write_film
+from rastrainer_simulator.replay.recorded_trial import RecordedTrial
+from rastrainer_simulator.server.replay_server import serve_rating, show, trials_to_show
 
 
 def replay(arguments: argparse.Namespace) -> int:
     if arguments.film is not None:
         return _film(arguments)
     if not arguments.verify:
-        from rastrainer_simulator.server.replay_server import show
-
         playback = arguments.scenario, arguments.view_port, arguments.window
         show(arguments.journal, *playback, partial(announce, "replay"))
         return 0
-    # Only here: the robot and the scenario take time to import.
-    from rastrainer_simulator.record.trial_context import setup_of
-    from rastrainer_simulator.replay import resimulation
-
     reading = read_journal(arguments.journal)
     report = resimulation.replay(reading, setup_of(reading.header, arguments.scenario))
     is_identical = report.difference is None
@@ -44,14 +41,6 @@ def replay(arguments: argparse.Namespace) -> int:
 
 
 def _film(arguments: argparse.Namespace) -> int:
-    # Only here: the robot and the scenario take time to import.
-    from rastrainer.journal.recording import read_track
-    from rastrainer_simulator.record.trial_context import setup_of
-    from rastrainer_simulator.replay.film import write_film
-    from rastrainer_simulator.replay.recorded_trial import RecordedTrial
-
-    if not 0.1 <= arguments.speed <= 20.0:
-        raise InputError("--speed must be from 0.1 to 20 seconds of the trial per second.")
     track = read_track(arguments.journal)
     setup = setup_of(track.header, arguments.scenario)
     tenths = 0
@@ -83,12 +72,8 @@ def _summary(sentence: str, report) -> str:
 
 
 def rate(arguments: argparse.Namespace) -> int:
-    # Only here: the robot and the scenario take time to import.
-    from rastrainer_simulator.rating.rating_work import RatingWork
-    from rastrainer_simulator.server.replay_server import serve_rating, trials_to_show
-
     tell = partial(announce, "rating")
-    forms = [find_form(name) for name in dict.fromkeys(arguments.form or FORMS)]
+    forms = [FORMS[name] for name in dict.fromkeys(arguments.form or FORMS)]
     with Study.open(arguments.study, must_exist=True) as opened:
         store = RatingStore(opened)
         trials = trials_to_show(opened, arguments.records)
@@ -99,60 +84,3 @@ def rate(arguments: argparse.Namespace) -> int:
         serve_rating(work, arguments.records, *playback, tell)
         tell(f"is left: {work.rated} of {len(order)} replays are rated")
     return 0
-
-
-PLAYBACK = (
-    arg.port("--view-port", None, "where views are served"),
-    arg.switch("--window", "open the window"),
-)
-COMMANDS = (
-    Subcommand(
-        "replay",
-        "show a recorded trial, or simulate it again and compare it bit by bit",
-        replay,
-        (
-            arg.path("journal", "JOURNAL"),
-            arg.path("--scenario", "DIR", "the scenario it was recorded with"),
-            arg.flag(
-                "--verify",
-                "simulate the trial again and compare it with the journal instead of showing it",
-            ),
-            arg.flag("--json", "print the report of --verify as JSON"),
-            arg.path("--film", "FILE.webm", "write the trial as a film instead of showing it"),
-            arg.number("--speed", 1.0, "seconds of the trial per second of the film"),
-            *PLAYBACK,
-        ),
-        "Shows the trial in the window and to every view; Escape ends it. Exit status: 0 shown, or "
-        "equal to the last bit; 1 something differs; 2 not replayable.",
-    ),
-    Subcommand(
-        "rate",
-        "mark replays of a study's trials on GEARS and OSATS forms, blinded",
-        rate,
-        (
-            arg.study(),
-            arg.option(
-                "--rater",
-                required=True,
-                metavar="NAME",
-                help="a pseudonym of who rates, such as R1",
-            ),
-            arg.RECORDS,
-            arg.number(
-                "--replays", REPLAYS, "how many trials are drawn for all raters", 1, metavar="N"
-            ),
-            arg.option(
-                "--form",
-                action="append",
-                choices=list(FORMS),
-                help="may be given several times (default: all)",
-            ),
-            arg.path("--scenario", "DIR", "the scenario they were recorded with"),
-            *PLAYBACK,
-        ),
-        "Shows the replays of trials in the window and to every view, under shuffled numbers, "
-        "without trainee, date, score or mode, and takes a rater's marks, which are kept in the "
-        "study. All raters get the same trials, each in another order. Work can be left at any "
-        "time; the same command takes it up. The study's report shows how far raters agree.",
-    ),
-)

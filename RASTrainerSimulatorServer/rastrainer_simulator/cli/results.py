@@ -6,18 +6,9 @@ import argparse
 from dataclasses import replace
 
 from rastrainer.errors import InputError
-from rastrainer.trial.ctps import (
-    CTPS_WARNING,
-    CohortScores,
-    read_notes,
-    read_trials,
-    score_cohort,
-    trials_by_mode,
-)
+from rastrainer.trial import ctps
 from rastrainer.work_progress import print_progress
-from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import (
-    Subcommand,
+from rastrainer_simulator.cli.printing import (
     json_text,
     picked,
     read_known_study,
@@ -26,10 +17,10 @@ from rastrainer_simulator.cli.options import (
 
 
 def score(arguments: argparse.Namespace) -> int:
-    modes = trials_by_mode(read_trials(arguments.trials))
-    notes = read_notes(arguments.trials.with_suffix(".json"))
+    modes = ctps.trials_by_mode(ctps.read_trials(arguments.trials))
+    notes = ctps.read_notes(arguments.trials.with_suffix(".json"))
     means = {**(notes.mean_ct_s if notes else {}), **_mean_times(arguments.mean_ct, list(modes))}
-    scores = {mode: score_cohort(trials, means.get(mode)) for mode, trials in modes.items()}
+    scores = {mode: ctps.score_cohort(trials, means.get(mode)) for mode, trials in modes.items()}
     if arguments.json:
         names = ("overall", "equation_3_overall", "tasks", "subjects", "sd_population", "sd_sample")
         objects = {
@@ -38,18 +29,18 @@ def score(arguments: argparse.Namespace) -> int:
                 "mean_ct": own.reference.mean_ct_s,
                 "best_rmse": own.reference.best_rmse_mm,
                 "trials": len(own.trials),
-                "warning": CTPS_WARNING,
+                "warning": ctps.CTPS_WARNING,
             }
             for mode, own in scores.items()
         }
         print(json_text(objects))
     else:
         print("\n\n".join(_scores_text(mode, own) for mode, own in scores.items()))
-        print(f"\nWarning: {CTPS_WARNING}")
+        print(f"\nWarning: {ctps.CTPS_WARNING}")
     return 0
 
 
-def _scores_text(mode: str, scores: CohortScores) -> str:
+def _scores_text(mode: str, scores: ctps.CohortScores) -> str:
     reference = scores.reference
     rows = [[f"Task {name}", f"{mean:.2f}"] for name, mean in scores.tasks.items()]
     rows += [[f"Subject {name}", f"{mean:.2f}"] for name, mean in scores.subjects.items()]
@@ -102,45 +93,3 @@ def _mean_times(given: list[str], modes: list[str]) -> dict[str, float]:
             ) from None
         means.update(dict.fromkeys([mode] if separator else modes, value))
     return means
-
-
-def _mean_ct(help_text: str) -> arg.Argument:
-    return arg.option(
-        "--mean-ct", action="append", default=[], metavar="[MODE=]SECONDS", help=help_text
-    )
-
-
-CSV_HEADER = "mode,subject,task,ct,rmse"
-COMMANDS = (
-    Subcommand(
-        "score",
-        "score the trials of a study as the paper does (CTPS)",
-        score,
-        (
-            arg.path("trials", "TRIALS.csv", "one trial a row"),
-            _mean_ct(
-                "use this mean completion time instead of the trials' own, or of the one that "
-                "notes beside the file (TRIALS.json) give; without MODE for all modes; may be "
-                "given once for each mode"
-            ),
-            arg.JSON,
-        ),
-        f"Score the trials of a CSV file with the header {CSV_HEADER} (s and mm) with CTPS, "
-        "separately for each mode.",
-    ),
-    Subcommand(
-        "report",
-        "write a study's report: tables, charts, tests, limits",
-        report,
-        (
-            arg.study(help_text=f"{arg.STUDY_HELP}; or a CSV file with the header {CSV_HEADER}"),
-            arg.output("folder to write into", required=True),
-            _mean_ct(
-                "a mean completion time for CTPS instead of the trials' own; see rastrainer score"
-            ),
-            arg.INCOMPLETE,
-        ),
-        "Write report.html, which needs no other file and prints on A4, and trials.csv. Trainees "
-        "who did not consent to research are left out.",
-    ),
-)

@@ -8,35 +8,45 @@ import sys
 import tempfile
 from pathlib import Path
 
+import numpy as np
+
 from rastrainer.errors import InputError
 from rastrainer.files.writing import write_json
+from rastrainer.head.mesh import RAS_LIMIT_MM
 from rastrainer.json_records import record_to_json
+from rastrainer.number_text import fixed
+from rastrainer.procedure.checks import MeasuredProcedure
 from rastrainer.procedure.plan import Procedure, read_procedure
 from rastrainer.scenario.library import list_scenarios, unpack
-from rastrainer.scenario.writer import require_new
+from rastrainer.scenario.points import PlannedTarget, PlannedTrajectory
+from rastrainer.scenario.setup import SetUp, read_setup
+from rastrainer.scenario.writer import read_draft, require_new, scenario_name
 from rastrainer.work_progress import print_progress, print_warning
-from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Subcommand
-from rastrainer_simulator.cli.scenario_options import (
-    HEAD_OPTIONS,
-    LIBRARY,
-    OPTIONS,
-    OUTPUT,
-    PLAN,
-    head_arguments,
-    options_of,
-    procedure_option,
-    targets_of,
-    title_of,
-    trajectory_of,
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.authoring.export import draw_face_removal, pack_for_sharing
+from rastrainer_simulator.authoring.landmarks import (
+    check_placed_landmarks,
+    read_placed_landmarks,
+    write_proposal,
 )
+from rastrainer_simulator.authoring.make import (
+    ScenarioOptions,
+    check_options,
+    copy_with_plan,
+    head_process,
+    make_scenario,
+    without_tasks,
+)
+from rastrainer_simulator.authoring.procedure_plan import measure_procedures
+from rastrainer_simulator.authoring.scenario_check import check_scenario
+from rastrainer_simulator.cli.printing import aligned
+from rastrainer_simulator.rendering.picture import draw_preview
 
+LONGEST_TITLE, LONGEST_NAME, LONGEST_TEXT = 80, 60, 4000
 ALL_RIGHT = "Set-up, plan and fiducials can be used."
 
 
-def _build(arguments: argparse.Namespace) -> int:
-    from rastrainer_simulator.authoring.make import check_options, head_process, make_scenario
-
+def build(arguments: argparse.Namespace) -> int:
     _clean_up_when_terminated()
     options = options_of(arguments, arguments.volume.name)
     require_new(arguments.output)
@@ -64,10 +74,7 @@ def _build(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _tasks(arguments: argparse.Namespace) -> int:
-    from rastrainer.scenario.writer import read_draft
-    from rastrainer_simulator.authoring.make import check_options, make_scenario
-
+def propose_tasks(arguments: argparse.Namespace) -> int:
     _clean_up_when_terminated()
     options, draft = options_of(arguments, "unknown"), read_draft(arguments.draft)
     if arguments.check:
@@ -78,43 +85,56 @@ def _tasks(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _preview(arguments: argparse.Namespace) -> int:
-    from rastrainer_simulator.authoring.make import ScenarioOptions, head_process, without_tasks
-    from rastrainer_simulator.rendering.picture import draw_preview
-
+def preview(arguments: argparse.Namespace) -> int:
     options = [*head_arguments(arguments), "--no-skull", "--no-volume"]
     with head_process(arguments.volume, options) as process:
         draft = process.head(print_progress, print_warning)
     scenario = without_tasks(draft, ScenarioOptions("Preview", "none", "none"))
-    draw_preview(arguments.picture, scenario, draft.head)
+    draw_preview(arguments.png, scenario, draft.head)
     print(draft.method)
     return 0
 
 
-def _check(arguments: argparse.Namespace) -> int:
-    from rastrainer_simulator.authoring.scenario_check import check_scenario
-
-    wrong = check_scenario(arguments.folder)
-    print("\n".join(wrong) or f"{arguments.folder} is as a scenario must be.")
+def check(arguments: argparse.Namespace) -> int:
+    wrong = check_scenario(arguments.dir)
+    print("\n".join(wrong) or f"{arguments.dir} is as a scenario must be.")
     return 1 if wrong else 0
 
 
-def _lines(arguments: argparse.Namespace) -> int:
-    from rastrainer_simulator.authoring.procedure_plan import line_table, measure_procedures
-
-    measured = measure_procedures(arguments.folder, _procedure_of(arguments))
-    print("\n".join(line_table(measured)))
+def measure_lines(arguments: argparse.Namespace) -> int:
+    measured = measure_procedures(arguments.dir, _procedure_of(arguments))
+    print("\n\n".join(map(_lines_text, measured)) or "The scenario has no procedure.")
     if arguments.json is not None:
         write_json(arguments.json, [record_to_json(each, with_defaults=True) for each in measured])
     return 1 if any(each.wrong for each in measured) else 0
 
 
-def _plan(arguments: argparse.Namespace) -> int:
-    from rastrainer_simulator.authoring.landmarks import read_placed_landmarks
-    from rastrainer_simulator.authoring.make import copy_with_plan
+def _lines_text(measured: MeasuredProcedure) -> str:
+    """Return the table of a procedure's lines, and its errors."""
+    header = [
+        *("line", "length (mm)", "angle to the skull (°)", "nearest no-go structure (mm)"),
+        *("nearest other line (mm)", "reach"),
+    ]
+    table = [header]
+    for line in measured.lines:
+        angle, near, other = line.skull_angle_deg, line.nearest_no_go, line.nearest_line_mm
+        table.append(
+            [
+                line.name,
+                fixed(line.length_mm, 1),
+                "–" if angle is None else fixed(angle, 1),
+                f"{fixed(line.no_go_mm[near], 1)} {near}" if near else "–",
+                "–" if other is None else f"{fixed(other, 1)} {line.nearest_line}",
+                {True: "yes", False: "no", None: "not tried"}[line.is_held],
+            ]
+        )
+    title = f"{measured.title} ({measured.procedure})"
+    return "\n".join([title, *aligned(table, len(header)), *measured.wrong])
 
+
+def copy(arguments: argparse.Namespace) -> int:
     scenario = copy_with_plan(
-        arguments.folder,
+        arguments.dir,
         title_of(arguments),
         arguments.output,
         targets_of(arguments),
@@ -127,32 +147,24 @@ def _plan(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _landmarks(arguments: argparse.Namespace) -> int:
-    from rastrainer_simulator.authoring.landmarks import (
-        check_placed_landmarks,
-        read_placed_landmarks,
-        write_proposal,
-    )
-
+def check_landmarks(arguments: argparse.Namespace) -> int:
     if arguments.propose:
-        print(" ".join(write_proposal(arguments.folder, arguments.file)))
+        print(" ".join(write_proposal(arguments.dir, arguments.mrk_json)))
         return 0
-    wrong = check_placed_landmarks(arguments.folder, read_placed_landmarks(arguments.file))
+    wrong = check_placed_landmarks(arguments.dir, read_placed_landmarks(arguments.mrk_json))
     print(" ".join(wrong) or "The landmarks can be used.")
     return 1 if wrong else 0
 
 
-def _pack(arguments: argparse.Namespace) -> int:
-    from rastrainer_simulator.authoring.export import draw_face_removal, pack_for_sharing
-
-    package = arguments.package
+def pack(arguments: argparse.Namespace) -> int:
+    package = arguments.zip
     if arguments.picture is not None:
-        sentence = draw_face_removal(arguments.folder, arguments.picture)
+        sentence = draw_face_removal(arguments.dir, arguments.picture)
         print(f"{arguments.picture}\n{sentence}")
         return 0
     if not (arguments.keep_face or arguments.yes):
-        _ask_about_face(arguments.folder)
-    taken = pack_for_sharing(arguments.folder, package, arguments.keep_face, arguments.keep_names)
+        _ask_about_face(arguments.dir)
+    taken = pack_for_sharing(arguments.dir, package, arguments.keep_face, arguments.keep_names)
     print(f"{package} ({package.stat().st_size / 1e6:.1f} MB)")
     print(taken)
     return 0
@@ -160,7 +172,6 @@ def _pack(arguments: argparse.Namespace) -> int:
 
 def _ask_about_face(folder: Path) -> None:
     """Ask on the terminal whether the picture shows that the face would be gone."""
-    from rastrainer_simulator.authoring.export import draw_face_removal
 
     if not sys.stdin.isatty():
         raise InputError(
@@ -176,14 +187,12 @@ def _ask_about_face(folder: Path) -> None:
         raise InputError("Nothing was written.")
 
 
-def _unpack(arguments: argparse.Namespace) -> int:
-    print(unpack(arguments.package, arguments.library))
+def unpack_zip(arguments: argparse.Namespace) -> int:
+    print(unpack(arguments.zip, arguments.library))
     return 0
 
 
-def _list(arguments: argparse.Namespace) -> int:
-    from rastrainer_simulator.assets import asset_path
-
+def list_all(arguments: argparse.Namespace) -> int:
     for entry in list_scenarios([asset_path("scenarios"), arguments.library]):
         print(f"{entry.name:<24}{entry.problem or entry.title}  ({entry.folder})")
     return 0
@@ -198,97 +207,60 @@ def _clean_up_when_terminated() -> None:
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
 
 
-FOLDER = arg.path("folder", "DIR")
-ACTIONS = (
-    Subcommand(
-        "build",
-        "make a scenario of a volume",
-        _build,
-        (
-            arg.path("volume", "VOLUME", "NRRD, NIfTI or DICOM folder"),
-            *HEAD_OPTIONS,
-            arg.flag("--no-skull", "leave the skull out"),
-            arg.flag("--no-volume", "leave the images out"),
-            *OPTIONS,
-        ),
-    ),
-    Subcommand(
-        "tasks",
-        "propose tasks on a head that was made elsewhere",
-        _tasks,
-        (arg.path("draft", "DRAFT", "folder with the head's draft"), *OPTIONS),
-    ),
-    Subcommand(
-        "preview",
-        "draw the head in a volume, to adjust it",
-        _preview,
-        (arg.path("volume", "VOLUME"), arg.path("picture", "PNG"), *HEAD_OPTIONS),
-    ),
-    Subcommand("check", "list the errors of a scenario; status 1 if any", _check, (FOLDER,)),
-    Subcommand(
-        "plan",
-        "copy a scenario with other targets or trajectory",
-        _plan,
-        (
-            FOLDER,
-            *OUTPUT,
-            *PLAN,
-            procedure_option("added, or in the place of the one of the same name"),
-            arg.path(
-                "--landmarks",
-                "MRK_JSON",
-                "placed landmarks, in the order of touching, in the place of the scenario's own",
-            ),
-        ),
-    ),
-    Subcommand(
-        "landmarks",
-        "check placed landmarks on a head, or propose them; status 1 if wrong",
-        _landmarks,
-        (
-            FOLDER,
-            arg.path("file", "MRK_JSON"),
-            arg.flag("--propose", "write a proposal to MRK_JSON"),
-        ),
-    ),
-    Subcommand(
-        "lines",
-        "measure the planned lines of procedures; status 1 if any is wrong",
-        _lines,
-        (
-            FOLDER,
-            procedure_option("measured in the place of the scenario's own"),
-            arg.path("--json", "FILE", "write everything there, too"),
-        ),
-    ),
-    Subcommand(
-        "pack",
-        "write a scenario as one zip file, without face, title and source",
-        _pack,
-        (
-            FOLDER,
-            arg.path("package", "ZIP"),
-            arg.path("--picture", "PNG", "only draw the head before and after; write no zip file"),
-            arg.flag("--yes", "the picture was looked at"),
-            arg.flag("--keep-face", "the patient can then be recognized"),
-            arg.flag("--keep-names", "title, name and source, too"),
-        ),
-    ),
-    Subcommand(
-        "unpack",
-        "unpack a scenario into your library",
-        _unpack,
-        (arg.path("package", "ZIP"), LIBRARY),
-    ),
-    Subcommand("list", "list the available scenarios", _list, (LIBRARY,)),
-)
+def options_of(arguments: argparse.Namespace, source: str) -> ScenarioOptions:
+    """Return the options of a command line; `source` is the default for its source."""
+    return ScenarioOptions(
+        title=title_of(arguments),
+        source=_text("--source", arguments.source or source, LONGEST_TEXT),
+        license=_text("--license", arguments.license, LONGEST_TEXT),
+        setup=read_setup(arguments.setup) if arguments.setup else SetUp(),
+        targets=targets_of(arguments),
+        trajectory=trajectory_of(arguments),
+        task_files=tuple(arguments.tasks or ()),
+        seed=arguments.seed,
+    )
 
 
-COMMANDS = (
-    Subcommand(
-        "scenario",
-        "make a scenario of a head MRI or CT, check, pack and list scenarios",
-        description="Makes and checks scenarios. Not for clinical use.",
-        actions=ACTIONS,
-    ),
-)
+def title_of(arguments: argparse.Namespace) -> str:
+    """Return the title of a new scenario, of which a name can be made; else raise `InputError`."""
+    title = _text("--title", arguments.title or arguments.output.absolute().name, LONGEST_TITLE)
+    scenario_name(title)
+    return title
+
+
+def targets_of(arguments: argparse.Namespace) -> tuple[PlannedTarget, ...]:
+    return tuple(
+        PlannedTarget(_text("--target", name, LONGEST_NAME), _numbers("--target", numbers))
+        for name, *numbers in arguments.target
+    )
+
+
+def trajectory_of(arguments: argparse.Namespace) -> PlannedTrajectory | None:
+    if not arguments.trajectory:
+        return None
+    name, *numbers = arguments.trajectory
+    places = _numbers("--trajectory", numbers)
+    return PlannedTrajectory(_text("--trajectory", name, LONGEST_NAME), places[:3], places[3:])
+
+
+def head_arguments(arguments: argparse.Namespace) -> list[str]:
+    """Return how the head is found, for the process that finds it."""
+    named = ("threshold", "cut", "orientation")
+    given = ((name, getattr(arguments, name)) for name in named)
+    return [f"--{name}={value}" for name, value in given if value is not None]
+
+
+def _text(option: str, text: str, longest: int) -> str:
+    if not 1 <= len(text) <= longest or not text.isprintable():
+        raise InputError(f"{option} must be printable text of 1 to {longest} characters.")
+    return text
+
+
+def _numbers(option: str, words: list[str]) -> np.ndarray:
+    try:
+        numbers = np.array([float(word) for word in words])
+    except ValueError:
+        raise InputError(f"{option} needs numbers after its name, RAS mm.") from None
+    if not (np.abs(numbers) <= RAS_LIMIT_MM).all():
+        raise InputError(f"{option} must be within ±{RAS_LIMIT_MM:g} mm.")
+    return numbers

@@ -3,74 +3,64 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
-from itertools import zip_longest
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import counted
-from rastrainer.study.database.database import Connection
+from rastrainer.study.database.database import StudyDatabase
 from rastrainer.study.database.schema import TABLES, Table
 from rastrainer.study.database.study import Study
 from rastrainer.study.trainee_data import erase_trainee
-from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Subcommand
 
 COUNTER = "trainee_numbers"
 """The one table that a new study has a row in."""
 
 
-def run_copy_study(arguments: argparse.Namespace) -> int:
-    if str(arguments.source) == str(arguments.target):
+def copy_study(arguments: argparse.Namespace) -> int:
+    place, new_place = vars(arguments)["from"], arguments.to
+    if str(place) == str(new_place):
         raise InputError("FROM and TO are the same study.")
-    with Study.open_for_reading(arguments.source) as source, Study.open(arguments.target) as target:
-        counts = copy_study(source, target)
+    with Study.open_for_reading(place) as source, Study.open(new_place) as target:
+        counts = copy_rows(source, target)
     print(
-        f"{arguments.target}: {counted(counts['trainees'], 'trainee')}, "
+        f"{new_place}: {counted(counts['trainees'], 'trainee')}, "
         f"{counted(counts['trials'], 'trial')}, {counted(sum(counts.values()), 'row')} in all, "
         "each compared with its original"
     )
     return 0
 
 
-def copy_study(source: Study, target: Study) -> dict[str, int]:
+def copy_rows(source: Study, target: Study) -> dict[str, int]:
     """Copy all rows in one transaction, compare them, and return their number by table.
 
     The numbers of rows stay, and with them the order of storing; every float keeps each bit.
     """
     counts = {}
-    with source.database.reading() as given, target.database.writing() as taken:
+    given, taken = source.database, target.database
+    with given.reading(), taken.writing():
         for table in TABLES.values():
-            if table.name != COUNTER and _count(taken, table):
+            if table.name != COUNTER and taken.row(f"SELECT 1 FROM {table.name}") is not None:
                 raise InputError("The study to copy to holds something; choose an empty one.")
-        taken.execute(f"DELETE FROM {COUNTER}")
+        taken.change(f"DELETE FROM {COUNTER}")
         for table in TABLES.values():
             marks = ", ".join("?" * len(table.columns))
-            taken.executemany(
-                f"INSERT INTO {table.name} ({', '.join(table.columns)}) VALUES ({marks})",
-                _rows(given, table),
-            )
-        target.database.continue_numbers()
-        for table in TABLES.values():
-            pairs = zip_longest(_rows(given, table), _rows(taken, table))
-            if any(tuple(before or ()) != tuple(after or ()) for before, after in pairs):
+            rows = _rows(given, table)
+            for row in rows:
+                taken.change(
+                    f"INSERT INTO {table.name} ({', '.join(table.columns)}) VALUES ({marks})", *row
+                )
+            if _rows(taken, table) != rows:
                 raise InputError(f"The table {table.name} was not copied as it is; nothing is.")
-            counts[table.name] = _count(taken, table)
+            counts[table.name] = len(rows)
+        taken.continue_numbers()
     return counts
 
 
-def _rows(connection: Connection, table: Table) -> Iterator[tuple]:
-    return iter(
-        connection.execute(
-            f"SELECT {', '.join(table.columns)} FROM {table.name} ORDER BY {table.order}"
-        )
-    )
+def _rows(database: StudyDatabase, table: Table) -> list[tuple]:
+    columns = ", ".join(table.columns)
+    return database.rows(f"SELECT {columns} FROM {table.name} ORDER BY {table.order}")
 
 
-def _count(connection: Connection, table: Table) -> int:
-    return connection.execute(f"SELECT count(*) FROM {table.name}").fetchone()[0]
-
-
-def run_delete_trainee(arguments: argparse.Namespace) -> int:
+def delete_trainee(arguments: argparse.Namespace) -> int:
     with Study.open(arguments.study, must_exist=True) as opened:
         count = len(opened.history(arguments.pseudonym))
         if not arguments.yes:
@@ -88,33 +78,3 @@ def run_delete_trainee(arguments: argparse.Namespace) -> int:
     for sentence in erased.warnings:
         print(sentence)
     return 1 if erased.warnings else 0
-
-
-COMMANDS = (
-    Subcommand(
-        "copy-study",
-        "copy a study from its file into PostgreSQL, or back",
-        run_copy_study,
-        (
-            arg.study("source", "the study: a file, or an address of PostgreSQL", "FROM"),
-            arg.study("target", "an empty database of PostgreSQL, or a file to be made", "TO"),
-        ),
-        "Copy all trainees, trials, results and ratings, compare them with the original to the "
-        "last bit, and leave the original as it is. Nobody should train meanwhile: what comes "
-        "later is not copied.",
-    ),
-    Subcommand(
-        "delete-trainee",
-        "delete a trainee from a study and from the journals, for good",
-        run_delete_trainee,
-        (
-            arg.study(),
-            arg.option("pseudonym", metavar="PSEUDONYM"),
-            arg.path("--records", "DIR", "the folder of the simulator's journals"),
-            arg.flag("--yes", "really delete"),
-        ),
-        "Nothing of the trainee is left in the database, the journals or later exports. Earlier "
-        "exports, backups and printed reports are yours to delete. Exit status: 0 all is deleted, "
-        "1 journals may be left, 2 nothing was deleted.",
-    ),
-)

@@ -22,14 +22,15 @@ from rastrainer.study.curriculum.standing import (
 )
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import StudyProtocol, protocol_text
-from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Subcommand, aligned
+from rastrainer_simulator.cli.printing import aligned
 from rastrainer_simulator.statistics.pass_marks import pass_mark
 
 HEADER = ("assignment", "trial", "so far", "goal", "after", "trials", "mean")
 
 
 def follow_curriculum(arguments: argparse.Namespace) -> int:
+    if arguments.set is not None and arguments.end:
+        raise InputError("--set and --end exclude each other.")
     curriculum = None if arguments.set is None else Curriculum.read(arguments.set)
     who = arguments.trainee or ""
     if curriculum is not None or arguments.end:
@@ -117,7 +118,8 @@ def _mean_scores(
     for group in (novices, experts):
         means.append([])
         for pseudonym in dict.fromkeys(group):
-            trials = opened.past_trials(pseudonym)[-LAST_TRIALS:]
+            attempts = opened.attempts(pseudonym)
+            trials = [each for each in attempts if not each.is_aborted][-LAST_TRIALS:]
             if len(trials) < LAST_TRIALS:
                 raise InputError(
                     f"{pseudonym} has {len(trials)} scored trials, and {LAST_TRIALS} are needed of "
@@ -132,45 +134,3 @@ def _mean_scores(
             "scores cannot be compared: no mark can be computed from them."
         )
     return means[0], means[1], methods.pop()
-
-
-COMMANDS = (
-    Subcommand(
-        "curriculum",
-        "set the curriculum of a study's trainees, and print where they stand",
-        follow_curriculum,
-        (
-            arg.study(),
-            arg.one_of(
-                arg.path("--set", "FILE", "a curriculum to follow from now on"),
-                arg.flag("--end", "follow no curriculum from now on"),
-            ),
-            arg.option("--trainee", metavar="PSEUDONYM", help="for this trainee alone"),
-        ),
-        "Without an option, prints where each trainee stands. What is set last counts: a "
-        "curriculum set for everybody ends those set for single trainees before. Nothing is "
-        "overwritten; earlier trials count, too.",
-    ),
-    Subcommand(
-        "pass-mark",
-        "compute a pass mark from the novices and the experts of a study",
-        compute_pass_mark,
-        (
-            arg.study(),
-            *(
-                arg.option(
-                    group, nargs="+", required=True, metavar="PSEUDONYM", help="five or more"
-                )
-                for group in ("--novices", "--experts")
-            ),
-            arg.path(
-                "--write",
-                "PROTOCOL",
-                "write the mark into this protocol's file, for a study that has not started yet",
-            ),
-        ),
-        "Contrasting groups (Livingston and Zieky 1982): the mark best separates the scores of "
-        f"both groups. A person's score is the mean of their last {LAST_TRIALS} trials; trial runs "
-        "are left out. Scores of different versions cannot be combined.",
-    ),
-)

@@ -25,13 +25,9 @@ SHAFT_NEAR = 0.0015
 class Clearance(NamedTuple):
     """Signed clearances of one posture, in m (below zero: overlap); points and normals in World.
 
-    Attributes:
-        tip: the very tip of the tool against the head.
-        shaft: the rest of the tool against the head, where it is near (see `SHAFT_NEAR`), else
-            None; it starts 3 mm behind the tip.
-        links_m: the links, flange included, against the head; at most FAR.
-        self_m: the arm against itself, links at least three joints apart; at most FAR.
-        table_m: arm and tool against the table and the head's stand; at most FAR.
+    `tip` is the very tip of the tool against the head, `shaft` the rest of the tool from 3 mm
+    behind the tip, None unless it is near (`SHAFT_NEAR`). The others are at most FAR: the links
+    against the head, the arm against itself, and arm and tool against table and stand.
     """
 
     tip: Nearest
@@ -45,14 +41,16 @@ class Clearance(NamedTuple):
         return self.tip.distance_m
 
     @property
-    def shaft_m(self) -> float:
-        """Signed clearance of the tool without its tip to the head, m; a lower bound if far."""
-        return max(self.tip_m, SHAFT_NEAR) if self.shaft is None else self.shaft.distance_m
+    def tool_m(self) -> float:
+        """Signed clearance of the whole tool to the head, m: the clearance that is shown."""
+        return min(self.tip.distance_m, self.shaft_m)
 
     @property
-    def tool_m(self) -> float:
-        """Signed clearance of the whole tool to the head, m: what the trainee is shown."""
-        return min(self.tip_m, self.shaft_m)
+    def shaft_m(self) -> float:
+        """Signed clearance of the tool without its tip, m; a lower bound if far."""
+        if self.shaft is not None:
+            return self.shaft.distance_m
+        return max(self.tip.distance_m, SHAFT_NEAR)
 
 
 _ROUGHLY_FAR = 0.2
@@ -91,7 +89,7 @@ class DistanceBounds:
         while due and due[0][0] <= traveled:
             rows.append(heappop(due)[1])
             if rough is not None and len(rows) > _FEW:
-                # Put off those of all due rows that are far.
+                # Put off the far ones among all due rows.
                 rows += [row for moment, row in due if moment <= traveled]
                 bounds = rough()
                 until = (traveled + (bounds - FAR - _ROUNDING) / self._closing).tolist()
@@ -107,10 +105,7 @@ class DistanceBounds:
     def nearest(
         self, traveled: float, distance: Callable[[int], float], rough: Callable[[], np.ndarray]
     ) -> float:
-        """Return the least distance, m, at most FAR.
-
-        `distance` gives that of a row, m; for the others see `due`.
-        """
+        """Return the least distance, m, at most FAR; `distance` measures a row."""
         best = FAR
         for row in self.due(traveled, rough):
             found = distance(row)
@@ -133,7 +128,7 @@ class HeadClearance:
 
     No point of a segment moves farther than the farther of its two ends, so a distance found
     earlier, less that motion, is a lower bound now. Only capsules whose bound is below the best
-    distance found in this tick are queried. The answer is the same as that of querying all.
+    distance found in this tick are queried. Querying all of them would give the same answer.
     """
 
     def __init__(self, head: HeadSurface, arm: ArmCapsules) -> None:
@@ -147,11 +142,9 @@ class HeadClearance:
     def set_pose(self, head_to_world: np.ndarray) -> None:
         """Set the head's pose, HeadToWorld (4, 4) float, m."""
         pose = np.array(head_to_world, dtype=float)
-        if pose.shape != (4, 4) or not np.isfinite(pose).all():
-            raise InputError("HeadToWorld should be a 4 × 4 matrix of finite numbers.")
         rotation = pose[:3, :3]
-        bent = np.abs(rotation @ rotation.T - np.eye(3)).max()
-        if bent > _RIGID or np.linalg.det(rotation) < 0.0 or (pose[3] != [0, 0, 0, 1]).any():
+        is_orthogonal = np.abs(rotation @ rotation.T - np.eye(3)).max() <= _RIGID
+        if not is_orthogonal or np.linalg.det(rotation) < 0.0:
             raise InputError("HeadToWorld should be rigid: a rotation and a translation only.")
         self._world_to_head = np.eye(4)
         self._world_to_head[:3, :3] = rotation.T
@@ -225,28 +218,24 @@ class HeadClearance:
     ) -> Nearest | None:
         """Return the point nearest to some capsules, if nearer than `limit`."""
         best, best_row = None, -1
+        to_head = self._world_to_head_rows
         for bound, row in sorted(zip(bounds, rows, strict=True)):
             if bound >= limit:
                 break
-            found = self._query(posed, row)
+            segment, radius = self._segments[row], self._arm.capsules[row].radius
+            pose = self._world_to_head @ posed.poses[self._bodies[row]]
+            segment.setRotation(pose[:3, :3])
+            segment.setTranslation(pose[:3, 3])
+            start, end = posed.ends[row].tolist()
+            found = self._head.nearest_to_segment(
+                segment, _moved(to_head, start), _moved(to_head, end), radius
+            )
             distance = found.distance_m
-            # Of two equally near capsules the first counts, whatever the order of the queries.
+            self._known[row] = (distance - _QUERY_ROUNDING, start, end)
+            # The first of two equally near capsules counts, in any order of the queries.
             if distance < limit or (distance == limit and row < best_row):
                 best, best_row, limit = found, row, distance
         return best
-
-    def _query(self, posed: PosedArm, row: int) -> Nearest:
-        segment, radius = self._segments[row], self._arm.capsules[row].radius
-        pose = self._world_to_head @ posed.poses[self._bodies[row]]
-        segment.setRotation(pose[:3, :3])
-        segment.setTranslation(pose[:3, 3])
-        start, end = posed.ends[row].tolist()
-        rows = self._world_to_head_rows
-        found = self._head.nearest_to_segment(
-            segment, _moved(rows, start), _moved(rows, end), radius
-        )
-        self._known[row] = (found.distance_m - _QUERY_ROUNDING, start, end)
-        return found
 
     def _in_world(self, nearest: Nearest) -> Nearest:
         x, y, z = nearest.normal

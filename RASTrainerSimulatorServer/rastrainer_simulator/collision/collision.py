@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -24,19 +23,6 @@ from rastrainer_simulator.collision.robot_shape import ArmCapsules, PosedArm, Ro
 from rastrainer_simulator.vectors import segment_distance
 
 
-@dataclass(frozen=True)
-class Surroundings:
-    """The table and the stand: lengths in m, World.
-
-    Attributes:
-        table_height: of the table top; the robot's base is fixed to it and is not checked.
-        stand_radius: of the upright column under the middle of the head's base; 0: no stand.
-    """
-
-    table_height: float = 0.0
-    stand_radius: float = 0.04
-
-
 def stand_pose(head_to_world: np.ndarray, base: np.ndarray) -> np.ndarray:
     """Return StandToWorld, (4, 4) float, m; `base` is the middle of the head's base, (3,) float."""
     stand_to_world = np.eye(4)
@@ -47,15 +33,15 @@ def stand_pose(head_to_world: np.ndarray, base: np.ndarray) -> np.ndarray:
 class TableClearance:
     """The least distance of the moving links and the tool to the table and to the stand."""
 
-    def __init__(self, arm: ArmCapsules, surroundings: Surroundings) -> None:
+    def __init__(self, arm: ArmCapsules, stand_radius: float, table_height: float) -> None:
         self._arm = arm
-        self._table = surroundings.table_height
-        self._stand_radius = surroundings.stand_radius
+        self._table = table_height
+        self._stand_radius = stand_radius
         self._stand: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
         self._distance_bounds = DistanceBounds(len(arm.capsules))
         fixed = np.where(arm.joints > 0, 0.0, -math.inf)
-        self._below = arm.radii + surroundings.table_height + fixed
-        self._around = arm.reach + surroundings.stand_radius + fixed
+        self._below = arm.radii + table_height + fixed
+        self._around = arm.reach + stand_radius + fixed
 
     def put_stand_under(self, base: np.ndarray) -> None:
         """Put the stand under the middle of the head's base (3,) float, World."""
@@ -66,10 +52,7 @@ class TableClearance:
         self._distance_bounds.forget()
 
     def nearest(self, posed: PosedArm, traveled: float) -> float:
-        """Return the least signed distance to table and stand, m, at most FAR.
-
-        `traveled` is how far the arm has moved in all, m.
-        """
+        """Return the least signed distance, m, at most FAR; the arm has moved `traveled` m."""
         best = self._distance_bounds.nearest(
             traveled, partial(self._distance, posed), partial(self._bounds, posed)
         )
@@ -95,14 +78,13 @@ class TableClearance:
 
 
 APART = 3
-"""Links this many joints apart are checked; joint limits keep nearer ones from touching."""
+"""Links this many joints apart are checked; joint limits keep nearer links from touching."""
 
 
 class SelfClearance:
     """The least distance between links that could touch each other."""
 
     def __init__(self, arm: ArmCapsules) -> None:
-        """Take the capsules of an arm; those of one body, or of near links, are never compared."""
         first, second = np.triu_indices(len(arm.capsules), k=1)
         apart = np.abs(arm.joints[first] - arm.joints[second]) >= APART
         self._first, self._second = first[apart], second[apart]
@@ -113,10 +95,6 @@ class SelfClearance:
         self._distance_bounds = DistanceBounds(len(self._pairs), closing=2.0)
 
     def nearest(self, posed: PosedArm, traveled: float) -> float:
-        """Return the least signed distance of two links, m, at most FAR.
-
-        `traveled` is how far the arm has moved in all, m.
-        """
         return self._distance_bounds.nearest(
             traveled, partial(self._distance, posed), partial(self._bounds, posed)
         )
@@ -144,21 +122,23 @@ class Collision:
         shape: RobotShape,
         head_vertices: np.ndarray,
         head_triangles: np.ndarray,
-        surroundings: Surroundings | None = None,
+        stand_radius: float = 0.04,
+        table_height: float = 0.0,
     ) -> None:
         """Build the shapes; takes about half a second for a head of 60,000 triangles.
 
         Args:
             head_vertices: (n, 3) float, m, head frame, whose z points to the head's top.
             head_triangles: (m, 3) int, a closed surface.
+            stand_radius: of the upright column under the middle of the head's base, m; 0: no stand.
+            table_height: of the table top, m; the robot's base is fixed to it and is not checked.
         """
         self._arm = ArmCapsules(shape)
         self._head = HeadClearance(HeadSurface(head_vertices, head_triangles), self._arm)
         self.nearest_to_point = self._head.nearest_to_point
         self._self = SelfClearance(self._arm)
-        surroundings = surroundings or Surroundings()
-        self.table_height = surroundings.table_height
-        self._table = TableClearance(self._arm, surroundings)
+        self.table_height = table_height
+        self._table = TableClearance(self._arm, stand_radius, table_height)
         self._ends = np.zeros((len(self._arm.capsules), 2, 3))
         self._traveled = 0.0
         self.set_head_pose(np.eye(4))
@@ -188,9 +168,8 @@ class Collision:
     def is_clear(self, link_to_world: Mapping[str, np.ndarray], clearance: float) -> bool:
         """Return whether everything but the tip keeps its clearance.
 
-        The tool's shaft is off the head, and the links are at least `clearance`, m, from the head,
-        and the arm from itself, the table and the stand. Like `check`, but it stops at the first
-        one that is too near.
+        The tool's shaft is off the head; the links are at least `clearance`, m, from the head, and
+        the arm from itself, the table and the stand. It stops at the first part too near.
         """
         posed = self._arm.pose(link_to_world)
         traveled = self._travel(posed)
@@ -221,5 +200,5 @@ class Collision:
 
 def head_collision(shape: RobotShape, head: HeadMesh, scenario: Scenario) -> Collision:
     """Return what measures a robot against a head, RAS mm, and the table and stand around it."""
-    surroundings = Surroundings(stand_radius=scenario.stand.diameter_mm / 2.0 / MM_PER_M)
-    return Collision(shape, head.vertices / MM_PER_M, head.triangles, surroundings)
+    stand_radius = scenario.stand.diameter_mm / 2.0 / MM_PER_M
+    return Collision(shape, head.vertices / MM_PER_M, head.triangles, stand_radius)

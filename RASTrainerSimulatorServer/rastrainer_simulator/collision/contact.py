@@ -1,4 +1,4 @@
-"""The arm's motion in one tick, stopped by what it touches and led along it.
+"""The arm's motion in one tick: obstacles stop it, and surfaces lead it along.
 
 A tick of the simulation is
 
@@ -52,10 +52,8 @@ ToJoints = Callable[[Vector], Sequence[float]]
 class Moved:
     """Where a motion ended.
 
-    Attributes:
-        link_to_world: (4, 4) float, m, by the names of the links.
-        stopped_by: "links", "self" or "table" (rarely "tip" or "shaft", at the edge of the arm's
-            reach) that cut the motion short, else "". Sliding does not stop a motion.
+    `link_to_world` are (4, 4) float, m, by the names of the links. "links", "self" or "table"
+    (rarely "tip" or "shaft", at the edge of the arm's reach) cut a motion short: `stopped_by`.
     """
 
     q: Joints
@@ -107,14 +105,21 @@ class Contact:
             gap = min(REST, getattr(start.clearance, f"{broken}_m") + RECOVERY) - nearest.distance_m
             planes = (*path.half_spaces, _shifted(nearest.normal, gap, path.position))
             position = nearest_inside(path.position, planes)
-            corrected = None if position is None else Slide(position, planes)
-            if corrected is None:
+            if position is None:
                 break
-            path = corrected
+            path = Slide(position, planes)
         if not broken:
             return end
-        self._last = self._shortened(start, end, broken)
-        return replace(self._last, stopped_by=broken)
+        # The part of the motion that ends before the overlap, or the start.
+        before = max(getattr(start.clearance, f"{broken}_m"), 0.0)
+        share = _CAUTION * before / (before - getattr(end.clearance, f"{broken}_m"))
+        part = start
+        if share > _SHORTEST_SHARE:
+            part = self.at([a + share * (b - a) for a, b in zip(start.q, end.q, strict=True)])
+            if _broken(start.clearance, part.clearance):
+                part = start
+        self._last = part
+        return replace(part, stopped_by=broken)
 
     def _slide(self, start: Moved, tip: Vector, displacement: Vector) -> Slide:
         clearance, reach = start.clearance, length(displacement) + REST
@@ -129,17 +134,6 @@ class Contact:
         if above < reach:
             others.append(_shifted((0.0, 0.0, 1.0), min(REST - above, RECOVERY), tip))
         return slide(self._collision.nearest_to_point, tip, clearance.tip, displacement, others)
-
-    def _shortened(self, start: Moved, end: Moved, broken: str) -> Moved:
-        """Return the part of a motion that ends before the overlap, or the start."""
-        part_m = f"{broken}_m"
-        before = max(getattr(start.clearance, part_m), 0.0)
-        share = _CAUTION * before / (before - getattr(end.clearance, part_m))
-        if share > _SHORTEST_SHARE:
-            part = self.at([a + share * (b - a) for a, b in zip(start.q, end.q, strict=True)])
-            if not _broken(start.clearance, part.clearance):
-                return part
-        return start
 
 
 def _broken(start: Clearance, end: Clearance) -> str:
@@ -173,7 +167,7 @@ class HalfSpace(NamedTuple):
 
 
 def nearest_inside(goal: Vector, half_spaces: Sequence[HalfSpace]) -> Vector | None:
-    """Return the point in all half-spaces that is nearest to `goal`, None where there is none.
+    """Return the point in all half-spaces that is nearest to `goal`, None if there is none.
 
     It lies on none, one, two or three of the planes, and is the nearest of the feasible points
     found by trying them all: with the handful of planes of a contact that takes microseconds.
@@ -229,8 +223,7 @@ _STANDSTILL = 1e-9
 _EXACT = 1e-8
 
 
-@dataclass(frozen=True)
-class Slide:
+class Slide(NamedTuple):
     """Where the tip may go, and the planes (World) that limit it there."""
 
     position: Vector
@@ -285,7 +278,7 @@ def _step(
         if target is None:
             break
         short = add(position, shortened(subtract(target, position), longest))
-        # From a point nearer than `rest`, part of the displacement only leads part of the way out.
+        # If the point is nearer than `rest`, a short displacement leads only part of the way out.
         trial = nearest_inside(short, planes) or short
         there = nearest_to_point(trial)
         if there.distance_m >= rest - _EXACT:

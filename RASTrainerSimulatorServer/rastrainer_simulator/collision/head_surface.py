@@ -18,12 +18,9 @@ _FLAT = 1e-12
 
 
 class Nearest(NamedTuple):
-    """The point of the head's surface that is nearest to the tip or to the shaft.
+    """The point (m) of the head's surface that is nearest to the tip or to the shaft.
 
-    Attributes:
-        distance_m: signed clearance, m; below zero inside the head.
-        point: on the surface, m.
-        normal: unit vector away from the head, along which the clearance grows.
+    The distance is below zero inside the head; it grows along the normal, a unit vector.
     """
 
     distance_m: float
@@ -35,15 +32,18 @@ class Nearest(NamedTuple):
 class ClosedSurface:
     """Vertices, triangles turned outward, and a pseudonormal for every face, edge and vertex.
 
-    The sign of the distance to the nearest surface point is that of the scalar product with the
-    pseudonormal of the feature (face, edge or vertex) on which that point lies: a face's normal,
-    the sum of an edge's two face normals, or a vertex's face normals weighted by their angles
-    (Bærentzen and Aanæs 2005, 10.1109/TVCG.2005.49, theorem 1).
+    The distance to the nearest surface point has the sign of the scalar product with the
+    pseudonormal of its feature (face, edge or vertex): a face's normal, the sum of an edge's two
+    face normals, or a vertex's face normals weighted by their angles (Bærentzen and Aanæs 2005,
+    10.1109/TVCG.2005.49, theorem 1).
     """
 
     def __init__(self, vertices: np.ndarray, triangles: np.ndarray) -> None:
         """Take (n, 3) float vertices and (m, 3) int triangles; equal vertices become one."""
-        vertices, triangles = _checked(vertices, triangles)
+        vertices, index = np.unique(vertices, axis=0, return_inverse=True)
+        triangles = index.reshape(-1)[triangles]
+        a, b, c = triangles.T
+        triangles = triangles[(a != b) & (b != c) & (c != a)]
         neighbors = _neighbors(triangles, len(vertices))
         a, b, c = vertices[triangles].swapaxes(0, 1)
         if np.einsum("ij,ij->", a, np.cross(b, c)) < 0.0:
@@ -51,8 +51,14 @@ class ClosedSurface:
         self.vertices = vertices
         self.triangles = triangles
         self._corners = vertices[triangles]
-        faces = _face_normals(self._corners, neighbors)
         u = np.roll(self._corners, -1, axis=1) - self._corners
+        faces = np.cross(u[:, 0], u[:, 1])
+        sizes = np.linalg.norm(faces, axis=1)
+        # A triangle without area takes the normals of its neighbors.
+        flat = sizes <= _FLAT * np.square(u).sum(axis=(1, 2))
+        faces /= np.where(flat, 1.0, sizes)[:, None]
+        faces[flat] = 0.0
+        faces[flat] = faces[neighbors[flat]].sum(axis=1)
         v = np.roll(self._corners, 1, axis=1) - self._corners
         sines = np.linalg.norm(np.cross(u, v), axis=2)
         angles = np.arctan2(sines, np.einsum("ijk,ijk->ij", u, v))
@@ -72,19 +78,6 @@ class ClosedSurface:
 
     def pseudonormal(self, triangle: int, point: np.ndarray) -> list[float]:
         """Return the outward direction (3 floats, not of unit length) at a point of a triangle."""
-        return self._normals[triangle, self._feature(triangle, point)].tolist()
-
-    def crossing(self, triangle: int, start: Vector, end: Vector) -> tuple[Vector, Vector]:
-        """Return where a segment goes through a triangle, and the outward normal there."""
-        normal = self._normals[triangle, 0]
-        corner = self._corners[triangle, 0]
-        before, behind = (float(normal @ (np.array(point) - corner)) for point in (start, end))
-        share = before / (before - behind) if before != behind else 0.0
-        point = vector(a + share * (b - a) for a, b in zip(start, end, strict=True))
-        return point, vector(normal.tolist())
-
-    def _feature(self, triangle: int, point: np.ndarray) -> int:
-        """Return the row of the face, edge or vertex on which the point lies."""
         (ax, ay, az), (bx, by, bz), (cx, cy, cz) = self._corners[triangle].tolist()
         px, py, pz = point.tolist()
         ux, uy, uz = bx - ax, by - ay, bz - az
@@ -101,27 +94,21 @@ class ClosedSurface:
         at_1, at_2 = vv * wu - uv * wv, uu * wv - uv * wu
         at_0 = area - at_1 - at_2
         if at_2 < small:
-            return 5 if at_0 < small else 4 if at_1 < small else 1
-        if at_0 < small:
-            return 6 if at_1 < small else 2
-        return 3 if at_1 < small else 0
+            feature = 5 if at_0 < small else 4 if at_1 < small else 1
+        elif at_0 < small:
+            feature = 6 if at_1 < small else 2
+        else:
+            feature = 3 if at_1 < small else 0
+        return self._normals[triangle, feature].tolist()
 
-
-def _checked(vertices: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    vertices = np.array(vertices, dtype=float)
-    triangles = np.array(triangles)
-    if vertices.ndim != 2 or vertices.shape[1] != 3 or not np.isfinite(vertices).all():
-        raise InputError("The head's vertices should be an (n, 3) array of finite numbers.")
-    if not np.issubdtype(triangles.dtype, np.integer):
-        raise InputError("The head's triangles should be whole numbers: rows of its vertices.")
-    if triangles.ndim != 2 or triangles.shape[1] != 3 or len(triangles) < 4:
-        raise InputError("The head's triangles should be an (m, 3) array of at least four rows.")
-    if triangles.min() < 0 or triangles.max() >= len(vertices):
-        raise InputError("The head's triangles should name vertices by their rows, from 0.")
-    vertices, index = np.unique(vertices, axis=0, return_inverse=True)
-    triangles = index.reshape(-1)[triangles.astype(np.int64)]
-    a, b, c = triangles.T
-    return vertices, triangles[(a != b) & (b != c) & (c != a)]
+    def crossing(self, triangle: int, start: Vector, end: Vector) -> tuple[Vector, Vector]:
+        """Return where a segment goes through a triangle, and the outward normal there."""
+        normal = self._normals[triangle, 0]
+        corner = self._corners[triangle, 0]
+        before, behind = (float(normal @ (np.array(point) - corner)) for point in (start, end))
+        share = before / (before - behind) if before != behind else 0.0
+        point = vector(a + share * (b - a) for a, b in zip(start, end, strict=True))
+        return point, vector(normal.tolist())
 
 
 def _neighbors(triangles: np.ndarray, vertex_count: int) -> np.ndarray:
@@ -139,18 +126,6 @@ def _neighbors(triangles: np.ndarray, vertex_count: int) -> np.ndarray:
             f"the same way; {open_edges or 'some'} edges are not."
         )
     return (twins // 3).reshape(-1, 3)
-
-
-def _face_normals(corners: np.ndarray, neighbors: np.ndarray) -> np.ndarray:
-    """Return unit normals (m, 3); a triangle without area takes those of its neighbors."""
-    sides = np.roll(corners, -1, axis=1) - corners
-    normals = np.cross(sides[:, 0], sides[:, 1])
-    sizes = np.linalg.norm(normals, axis=1)
-    flat = sizes <= _FLAT * np.square(sides).sum(axis=(1, 2))
-    normals /= np.where(flat, 1.0, sizes)[:, None]
-    normals[flat] = 0.0
-    normals[flat] = normals[neighbors[flat]].sum(axis=1)
-    return normals
 
 
 _REQUEST = fcl.DistanceRequest(enable_nearest_points=True)
@@ -172,13 +147,16 @@ def thin_segment(start: np.ndarray, end: np.ndarray) -> fcl.CollisionObject:
 class HeadSurface:
     """The head as a bounding volume hierarchy of its triangles, and as a closed surface.
 
-    fcl gives the exact distance without sign; the sign is that of the pseudonormal at the nearest
-    point. All lengths in m, all points in the head's frame.
+    fcl gives the exact distance without sign; the pseudonormal at the nearest point gives the sign.
+    All lengths in m, all points in the head's frame.
     """
 
     def __init__(self, vertices: np.ndarray, triangles: np.ndarray) -> None:
         """Take (n, 3) float vertices and (m, 3) int triangles; the last surface is cached."""
-        self._surface, mesh = _shapes(_Numbers(vertices), _Numbers(triangles))
+        self._surface, mesh = _shapes(
+            np.asarray(vertices, dtype=float).tobytes(),
+            np.asarray(triangles, dtype=np.int64).tobytes(),
+        )
         vertices = self._surface.vertices
         base = vertices[vertices[:, 2] <= vertices[:, 2].min() + _BASE_THICKNESS]
         self.base = (base.min(axis=0) + base.max(axis=0)) / 2.0
@@ -251,24 +229,12 @@ class HeadSurface:
         return Nearest(distance - radius, foot, normal, triangle)
 
 
-class _Numbers:
-    """An array that equals another where all its numbers do."""
-
-    def __init__(self, array: np.ndarray) -> None:
-        self.array = np.array(array)
-        self._content = (self.array.shape, self.array.dtype.str, self.array.tobytes())
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Numbers) and self._content == other._content
-
-    def __hash__(self) -> int:
-        return hash(self._content)
-
-
 @lru_cache(maxsize=1)
-def _shapes(vertices: _Numbers, triangles: _Numbers) -> tuple[ClosedSurface, fcl.BVHModel]:
+def _shapes(vertices: bytes, triangles: bytes) -> tuple[ClosedSurface, fcl.BVHModel]:
     """Return what takes half a second to build; it is read only, so that all may share it."""
-    surface = ClosedSurface(vertices.array, triangles.array)
+    surface = ClosedSurface(
+        np.frombuffer(vertices).reshape(-1, 3), np.frombuffer(triangles, np.int64).reshape(-1, 3)
+    )
     mesh = fcl.BVHModel()
     mesh.beginModel(len(surface.triangles), len(surface.vertices))
     mesh.addSubModel(surface.vertices, surface.triangles)

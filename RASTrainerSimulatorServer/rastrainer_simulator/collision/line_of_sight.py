@@ -18,12 +18,8 @@ def sight_clearances(
 ) -> np.ndarray:
     """Return how far m lines of sight pass n capsules, (m, n) float, m; below zero: covered.
 
-    The nearest points of two segments as in `vectors.segment_distance`, for all pairs at once.
-
-    Args:
-        eyes, places: (m, 3) float, where the lines begin and end.
-        ends: (n, 2, 3) float, of the capsules' axes.
-        radii: (n,) float, of the capsules.
+    Lines begin at `eyes` and end at `places`, (m, 3) float each; `ends` (n, 2, 3) and `radii` (n,)
+    are the capsules'. It is `vectors.segment_distance` for all pairs at once.
     """
     starts, axes = ends[:, 0], ends[:, 1] - ends[:, 0]
     lines = places - eyes

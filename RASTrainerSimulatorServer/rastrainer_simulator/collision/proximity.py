@@ -1,10 +1,11 @@
 """Free, in proximity or in contact, and how deep the commanded motion has gone into the head.
 
 The head is rigid: a pressed tip rests on the skin and slides, however hard it is pushed. The depth
-is that of a god object in haptic rendering (Zilles and Salisbury 1995, 10.1109/IROS.1995.525876):
-the tool that is shown stays on the surface while the hand moves on beneath it, and their distance
-is the penetration. A joystick and a jog command velocities, not positions, so the displacement
-commanded into the skin is summed up tick by tick; a move cannot get deeper than its end.
+is defined as for a god object in haptic rendering (Zilles and Salisbury 1995,
+10.1109/IROS.1995.525876): the visible tool stays on the surface while the hand moves on beneath it,
+and their distance is the penetration. A joystick and a jog command velocities, not positions, so
+the displacement commanded into the skin is summed up tick by tick; a move cannot get deeper than
+its end.
 
 The depth is only measured: it does not influence the motion.
 """
@@ -26,11 +27,8 @@ from rastrainer_simulator.vectors import Vector, dot, subtract
 class ProximitySettings:
     """Where the states start and end, in m; with hysteresis, so that none flickers.
 
-    Attributes:
-        near: radius of the sphere about the tip within which the head is in proximity.
-        far: clearance of the tip at which proximity ends.
-        touching: clearance of tip or shaft at which contact starts.
-        released: clearance of the whole tool at which contact ends.
+    Proximity starts at the clearance `near` of the tip and ends at `far`; contact starts at the
+    clearance `touching` of the whole tool and ends at `released`.
     """
 
     near: Setting = NEAR_MM / MM_PER_M
@@ -57,12 +55,7 @@ DEEPEST = 0.010
 
 
 class Pressing:
-    """The virtual depth of the tool in the head, all lengths in m.
-
-    Attributes:
-        depth: now; 0 without contact.
-        deepest: greatest of the contact that lasts, or of the last one.
-    """
+    """The virtual depth of the tool in the head, m, and the deepest of the last contact."""
 
     def __init__(self) -> None:
         self.depth = 0.0
@@ -82,8 +75,8 @@ class Pressing:
     ) -> None:
         """Note a tick at whose end the tool is in contact.
 
-        The displacements are those of the tip, World. Of the clearance, the part of the tool that
-        is nearer to the head counts; `to_goal` leads from the tip to the end of a commanded move.
+        The displacements are of the tip, World. The part of the tool that is nearer to the head
+        counts; `to_goal` leads from the tip to the end of a commanded move.
         """
         if not self._is_in_contact:
             self._is_in_contact, self.deepest = True, 0.0

@@ -13,7 +13,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.transforms import apply, rigid
 from rastrainer_simulator.robot.meshes import load_meshes
-from rastrainer_simulator.robot.model import RobotLink, RobotModel
+from rastrainer_simulator.robot.model import RobotLink, RobotModel, read_prepared
 from rastrainer_simulator.vectors import Vector
 
 _LONG = 1.35  # A solid longer than this times its width gets a capsule for each half.
@@ -155,6 +155,25 @@ class RobotShape:
     tip_name: str
 
 
+def load_shape(model: RobotModel) -> RobotShape:
+    """Return the prepared shape of the robot, computed anew where its meshes are replaced."""
+    if any(part.replaced for part in model.meshes):
+        return robot_shape(model)
+    prepared = read_prepared()["shape"]
+    tool, *links = (
+        LinkShape(
+            body["name"],
+            body["joint"],
+            tuple(
+                Capsule(np.array(each["start"]), np.array(each["end"]), each["radius"])
+                for each in body["capsules"]
+            ),
+        )
+        for body in (prepared["tool"], *prepared["links"])
+    )
+    return RobotShape(tuple(links), tool, prepared["tip_name"])
+
+
 def robot_shape(model: RobotModel) -> RobotShape:
     """Return the capsules that cover the collision meshes of a robot.
 
@@ -186,10 +205,7 @@ def robot_shape(model: RobotModel) -> RobotShape:
 
 
 def _rounded(capsules: tuple[Capsule, ...]) -> tuple[Capsule, ...]:
-    """Return the capsules in whole nanometers: the same ones on every machine.
-
-    Rounding a small negative number gives -0.0, which becomes 0.0.
-    """
+    """Return the capsules in whole nanometers, the same on every machine, without -0.0."""
     return tuple(
         Capsule(
             capsule.start.round(_DECIMALS) + 0.0,
@@ -207,15 +223,13 @@ def _points(parts: list[Mesh], spacing: float) -> np.ndarray:
 def _tool_capsules(model: RobotModel, tool: RobotLink, parts: list[Mesh]) -> tuple[Capsule, ...]:
     """Return the capsules, in the tip's frame, of a tool whose mesh is in its link's frame."""
     # The pose, in the tip's frame, of a frame there whose z runs up the tool.
-    up = -model.geometry.tip_rotation[2]
-    x = np.cross(np.eye(3)[np.abs(up).argmin()], up)
-    x /= np.linalg.norm(x)
-    shaft_to_tip = rigid(np.column_stack([x, np.cross(up, x), up]), np.zeros(3))
+    up = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
+    shaft_to_tip = rigid(up, np.zeros(3))
     if parts:
         tool_to_shaft = np.linalg.inv(model.tip.offset @ shaft_to_tip) @ tool.offset
         capsules = capsules_along(apply(tool_to_shaft, _points(parts, _TOOL_SPACING)), SHAFT_START)
     else:
-        ends = np.outer((SHAFT_START, model.geometry.tool), (0.0, 0.0, 1.0))
+        ends = np.outer((SHAFT_START, model.arm.tool), (0.0, 0.0, 1.0))
         capsules = (Capsule(ends[0], ends[1], _ROD_RADIUS),)
     moved = []
     for capsule in capsules:
@@ -278,7 +292,7 @@ def _slenderest_cuts(profile: np.ndarray, start: float, count: int) -> list[int]
 
 
 class PosedArm(NamedTuple):
-    """The arm's n capsules in World, m; the rows are those of `ArmCapsules`."""
+    """The arm's n capsules in World, m, in the rows of `ArmCapsules`."""
 
     poses: np.ndarray  # (links + 1, 4, 4) float: LinkToWorld of each link, ToolTipToWorld last
     ends: np.ndarray  # (n, 2, 3) float: start and end of each axis
@@ -291,7 +305,7 @@ class PosedArm(NamedTuple):
 
 
 class ArmCapsules:
-    """The capsules of a robot in one row: those of the links, from the base, then the tool's."""
+    """The capsules of a robot in one row: the links' capsules from the base on, then the tool's."""
 
     def __init__(self, shape: RobotShape) -> None:
         bodies = (*shape.links, shape.tool)

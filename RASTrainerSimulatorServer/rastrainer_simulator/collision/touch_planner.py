@@ -94,76 +94,56 @@ _LEANINGS = ((LEANING_DEG[0], 0.0), *product(LEANING_DEG[1:], _AZIMUTHS))
 """How far each direction leans, degrees, and to which side, rad."""
 
 SWIVELS_DEG = (0.0, 60.0, -60.0)
-"""Turns of the first joint, undone by the third, from which the elbow's place is looked for."""
+"""Turns of the first joint, undone by the third, from which the elbow is searched."""
 
 
 @dataclass(frozen=True)
 class PlannedTouch:
-    """A planned touch of a point: the joint angles, rad, and how the tool is held.
+    """A planned touch of a point: joint angles, rad, and the tool's direction (3,), World.
 
-    Attributes:
-        direction: (3,) float, of the tool, from the wrist to the tip, World.
-        leaning_deg: between the direction and the inward normal.
+    It leans from the inward normal, and has a number among the `tool_directions`.
     """
 
     q: tuple[float, ...]
     direction: np.ndarray
     leaning_deg: float
+    number: int
 
 
 class TouchPlanner:
     """Looks for a posture that touches a place with nothing but the tip, inside the joint limits.
 
-    Args:
-        clearance: of the links to the head, to each other and to the table, m. The tool's shaft
-            need only be clear of the head: next to the tip it cannot be farther away.
+    The links keep `CLEARANCE_M`. The tool's shaft need only be clear of the head: next to the tip
+    it cannot be farther away.
     """
 
-    def __init__(self, model: RobotModel, collision: Collision, clearance: float = 0.005) -> None:
+    def __init__(self, model: RobotModel, collision: Collision) -> None:
         self._collision = collision
-        self._clearance = clearance
         self._kinematics = make_kinematics(model)
         # No later pass can hold a goal that the first cannot: it would only approach it.
         self._fabrik = Fabrik(model, FabrikSettings(max_iterations=1))
         turns = np.outer(np.radians(SWIVELS_DEG), (1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0))
         self._starts = [tuple(q) for q in (np.array(model.home) + turns).tolist()]
 
-    def touch(self, position: np.ndarray, normal: np.ndarray) -> PlannedTouch | None:
+    def touch(
+        self, position: np.ndarray, normal: np.ndarray, likely: int = 0
+    ) -> PlannedTouch | None:
         """Return a touch of a point of the skin, None if there is none.
 
-        The least leaning of `LEANING_DEG` that works is taken. Position (m) and outward unit
-        normal there are (3,) float, World.
-        """
-        for leaning_deg, direction in tool_directions(normal):
-            q = self._posture(position, direction)
-            if q is not None:
-                return PlannedTouch(q, direction, leaning_deg)
-        return None
-
-    def working_direction(
-        self, position: np.ndarray, normal: np.ndarray, likely: int = 0
-    ) -> int | None:
-        """Return which of the `tool_directions` works, None where `touch` finds none either.
-
-        The `likely` one is tried first: a choice for one pose of the head mostly fits others, too,
-        which saves many tries.
+        The least leaning of `LEANING_DEG` that works is taken, unless the `likely` one of the
+        `tool_directions` does: a choice for one pose of the head mostly fits others, too, which
+        saves many tries. Position (m) and outward unit normal there are (3,) float, World.
         """
         frame = frame_along(normal)
-        numbers = range(len(_LEANINGS))
-        for number in (likely, *(each for each in numbers if each != likely)):
-            if self._posture(position, _leaning(frame, number)) is not None:
-                return number
-        return None
-
-    def _posture(self, position: np.ndarray, direction: np.ndarray) -> tuple[float, ...] | None:
-        """Return joint angles that touch along a direction; None where there is no room."""
-        for start in self._starts:
-            solution = self._fabrik.solve(position.tolist(), direction.tolist(), q_start=start)
-            if not solution.converged:
-                return None
-            links = self._kinematics.links(solution.q)
-            if self._collision.is_clear(links, self._clearance):
-                return solution.q
+        for number in (likely, *(each for each in range(len(_LEANINGS)) if each != likely)):
+            direction = _leaning(frame, number)
+            for start in self._starts:
+                solution = self._fabrik.solve(position.tolist(), direction.tolist(), q_start=start)
+                if not solution.converged:
+                    break
+                links = self._kinematics.links(solution.q)
+                if self._collision.is_clear(links, CLEARANCE_M):
+                    return PlannedTouch(solution.q, direction, _LEANINGS[number][0], number)
         return None
 
 

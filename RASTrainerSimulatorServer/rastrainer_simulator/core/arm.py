@@ -1,23 +1,17 @@
-"""The arm in a simulation: its posture, how its joints follow the tip, and where trials start."""
+"""The arm in a simulation: how its joints follow the tip, and where trials start."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.collision.clearance import Clearance
-from rastrainer_simulator.collision.contact import Moved
 from rastrainer_simulator.robot.fabrik import Fabrik
 from rastrainer_simulator.robot.goal import FabrikSettings
 from rastrainer_simulator.robot.model import RobotModel
-from rastrainer_simulator.teleoperation.steering import Axes, NearestSurface
-from rastrainer_simulator.teleoperation.teleoperation import Tip
 from rastrainer_simulator.vectors import Vector, add, cross, length, scale
 
 Joints = tuple[float, ...]
@@ -25,64 +19,6 @@ Joints = tuple[float, ...]
 DOWN: Vector = (0.0, 0.0, -1.0)
 RELAXING_DISTANCE = 0.4
 """m: over such a path of the tip the arm's redundancy relaxes by the factor e."""
-
-
-@dataclass(frozen=True)
-class Posture:
-    """Where the arm is.
-
-    Attributes:
-        q: seven joint angles, rad.
-        links: LinkToWorld of links 0 to 7, (4, 4) float, m.
-        tool_tip_to_world: (4, 4) float, m.
-    """
-
-    q: tuple[float, ...]
-    links: tuple[np.ndarray, ...]
-    tool_tip_to_world: np.ndarray
-    tip: Tip
-    clearance: Clearance
-
-    @property
-    def tool_axes(self) -> Axes:
-        x, y, z, _ = self.tool_tip_to_world.T.tolist()
-        return Axes(tuple(x[:3]), tuple(y[:3]), tuple(z[:3]))
-
-    @property
-    def surface(self) -> NearestSurface:
-        """The head as the tool sees it."""
-        tip = self.clearance.tip
-        # A shaft that is far is no nearer than the tip, and then the tip alone counts.
-        shaft = self.clearance.shaft or tip
-        return NearestSurface(tip.distance_m, tip.normal, shaft.distance_m, shaft.normal)
-
-
-def moving_links(robot: RobotModel) -> tuple[str, ...]:
-    """Return the names of links 0 to 7: the base, and the first link behind each joint."""
-    first_behind: dict[int, str] = {}
-    for link in robot.links:
-        first_behind.setdefault(link.joint, link.name)
-    return tuple(first_behind[joint] for joint in sorted(first_behind))
-
-
-class Postures:
-    """Makes postures from the results of `Contact`."""
-
-    def __init__(self, robot: RobotModel) -> None:
-        self._tip = robot.tip.name
-        self._links = moving_links(robot)
-
-    def of(self, moved: Moved) -> Posture:
-        poses = moved.link_to_world
-        tip = poses[self._tip]
-        (ax, _, dx, x), (ay, _, dy, y), (az, _, dz, z), _ = tip.tolist()
-        return Posture(
-            q=moved.q,
-            links=tuple(poses[name] for name in self._links),
-            tool_tip_to_world=tip,
-            tip=Tip((x, y, z), (dx, dy, dz), (ax, ay, az)),
-            clearance=moved.clearance,
-        )
 
 
 class JointMotion:
@@ -126,19 +62,16 @@ class JointMotion:
         else:
             rotation = tuple(zip(across, cross(direction, across), direction, strict=True))
             solution = self._fabrik.solve(target, None, rotation, q_start=near)
-        step = limit_step(start, solution.q, self._fastest, dt)
-        if direction is None or (solution.converged and not step.limited):
-            return step.q, solution.converged
-        share = _share(start, step.q, solution.q) if step.limited else 1.0
-        on_path = add(tip, scale(displacement, share))
-        found = self._fabrik.solve(on_path, q_start=step.q)
-        return limit_step(start, found.q, self._fastest, dt).q, found.converged
-
-
-def _share(start: Joints, part: Joints, whole: Joints) -> float:
-    angles = [(abs(b - a), abs(c - a)) for a, b, c in zip(start, part, whole, strict=True)]
-    made, needed = max(angles, key=lambda pair: pair[1])
-    return made / needed
+        q, is_limited = limit_step(start, solution.q, self._fastest, dt)
+        if direction is None or (solution.converged and not is_limited):
+            return q, solution.converged
+        share = 1.0
+        if is_limited:
+            turns = [(abs(b - a), abs(c - a)) for a, b, c in zip(start, q, solution.q, strict=True)]
+            made, needed = max(turns, key=lambda pair: pair[1])
+            share = made / needed
+        found = self._fabrik.solve(add(tip, scale(displacement, share)), q_start=q)
+        return limit_step(start, found.q, self._fastest, dt)[0], found.converged
 
 
 def start_joints(robot: RobotModel, scenario: Scenario, height: float) -> tuple[float, ...]:
@@ -159,22 +92,15 @@ def start_tip(scenario: Scenario, height: float) -> Vector:
     return x, y, z + height
 
 
-class LimitedStep(NamedTuple):
-    """Joint angles (rad) for this tick, and whether the goal had to wait."""
-
-    q: tuple[float, ...]
-    limited: bool
-
-
 def limit_step(
     q: Sequence[float], goal: Sequence[float], velocity: Sequence[float], dt: float
-) -> LimitedStep:
-    """Return the step from `q` toward `goal` (rad) within `velocity` (rad/s) for a tick of `dt` s.
+) -> tuple[Joints, bool]:
+    """Return `q` after a tick of `dt` s toward `goal` (rad), and whether `velocity` limited it.
 
-    All joints are slowed alike, so they arrive together and each keeps between its start and goal.
+    All joints are slowed alike, so they arrive together and each stays between start and goal.
     """
     steps = [b - a for a, b in zip(q, goal, strict=True)]
     slowest = max([abs(step) / (speed * dt) for step, speed in zip(steps, velocity, strict=True)])
     if slowest <= 1.0:
-        return LimitedStep(tuple(goal), False)
-    return LimitedStep(tuple([a + step / slowest for a, step in zip(q, steps, strict=True)]), True)
+        return tuple(goal), False
+    return tuple([a + step / slowest for a, step in zip(q, steps, strict=True)]), True

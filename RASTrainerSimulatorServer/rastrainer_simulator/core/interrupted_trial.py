@@ -63,7 +63,11 @@ class RecordedFeed:
         self._stage = Phase.RUNNING
 
     def before(self, effect: Mapping[str, Any]) -> Feed:
-        ahead = _ahead(effect) or self._ahead
+        """Return the feed with which a command had an effect."""
+        ahead = self._ahead
+        if "ahead" in effect:
+            found = (effect["ahead"][name] for name in ("skinMm", "outerMm", "innerMm"))
+            ahead = HeadAhead(*(None if each is None else meters(each) for each in found))
         drilled = meters(effect.get("drilledMm", 0.0))
         return Feed(meters(effect.get("feedMm", 0.0)), drilled, ahead)
 
@@ -74,25 +78,11 @@ class RecordedFeed:
             drilled = max(self.feed.drilled, deepest)
             self.feed = replace(self.feed, depth=depth, drilled=drilled)
         elif entry["kind"] == "phase" and "procedure" in entry:
-            self._enter(entry, Phase(entry["procedure"]["stage"]))
-
-    def _enter(self, entry: Mapping[str, Any], stage: Phase) -> None:
-        is_exchanged = self._stage is Phase.DRILLING and stage is Phase.INSERTING
-        feed = self.before(entry)
-        self._stage, self._ahead = stage, feed.ahead
-        if stage not in FEED_PHASES:
-            self.feed = NO_FEED
-        else:
-            self.feed = replace(feed, depth=0.0) if is_exchanged else feed
-
-
-def _ahead(effect: Mapping[str, Any]) -> HeadAhead | None:
-    """Return what lay ahead of the guide when it was locked; None of any other effect."""
-    if "ahead" not in effect:
-        return None
-    found = effect["ahead"]
-    names = ("skinMm", "outerMm", "innerMm")
-    return HeadAhead(*(None if found[name] is None else meters(found[name]) for name in names))
+            stage, feed = Phase(entry["procedure"]["stage"]), self.before(entry)
+            if self._stage is Phase.DRILLING and stage is Phase.INSERTING:
+                feed = replace(feed, depth=0.0)  # The drill was exchanged for the electrode.
+            self._stage, self._ahead = stage, feed.ahead
+            self.feed = feed if stage in FEED_PHASES else NO_FEED
 
 
 def meters(value_mm: float) -> float:
@@ -112,7 +102,7 @@ _EFFECTS: Mapping[str, frozenset[str]] = {
 
 @dataclass(frozen=True)
 class InterruptedTrial:
-    """Where a trial is to be resumed, by what was recorded last.
+    """The point at which a trial resumes, by its last records.
 
     `steps` are the commands that were carried out, each with its moment; the last one pauses.
     `q` are joint angles in rad, None before the first sample.
@@ -142,11 +132,13 @@ class InterruptedTrial:
         last = max(entries, key=lambda entry: entry["tick"])
         steps.append((OperatorCommand(INTERRUPTED), TouchMoment(last["simTimeS"], ZERO, 0.0)))
         latest = {entry["kind"]: entry for entry in entries}
+        cameras = [each["camera"] for each in entries if each["kind"] in ("camera", "continued")]
+        camera = cameras[-1] if cameras else header["before"]["camera"]
         reach = latest.get("reach", {"isWithinReach": True, "obstacle": ""})
         return cls(
             revision_before=header["before"]["revision"],
             steps=tuple(steps),
-            point=StartingPoint(last["tick"], last["simTimeS"], camera=_camera(entries)),
+            point=StartingPoint(last["tick"], last["simTimeS"], camera=camera),
             q=tuple(map(float, latest["sample"]["q"])) if "sample" in latest else None,
             proximity=Proximity(latest["proximity"]["to"] if "proximity" in latest else "free"),
             is_within_reach=reach["isWithinReach"],
@@ -158,8 +150,7 @@ class InterruptedTrial:
 def find_interrupted(folder: Path) -> tuple[JournalReading, InterruptedTrial] | None:
     """Return the journal of the newest trial in a folder, and where to resume it.
 
-    None if that trial was registered or aborted: anyone who has started another trial has left an
-    older one behind.
+    None if that trial was registered or aborted; older trials are not looked at.
     """
     path = newest_journal(folder)
     if path is None or path.stat().st_size == 0:
@@ -210,15 +201,8 @@ def _steps(
                 moment = TouchMoment(
                     sim_time=entry["simTimeS"] - tick_s,
                     tip=vector(map(meters, effect.get("positionMm", ZERO))),
-                    # Older journals lack it: then every height counted.
                     tip_clearance=float(effect.get("clearanceMm", 0.0)) / MM_PER_M,
                     direction=vector(effect.get("direction", ZERO)),
                     feed=recorded.before(effect),
                 )
                 yield recorded_command(entry, seed_of(entries[0])), moment
-
-
-def _camera(entries: Sequence[Mapping[str, Any]]) -> str | None:
-    """Return the view that was chosen last."""
-    chosen = [e["camera"] for e in entries if e["kind"] in ("camera", "continued")]
-    return chosen[-1] if chosen else entries[0]["before"]["camera"]

@@ -1,4 +1,4 @@
-"""What a procedure does beside the arm: what lies ahead of the guide, what is fed, alignment."""
+"""A procedure besides the arm: the head ahead of the guide, the feed, and self-alignment."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.procedure.checks import planned_bone
 from rastrainer.procedure.geometry import BoneAhead, bone_ahead, mesh_crossings
 from rastrainer.protocol import Phase
-from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.setup import SimulationSetup
@@ -38,40 +37,8 @@ from rastrainer_simulator.vectors import (
 BEHIND_MM = 1.0
 """A tip that rests on the skin may be a little within it: the search begins this far behind it."""
 
-
 PlannedBone = Mapping[str, tuple[BoneAhead | None, ...]]
 """Where the planned lines of each procedure go through bone, mm from the entry."""
-
-
-class TrueHead:
-    """The surfaces of skin and skull of a scenario with procedures."""
-
-    def __init__(self, scenario: Scenario, skin: HeadMesh) -> None:
-        self._skin, self._skull = skin, read_head_mesh(scenario.skull_path)
-        # Computed now, not in the tick in which the first guide is locked.
-        _ = skin.triangle_spheres, self._skull.triangle_spheres
-        self.planned_bone: PlannedBone = {
-            each.name: tuple(planned_bone(line, self._skull) for line in each.trajectories)
-            for each in scenario.procedures
-        }
-
-    def ahead(self, guide: GuideAxis, head_to_world: np.ndarray) -> HeadAhead:
-        """Return what lies ahead along a guide's axis, with the head at (4, 4) float, m."""
-        rotation, shift = head_to_world[:3, :3], head_to_world[:3, 3]
-        axis = rotation.T @ np.array(guide.direction)
-        tip_mm = MM_PER_M * (rotation.T @ (np.array(guide.tip) - shift))
-        line = tip_mm - BEHIND_MM * axis, axis, MM_PER_M * LONGEST_FEED_M + BEHIND_MM
-        crossings = mesh_crossings(self._skin, *line)
-        bone = bone_ahead(self._skull, *line)
-        return HeadAhead(
-            skin=_from_tip(crossings[0].distance_mm) if crossings else None,
-            outer=None if bone is None else _from_tip(bone.outer_mm),
-            inner=None if bone is None or bone.inner_mm is None else _from_tip(bone.inner_mm),
-        )
-
-
-def _from_tip(distance_mm: float) -> float:
-    return max(0.0, distance_mm - BEHIND_MM) / MM_PER_M
 
 
 FEED_PHASES = (Phase.DRILLING, Phase.INSERTING)
@@ -79,7 +46,7 @@ FEED_PHASES = (Phase.DRILLING, Phase.INSERTING)
 
 
 class Fed(NamedTuple):
-    """What a tick did to the instrument in the guide."""
+    """The effect of a tick on the instrument in the guide."""
 
     has_moved: bool = False
     is_by_stick: bool = False
@@ -99,12 +66,15 @@ class ProcedureMotion:
         self._may_align = settings.procedure.self_alignment
         self._reach = reach
         self.drive = FeedDrive(settings.procedure, settings.teleoperation.response)
-        self._true_head: TrueHead | None = None
-        self._outline: HeadOutline | None = None
         self.planned_bone: PlannedBone = {}
         if scenario.procedures:
-            self._true_head = TrueHead(scenario, head)
-            self.planned_bone = self._true_head.planned_bone
+            self._skin, self._skull = head, read_head_mesh(scenario.skull_path)
+            # Computed now, not in the tick in which the first guide is locked.
+            _ = head.triangle_spheres, self._skull.triangle_spheres
+            self.planned_bone = {
+                each.name: tuple(planned_bone(line, self._skull) for line in each.trajectories)
+                for each in scenario.procedures
+            }
             self._outline = HeadOutline(head.vertices, scenario.target.position_ras)
 
     def reset(self, feed: Feed = NO_FEED) -> None:
@@ -112,12 +82,27 @@ class ProcedureMotion:
         self.feed = feed
         self.drive.stop()
 
-    def looking_ahead(self, guide: GuideAxis, head_to_world: np.ndarray) -> Feed:
-        assert self._true_head is not None, "the phase has a procedure"
-        return Feed(ahead=self._true_head.ahead(guide, head_to_world))
+    def ahead(self, guide: GuideAxis, head_to_world: np.ndarray) -> HeadAhead:
+        """Return the distances to skin and bone along a guide's axis; all is in m."""
+        rotation, shift = head_to_world[:3, :3], head_to_world[:3, 3]
+        axis = rotation.T @ np.array(guide.direction)
+        tip_mm = MM_PER_M * (rotation.T @ (np.array(guide.tip) - shift))
+        line = tip_mm - BEHIND_MM * axis, axis, MM_PER_M * LONGEST_FEED_M + BEHIND_MM
+        crossings = mesh_crossings(self._skin, *line)
+        bone = bone_ahead(self._skull, *line)
+        distances_mm = (
+            crossings[0].distance_mm if crossings else None,
+            None if bone is None else bone.outer_mm,
+            None if bone is None else bone.inner_mm,
+        )
+        from_tip = (
+            None if distance_mm is None else max(0.0, distance_mm - BEHIND_MM) / MM_PER_M
+            for distance_mm in distances_mm
+        )
+        return HeadAhead(*from_tip)
 
     def step(self, dt: float, phase: Phase, operator_input: OperatorInput, sim_time: float) -> Fed:
-        """Feed for `dt` s in a phase, with an event where what is felt changes."""
+        """Feed for `dt` s in a phase; an event tells that the instrument meets another layer."""
         if phase not in FEED_PHASES:
             return NOT_FED
         before = self.feed
@@ -137,9 +122,9 @@ class ProcedureMotion:
     def way(
         self, guide: GuideAxis, procedure: ProcedureState | None, stand_off_mm: float
     ) -> FollowingPath | LocalizedText:
-        """Return the robot's own path onto the planned line, or why there is none.
+        """Return the robot's own path to `stand_off_mm` before a planned entry, or why it has none.
 
-        The line is by the registration in use; the tip ends `stand_off_mm` before its entry.
+        The line is the planned one by the registration in use.
         """
         if not self._may_align:
             return say("no self-alignment")
@@ -147,7 +132,6 @@ class ProcedureMotion:
         assert procedure is not None, "the phase has a procedure"
         assert procedure.registration is not None, "it is accepted"
         assert procedure.present is not None, "the phase has a trajectory"
-        assert outline is not None, "the scenario has a procedure"
         line, stand_off = procedure.present.line, stand_off_mm / MM_PER_M
         if not self._reach.judge_guide(line.entry, line.direction, [stand_off]).reachable:
             return say("line out of reach", stand_off=stand_off_mm)
@@ -168,7 +152,7 @@ APPROACH_SPEED = 0.03
 MARGIN = 0.03
 """How far the tip stays off the head on its path, m."""
 STEP = math.radians(10.0)
-"""Between two waypoints, seen from the middle of the head."""
+"""Angle between two waypoints, seen from the middle of the head."""
 _OUTWARD = 0.005
 
 HeadRadius = Callable[[Vector], float]
@@ -211,7 +195,7 @@ def _guide_path(
 
 
 _BANDS = 12
-"""Of latitude; there are twice as many sectors of longitude."""
+"""Bands of latitude; there are twice as many sectors of longitude."""
 
 
 class HeadOutline:
@@ -222,10 +206,13 @@ class HeadOutline:
         self.middle = middle
         out = vertices - middle
         radii = np.linalg.norm(out, axis=1)
-        bands, sectors = _sectors(out / radii[:, None])
+        x, y, z = (out / radii[:, None]).T
+        bands = (_BANDS * np.arccos(np.clip(z, -1.0, 1.0)) / np.pi).astype(int)
+        sectors = (_BANDS * (np.arctan2(y, x) + np.pi) / np.pi).astype(int)
         table = np.zeros((_BANDS, 2 * _BANDS))
-        np.maximum.at(table, (bands, sectors), radii)
-        # A direction may lie at the edge of its sector: the neighbors count, too.
+        rows = np.minimum(bands, _BANDS - 1), np.minimum(sectors, 2 * _BANDS - 1)
+        np.maximum.at(table, rows, radii)
+        # A direction may be at the edge of its sector: the neighbors count, too.
         wide = np.maximum.reduce([np.roll(table, turn, axis=1) for turn in (-1, 0, 1)])
         tall = np.pad(wide, ((1, 1), (0, 0)), mode="edge")
         # Whole millimeters: the same on every computer.
@@ -240,11 +227,3 @@ class HeadOutline:
         band = _BANDS * math.acos(min(max(z, -1.0), 1.0)) / math.pi
         sector = _BANDS * (math.atan2(y, x) + math.pi) / math.pi
         return self._radii[min(int(band), _BANDS - 1)][min(int(sector), 2 * _BANDS - 1)]
-
-
-def _sectors(directions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the band and the sector of unit vectors, (n,) int each."""
-    x, y, z = directions.T
-    bands = (_BANDS * np.arccos(np.clip(z, -1.0, 1.0)) / np.pi).astype(int)
-    sectors = (_BANDS * (np.arctan2(y, x) + np.pi) / np.pi).astype(int)
-    return np.minimum(bands, _BANDS - 1), np.minimum(sectors, 2 * _BANDS - 1)

@@ -1,131 +1,21 @@
-"""What a simulation is made from: the scenario, the robot and the settings.
-
-The packages that read URDF and meshes take a second to import and 90 MB. A prepared robot (its
-model and shape as JSON beside the URDF, exact to the last bit) is loaded without them.
-"""
+"""The scenario, the robot and the settings of a simulation."""
 
 from __future__ import annotations
 
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from rastrainer.errors import InputError
-from rastrainer.files.reading import read_json
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import FILE_NAME, Scenario, load_scenario
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.collision.robot_shape import Capsule, LinkShape, RobotShape, robot_shape
+from rastrainer_simulator.collision.robot_shape import RobotShape, load_shape
 from rastrainer_simulator.core.settings import SimulationSettings
-from rastrainer_simulator.robot.model import (
-    DEFAULT_URDF,
-    MeshPart,
-    RobotLink,
-    RobotModel,
-    load_robot,
-    make_model,
-    mesh_inside,
-)
-from rastrainer_simulator.robot.srs_arm import Joint
-
-PREPARED_NAME = "prepared.json"
-MAX_BYTES = 2**20
-
-
-def read_prepared(urdf: Path) -> Mapping[str, Any] | None:
-    """Return the prepared robot beside a URDF, None if there is none or it is out of date."""
-    try:
-        prepared = read_json(urdf.parent / PREPARED_NAME, MAX_BYTES)
-        return prepared if prepared["sha256"] == _fingerprint(urdf) else None
-    except (InputError, OSError, KeyError, TypeError):
-        return None
-
-
-def write_prepared(urdf: Path, model: Mapping[str, Any], shape: Mapping[str, Any]) -> None:
-    """Write the JSON of a robot's model and shape beside its URDF."""
-    prepared = {"sha256": _fingerprint(urdf), "model": model, "shape": shape}
-    text = json.dumps(prepared, indent=1, sort_keys=True) + "\n"
-    (urdf.parent / PREPARED_NAME).write_text(text, encoding="utf-8", newline="\n")
-
-
-def _fingerprint(urdf: Path) -> str:
-    """Return a hash of the URDF and of everything below its folder's `meshes/collision`."""
-    whole = hashlib.sha256(urdf.read_bytes())
-    for path in sorted((urdf.parent / "meshes" / "collision").glob("*")):
-        whole.update(path.name.encode() + hashlib.sha256(path.read_bytes()).digest())
-    return whole.hexdigest()
-
-
-def model_to_json(model: RobotModel, folder: Path) -> dict[str, Any]:
-    """Return a model as a JSON object; its mesh files are named from `folder` on."""
-    meshes = [asdict(part) | {"path": part.path.relative_to(folder)} for part in model.meshes]
-    return _plain(
-        {
-            "name": model.name,
-            "tip": model.tip.name,
-            "joints": [asdict(joint) for joint in model.joints],
-            "links": [asdict(link) for link in model.links],
-            "meshes": meshes,
-        }
-    )
-
-
-def model_from_json(value: Mapping[str, Any], folder: Path) -> RobotModel:
-    """Return the model that a JSON object holds; its mesh files are below `folder`."""
-    joints = tuple(Joint(**_arrays(joint, "origin", "axis")) for joint in value["joints"])
-    links = tuple(RobotLink(**_arrays(link, "offset")) for link in value["links"])
-    meshes = tuple(
-        MeshPart(
-            **_arrays(part, "origin")
-            | {"path": mesh_inside(folder, folder / part["path"], part["link"])}
-            | {name: tuple(part[name]) for name in ("scale", "color")}
-        )
-        for part in value["meshes"]
-    )
-    return make_model(value["name"], joints, links, value["tip"], meshes)
-
-
-def _plain(value: Any) -> Any:
-    """Return a value ready for JSON: arrays as lists, paths as text."""
-    if isinstance(value, dict):
-        return {name: _plain(part) for name, part in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(part) for part in value]
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    return value.as_posix() if isinstance(value, Path) else value
-
-
-def _arrays(value: Mapping[str, Any], *names: str) -> dict[str, Any]:
-    arrays = {name: np.array(value[name]) for name in names}
-    for array in arrays.values():
-        array.setflags(write=False)
-    return {**value, **arrays}
-
-
-def shape_to_json(shape: RobotShape) -> dict[str, Any]:
-    links = [asdict(link) for link in shape.links]
-    return _plain({"links": links, "tool": asdict(shape.tool), "tipName": shape.tip_name})
-
-
-def shape_from_json(value: Mapping[str, Any]) -> RobotShape:
-    """Return the shape that a JSON object holds."""
-    links = tuple(_link_from_json(link) for link in value["links"])
-    return RobotShape(links, _link_from_json(value["tool"]), value["tipName"])
-
-
-def _link_from_json(value: Mapping[str, Any]) -> LinkShape:
-    capsules = tuple(
-        Capsule(np.array(found["start"]), np.array(found["end"]), found["radius"])
-        for found in value["capsules"]
-    )
-    return LinkShape(value["name"], value["joint"], capsules)
-
+from rastrainer_simulator.robot.model import RobotModel, load_robot
 
 DEFAULT_SCENARIO = ("scenarios", "colin27")
 
@@ -148,7 +38,7 @@ class RecordedMethod:
 
 @dataclass(frozen=True)
 class RecordedSetup:
-    """What identifies a setup in the header of a journal."""
+    """Identifies a setup in the header of a journal."""
 
     scenario: RecordedContent
     robot: str
@@ -161,8 +51,8 @@ class RecordedSetup:
 class SimulationSetup:
     """Everything that a simulation starts from, besides its seed.
 
-    The hashes are of what a trial depends on, which identifies it in a journal; those of landmarks
-    and of procedures, by name, are of what such a trial depends on besides.
+    The hashes identify in a journal what a trial depends on; only trials by landmarks or with a
+    procedure depend on `landmarks_sha256` or `procedure_sha256` (by its name), too.
     """
 
     scenario: Scenario
@@ -176,7 +66,6 @@ class SimulationSetup:
     def recorded(
         self, procedure: str = "", method: RegistrationMethod = RegistrationMethod.FIDUCIALS
     ) -> RecordedSetup:
-        """Return what identifies this setup in the journal of a trial."""
         by_landmarks = method is not RegistrationMethod.FIDUCIALS
         return RecordedSetup(
             RecordedContent(self.scenario.name, self.scenario_sha256),
@@ -203,24 +92,15 @@ class SimulationSetup:
 def load_setup(
     scenario_folder: Path | None = None,
     settings: SimulationSettings | None = None,
-    urdf_path: Path | None = None,
     robot_meshes: Path | None = None,
 ) -> SimulationSetup:
     """Load a scenario and a robot; by default those that come with RASTrainer."""
-    folder = scenario_folder or asset_path(*DEFAULT_SCENARIO)
-    scenario = load_scenario(folder)
-    path = urdf_path or asset_path(*DEFAULT_URDF)
-    prepared = read_prepared(path) if robot_meshes is None else None
-    if prepared is None:
-        robot = load_robot(path, robot_meshes)
-        shape = robot_shape(robot)
-    else:
-        robot = model_from_json(prepared["model"], path.parent)
-        shape = shape_from_json(prepared["shape"])
+    scenario = load_scenario(scenario_folder or asset_path(*DEFAULT_SCENARIO))
+    robot = load_robot(robot_meshes)
     return SimulationSetup(
         scenario=scenario,
         robot=robot,
-        shape=shape,
+        shape=load_shape(robot),
         settings=settings or SimulationSettings(),
         scenario_sha256=scenario_sha256(scenario),
         landmarks_sha256=landmarks_sha256(scenario),
@@ -234,9 +114,8 @@ def load_setup(
 def scenario_sha256(scenario: Scenario) -> str:
     """Return one hash of what a trial of touches depends on: `scenario.json`, head and fiducials.
 
-    It excludes what may be added to a scenario with recorded trials: the volume, which the
-    simulator never reads, landmarks, skull and procedures. A trial with a procedure, or by
-    landmarks, has a hash of its own (`Procedure.sha256`, `landmarks_sha256`) in its journal.
+    It excludes the parts that may be added to a scenario with recorded trials: the volume, which
+    the simulator never reads, landmarks, skull and procedures.
     """
     left_out = ["volume", "skull", "procedures", "landmarks"]
     whole = hashlib.sha256()

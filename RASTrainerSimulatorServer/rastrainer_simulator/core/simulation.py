@@ -17,7 +17,7 @@ from rastrainer_simulator.collision.collision import head_collision, stand_pose
 from rastrainer_simulator.collision.contact import Contact, Moved
 from rastrainer_simulator.collision.proximity import Pressing, next_proximity
 from rastrainer_simulator.collision.touch_planner import PlanReach
-from rastrainer_simulator.core.arm import JointMotion, Joints, Postures, start_joints
+from rastrainer_simulator.core.arm import JointMotion, Joints, start_joints
 from rastrainer_simulator.core.procedure_motion import FEED_PHASES, ProcedureMotion
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.robot.kinematics import make_kinematics
@@ -38,8 +38,15 @@ from rastrainer_simulator.teleoperation.commanded_motion import (
     MotionOutcome,
     commanded_motion,
 )
-from rastrainer_simulator.teleoperation.steering import ChosenAxes
-from rastrainer_simulator.teleoperation.teleoperation import MotionRequest, Teleoperation
+from rastrainer_simulator.teleoperation.steering import (
+    ROBOT_AXES,
+    Axes,
+    AxesChoice,
+    NearestSurface,
+    axes_of,
+)
+from rastrainer_simulator.teleoperation.teleoperation import MotionRequest, Teleoperation, Tip
+from rastrainer_simulator.training.feed import Feed
 from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.training.replies import TrainingReply
 from rastrainer_simulator.training.rules import TouchMoment, refusal, touch_stage
@@ -58,8 +65,8 @@ class Simulation:
     """The robot, the head and the trial.
 
     `step` is deterministic: the same setup, seed and inputs give the same states to the last bit.
-    A trial always starts with the arm above the head and nothing left over from before: a replay
-    needs nothing but the trial's own inputs.
+    A trial always starts with the arm above the head, whatever came before: a replay needs only
+    the trial's own inputs.
     """
 
     def __init__(self, setup: SimulationSetup, seed: int) -> None:
@@ -67,7 +74,9 @@ class Simulation:
         settings = setup.settings
         self.setup = setup
         self._training = Training(setup.scenario, seed, settings.training, settings.procedure)
-        self._axes = ChosenAxes(setup.scenario.cameras, settings.camera, settings.axes)
+        self._camera = settings.camera
+        cameras = setup.scenario.cameras
+        self._camera_axes = {name: axes_of(camera) for name, camera in cameras.items()}
         self._planned_target: PlanInWorld | None = None
         self._teleoperation = Teleoperation(settings.teleoperation)
         head = read_head_mesh(setup.scenario.head)
@@ -79,7 +88,8 @@ class Simulation:
         self._plan_reach = PlanReach(setup.robot, kinematics, self._collision)
         self._procedure_motion = ProcedureMotion(setup, head, self._plan_reach)
         self.planned_bone = self._procedure_motion.planned_bone
-        self._postures = Postures(setup.robot)
+        self._tip_name = setup.robot.tip.name
+        self._link_names = tuple(link.name for link in setup.robot.moving_links)
         self._start = start_joints(setup.robot, setup.scenario, settings.start_height)
         self._joint_motion = JointMotion(setup.robot, self._start, settings.fabrik)
         self._put_in_place()
@@ -98,16 +108,15 @@ class Simulation:
     def restart_from(self, point: StartingPoint) -> None:
         """Continue ticks, time and revisions of another simulation, before the first step."""
         self._training.restart_from(point.revision)
-        self._axes.camera = point.camera or self._axes.camera
+        self._camera = point.camera or self._camera
         self.state = self._state(point.tick, point.sim_time_s, Motion.NONE)
 
     def resume_trial(
         self, interrupted: InterruptedTrial, point: StartingPoint | None = None
     ) -> None:
-        """Resume a trial of a journal, in place of any other, before the next step.
+        """Resume a trial of a journal before the next step, with the arm as in its last sample.
 
-        The arm is placed as in the last sample. `point` is where ticks,
-        time and view continue if not from the journal's last line.
+        Ticks, time and view continue from `point`, by default from the journal's last line.
         """
         point = point or interrupted.point
         self._training.resume_trial(interrupted.revision_before, interrupted.steps)
@@ -116,7 +125,7 @@ class Simulation:
         self._is_within_reach = interrupted.is_within_reach
         self._obstacle = interrupted.obstacle
         self._procedure_motion.reset(interrupted.feed)
-        self._axes.camera = point.camera or self._axes.camera
+        self._camera = point.camera or self._camera
         self.state = self._state(point.tick, point.sim_time_s, Motion.NONE)
 
     def step(self, dt: float, operator_input: OperatorInput) -> StepResult:
@@ -151,7 +160,11 @@ class Simulation:
         motion = Motion.FEED if fed.has_moved else motion_request.motion
         self.state = self._state(before.tick + 1, sim_time, motion)
         if self._proximity is not proximity:
-            events.append(_proximity(proximity, self.state, self._pressing, sim_time))
+            change: dict[str, Any] = {"from": proximity.value, "to": self._proximity.value}
+            change["clearanceMm"] = MM_PER_M * self.state.clearance
+            if proximity is Proximity.CONTACT:
+                change["depthMm"] = MM_PER_M * self._pressing.deepest
+            events.append(Event(EventKind.PROXIMITY, sim_time, change))
         return StepResult(self.state, tuple(events), tuple(answers))
 
     def _carry_out(self, command: OperatorCommand, sim_time: float) -> TrainingReply:
@@ -164,7 +177,7 @@ class Simulation:
         if command.name == CommandName.LIST_TASKS:
             return TrainingReply(True, data=listed(self.setup.scenario))
         if command.name == CommandName.SET_CAMERA:
-            self._axes.camera = arguments["camera"]
+            self._camera = arguments["camera"]
             return TrainingReply(True, events=(Event(EventKind.CAMERA, sim_time, dict(arguments)),))
         if command.name == CommandName.PLAN_TARGET:
             return self._plan(arguments, sim_time)
@@ -179,8 +192,9 @@ class Simulation:
                 self._guide_axis, procedure, arguments["standOffMm"]
             )
         else:
-            tool = self._posture.tool_axes
-            motion = commanded_motion(command, self._axes.of_camera, tool)
+            x, y, z, _ = self._tool_tip_to_world.T.tolist()
+            tool = Axes(tuple(x[:3]), tuple(y[:3]), tuple(z[:3]))
+            motion = commanded_motion(command, self._camera_axes[self._camera], tool)
         if isinstance(motion, str):
             return TrainingReply(False, motion)
         if command.name == CommandName.ALIGN_GUIDE:
@@ -190,7 +204,7 @@ class Simulation:
         return TrainingReply(True)
 
     def _plan(self, arguments: Mapping[str, Any], sim_time: float) -> TrainingReply:
-        """Show what was planned and answer whether the robot can carry it out."""
+        """Show a planned target, and answer whether the robot can reach it."""
         position, entry = in_meters(arguments["positionMm"]), arguments["entryMm"]
         entry = None if entry is None else in_meters(entry)
         answer = self._plan_reach.judge(position, entry)
@@ -206,10 +220,14 @@ class Simulation:
         if phase is Phase.PAUSED or phase in FEED_PHASES:
             stopped = self._teleoperation.stop()
             return MotionRequest(Motion.NONE, ended=MotionOutcome.STOPPED if stopped else None)
-        self._teleoperation.hold_direction(phase is Phase.ALIGNING)
-        axes = self._axes.of_sticks
-        posture = self._posture
-        return self._teleoperation.step(dt, operator_input, posture.tip, axes, posture.surface)
+        self._teleoperation.steering.hold_direction(phase is Phase.ALIGNING)
+        is_by_robot = self.setup.settings.axes is AxesChoice.ROBOT
+        axes = ROBOT_AXES if is_by_robot else self._camera_axes[self._camera]
+        tip = self._moved.clearance.tip
+        # A shaft that is far is no nearer than the tip, and then the tip alone counts.
+        shaft = self._moved.clearance.shaft or tip
+        surface = NearestSurface(tip.distance_m, tip.normal, shaft.distance_m, shaft.normal)
+        return self._teleoperation.step(dt, operator_input, self._tip, axes, surface)
 
     def _put_in_place(self, q: Joints | None = None) -> None:
         """Put the head where the trial has it, and the arm where trials start, or at `q`."""
@@ -220,7 +238,7 @@ class Simulation:
         self._stand_to_world = stand_pose(head_to_world, self._head_base)
         self._collision.set_head_pose(head_to_world)
         self._contact.head_has_moved()
-        self._posture = self._postures.of(self._contact.at(q or self._start))
+        self._place(self._contact.at(q or self._start))
         self._proximity = Proximity.FREE
         self._pressing = Pressing()
         self._is_within_reach = True
@@ -230,22 +248,31 @@ class Simulation:
         self._procedure_motion.reset()
         self._planned_target = None
 
+    def _place(self, moved: Moved) -> None:
+        """Set where the arm is."""
+        self._moved = moved
+        poses = moved.link_to_world
+        self._link_to_world = tuple(poses[name] for name in self._link_names)
+        self._tool_tip_to_world = poses[self._tip_name]
+        (ax, _, dx, x), (ay, _, dy, y), (az, _, dz, z), _ = self._tool_tip_to_world.tolist()
+        self._tip = Tip((x, y, z), (dx, dy, dz), (ax, ay, az))
+
     def _move(self, dt: float, motion_request: MotionRequest, sim_time: float) -> list[Event]:
         """Carry out a request as far as arm, head and table allow."""
         before = self._is_within_reach, self._obstacle
-        tip = self._posture.tip.position
-        moved = self._moved(dt, motion_request)
+        tip = self._tip.position
+        moved = self._reached(dt, motion_request)
         if moved.stopped_by in BEHIND_THE_TOOL and motion_request.direction is not None:
             # The arm may only lack room to turn the tool: the tip comes first.
-            moved = self._moved(dt, replace(motion_request, direction=None, across=None))
-        self._posture = self._postures.of(moved)
+            moved = self._reached(dt, replace(motion_request, direction=None, across=None))
+        self._place(moved)
         settings = self.setup.settings.proximity
         self._proximity = next_proximity(self._proximity, moved.clearance, settings)
         if self._proximity is Proximity.CONTACT:
-            after, goal = self._posture.tip.position, motion_request.goal
+            after, goal = self._tip.position, motion_request.goal
             to_goal = None if goal is None else subtract(goal, after)
-            pushed, clearance = motion_request.displacement, self._posture.clearance
-            self._pressing.move(pushed, subtract(after, tip), clearance, to_goal)
+            pushed = motion_request.displacement
+            self._pressing.move(pushed, subtract(after, tip), moved.clearance, to_goal)
         else:
             self._pressing.end()
         self._obstacle = moved.stopped_by if moved.stopped_by in BEHIND_THE_TOOL else ""
@@ -254,8 +281,8 @@ class Simulation:
         data = {"isWithinReach": self._is_within_reach, "obstacle": self._obstacle}
         return [Event(EventKind.REACH, sim_time, data)]
 
-    def _moved(self, dt: float, motion_request: MotionRequest) -> Moved:
-        q, tip = self._posture.q, self._posture.tip.position
+    def _reached(self, dt: float, motion_request: MotionRequest) -> Moved:
+        q, tip = self._moved.q, self._tip.position
 
         def to_joints(allowed: Vector) -> Joints:
             joints, self._is_within_reach = self._joint_motion.toward(
@@ -266,50 +293,46 @@ class Simulation:
         return self._contact.move(q, motion_request.displacement, to_joints)
 
     def _state(self, tick: int, sim_time: float, motion: Motion) -> SimulationState:
-        posture = self._posture
+        clearance, training = self._moved.clearance, self._training.state
+        moment, goal = self._touch_moment(sim_time), self._training.goal
+        settings = self.setup.settings.training
         return SimulationState(
             tick=tick,
             sim_time=sim_time,
-            q=posture.q,
-            tool_tip_to_world=posture.tool_tip_to_world,
-            link_to_world=posture.links,
+            q=self._moved.q,
+            tool_tip_to_world=self._tool_tip_to_world,
+            link_to_world=self._link_to_world,
             head_to_world=self._head_to_world,
             stand_to_world=self._stand_to_world,
             proximity=self._proximity,
-            clearance=posture.clearance.tool_m,
-            training=self._training.state,
+            clearance=clearance.tool_m,
+            training=training,
             elapsed=self._training.elapsed(sim_time),
             motion=motion,
             operator=self._operator,
-            camera=self._axes.camera,
+            camera=self._camera,
             planned_target=self._planned_target,
             depth=self._pressing.depth,
-            touch=touch_stage(
-                self._touch_moment(sim_time),
-                self._proximity,
-                self._obstacle,
-                self._training.state,
-                self._training.goal,
-                self.setup.settings.training,
-            ),
+            touch=touch_stage(moment, self._proximity, self._obstacle, training, goal, settings),
             feed=self._procedure_motion.feed.depth,
-            tip_clearance=posture.clearance.tip_m,
+            tip_clearance=clearance.tip_m,
         )
 
     @property
     def _guide_axis(self) -> GuideAxis:
-        return GuideAxis(self._posture.tip.position, self._posture.tip.direction)
+        return GuideAxis(self._tip.position, self._tip.direction)
 
     def _moment_of(self, command: OperatorCommand, sim_time: float) -> TouchMoment:
         feed = self._procedure_motion.feed
         if command.name == CommandName.LOCK_GUIDE and self._training.state.phase is Phase.ALIGNING:
-            feed = self._procedure_motion.looking_ahead(self._guide_axis, self._head_to_world)
+            ahead = self._procedure_motion.ahead(self._guide_axis, self._head_to_world)
+            feed = Feed(ahead=ahead)
         moment = self._touch_moment(sim_time)
         return replace(moment, direction=self._guide_axis.direction, feed=feed)
 
     def _touch_moment(self, sim_time: float) -> TouchMoment:
-        tip, clearance = self._posture.tip.position, self._posture.clearance
-        return TouchMoment(sim_time, tip, clearance.tip_m, self._pressing.depth)
+        above = self._moved.clearance.tip_m
+        return TouchMoment(sim_time, self._tip.position, above, self._pressing.depth)
 
 
 def listed(scenario: Scenario) -> dict[str, Any]:
@@ -331,16 +354,3 @@ def listed(scenario: Scenario) -> dict[str, Any]:
             for procedure in scenario.procedures
         ],
     }
-
-
-def _proximity(
-    before: Proximity, state: SimulationState, pressing: Pressing, sim_time: float
-) -> Event:
-    data: dict[str, Any] = {
-        "from": before.value,
-        "to": state.proximity.value,
-        "clearanceMm": MM_PER_M * state.clearance,
-    }
-    if before is Proximity.CONTACT:
-        data["depthMm"] = MM_PER_M * pressing.deepest
-    return Event(EventKind.PROXIMITY, sim_time, data)

@@ -1,1 +1,1 @@
-"""What leaves a study for other programs besides its tables: Motion-BIDS, xAPI, Slicer's files."""
+"""Exports of a study for other programs: Motion-BIDS, xAPI, Slicer's files, grades."""

@@ -26,8 +26,8 @@ def grade(
     """Return the score of the trial that counts, 0 to 100; None without an acceptable one.
 
     A trial that is not acceptable gives no grade: its registration would have misled an
-    instrument. The trials are scored ones of one trainee, in order of starting; those of `task`,
-    `mode` (None for any) and `method` count, as scores of different methods are not compared.
+    instrument. Of a trainee's attempts, in order of starting, those of `task`, `mode` (None for
+    any) and `method` count: scores of different methods are not compared.
     """
     scores = [
         trial.score

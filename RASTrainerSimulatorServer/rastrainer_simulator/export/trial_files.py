@@ -8,7 +8,7 @@ events. Dates are not exported.
 from __future__ import annotations
 
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -38,6 +38,7 @@ CHANNELS = (
     ("tip_z", "z", "POS", "tool_tip", "mm"),
     ("clearance", "n/a", "MISC", "tool_tip", "mm"),
 )
+KINDS = ("POS", "MISC", "ACCEL", "ANGACCEL", "GYRO", "JNTANG", "LATENCY", "MAGN", "ORNT", "VEL")
 
 FindTrajectory = Callable[[str], Trajectory | None]
 """Returns the trajectory of a trial's UUID."""
@@ -107,6 +108,7 @@ def _write_trial(
 
 
 def _motion_json(task: str, trajectory: Trajectory) -> dict[str, Any]:
+    counts = Counter(kind for _name, _component, kind, *_others in CHANNELS)
     return {
         "TaskName": task,
         "TaskDescription": "Fifteen numbered fiducials on a virtual head are touched in order with "
@@ -118,16 +120,7 @@ def _motion_json(task: str, trajectory: Trajectory) -> dict[str, Any]:
         "RecordingType": "continuous",
         "TrackedPointsCount": 1,
         "MotionChannelCount": len(CHANNELS),
-        "POSChannelCount": 3,
-        "MISCChannelCount": 1,
-        "ACCELChannelCount": 0,
-        "ANGACCELChannelCount": 0,
-        "GYROChannelCount": 0,
-        "JNTANGChannelCount": 0,
-        "LATENCYChannelCount": 0,
-        "MAGNChannelCount": 0,
-        "ORNTChannelCount": 0,
-        "VELChannelCount": 0,
+        **{f"{kind}ChannelCount": counts[kind] for kind in KINDS},
         "Manufacturer": "RASTrainer",
         "ManufacturersModelName": "simulated KUKA LBR iiwa 7",
         "SoftwareVersions": rastrainer.__version__,
@@ -185,13 +178,12 @@ def write_slicer_files(trial: StoredTrial, folder: Path) -> list[Path]:
     """Write a trial's files and return their paths.
 
     `touched-world.mrk.json` has the touches in the robot's frame, `touched-ras.mrk.json` the same
-    after rigid registration, `WorldToRas.tfm` the registration, `residuals.csv` its residuals;
-    `traced-world.mrk.json` and `traced-ras.mrk.json` have the points of a trace, the files `.ply`
-    beside them the same as point clouds. Each
-    trajectory of a procedure, counted from 1, has the line `trajectory-1-planned.mrk.json` and,
-    where the truth is known, `trajectory-1-shown.mrk.json`, where the plan as it was shown truly
-    lay in the head, and `trajectory-1-placed.mrk.json` from the guide's tip to the instrument's,
-    all in RAS.
+    after rigid registration, `WorldToRas.tfm` the registration, `residuals.csv` its residuals.
+    `traced-world.mrk.json` and `traced-ras.mrk.json` have the points of a trace, the `.ply` files
+    the same points as clouds. Each trajectory of a procedure, counted from 1, has the line
+    `trajectory-1-planned.mrk.json` and, if the truth is known, `trajectory-1-shown.mrk.json`, the
+    true position of the plan as it was shown, and `trajectory-1-placed.mrk.json` from the guide's
+    tip to the instrument's tip, all in RAS.
     """
     make_folder(folder)
     record, rigid = trial.record, trial.registrations.get(RIGID)

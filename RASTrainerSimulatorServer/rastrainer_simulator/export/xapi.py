@@ -23,7 +23,7 @@ VERBS = {
 SIMULATION = "http://adlnet.gov/expapi/activities/simulation"
 SURVEY = "http://adlnet.gov/expapi/activities/assessment"
 NAMESPACE = uuid.UUID("6f0f2f3e-6f53-5d8f-9a1a-7f7a52415354")
-"""Of the statements about questionnaires, whose UUIDs follow from their content."""
+"""For the statements about questionnaires, whose UUIDs follow from their content."""
 
 
 def statements(data: StudyData, home_page: str = HOME_PAGE) -> list[dict[str, Any]]:

@@ -86,7 +86,6 @@ class ArmScreen:
 
     @property
     def _is_refused(self) -> bool:
-        """Whether the instruction still says why the last touch was refused."""
         refusal = self._arm.refusal
         return refusal != "" and self._state.training.instruction == refusal
 
@@ -145,7 +144,6 @@ class ArmScreen:
     def _hints(
         self, moving: Iterable[Hint], names: Mapping[ControlName, str], can_tilt: bool = False
     ) -> tuple[Hint, ...]:
-        """Return the hints `moving`, those that press a control, and those on screen sticks."""
         session, operator = self._session, self._session.operator
         say, sticks = session.texts.say, session.screen_sticks
         hints = list(moving)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from rastrainer.commands import CommandName
 from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, GhostRule, Guidance, Phase
 from rastrainer_simulator.flow.arm_screen import ArmEvents
 from rastrainer_simulator.flow.pages.experiment import open_experiment
@@ -34,8 +33,6 @@ from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.state import Answer, SimulationState, StepResult, TouchStage, TrialResult
 from rastrainer_simulator.texts.texts import key_of
 
-PICTURE_GRACE_S = 0.5
-"""A picture that is there so soon is no reason to pause a trial."""
 RESULT_PAGES = ("waiting", "result", "replay", "errors", "procedure-errors", "procedure-lines")
 
 NOT_RECORDED = "not recorded"
@@ -60,8 +57,7 @@ class Flow:
         self._seen_result: TrialResult | None = None
         self._touch = TouchStage.FAR
         self._had_slicer = False
-        self._without_picture_s = 0.0
-        self._waits_for_picture = False
+        self.waits_for_picture = False
         self._unseen = ""
         session.pages.home = lambda: start_page(session)
         session.pages.show_start()
@@ -108,7 +104,6 @@ class Flow:
         self._had_slicer = self._had_slicer or is_connected
         is_lost = self._had_slicer and not is_connected
         session.notices.warn("slicer", "warning.slicer" if is_lost else "")
-        self._wait_for_picture(dt)
         if session.pages.top is not None:
             session.pages.advance(dt)
         elif session.tutorial is not None:
@@ -125,7 +120,6 @@ class Flow:
             self._session.pages.pressed(control)
 
     def taken_over(self) -> None:
-        """Start in the menu: another operator has taken control."""
         if self._session.pages.top is None:
             self._screen_of_work.open_menu()
 
@@ -167,7 +161,6 @@ class Flow:
         )
 
     def _over(self, shown: Screen, page: Page, menu: Menu) -> Screen:
-        """Return the screen of a menu over another, and why the trial is paused."""
         session, say = self._session, self._session.texts.say
         said = session.training.instruction
         why: tuple[ScreenMessage, ...] = ()
@@ -223,7 +216,6 @@ class Flow:
         return self._procedure_screen if is_at_procedure else self._trial_screen
 
     def _advance_tutorial(self, dt: float, tutorial: Tutorial) -> None:
-        """Advance the tutorial; leave it at its end, or if its head is gone."""
         session = self._session
         self._unseen = ""
         if session.picture_share is not None and tutorial.setup is self._control_loop.setup:
@@ -256,7 +248,7 @@ class Flow:
             session.pages.show(None)
         elif training.phase is Phase.PAUSED:
             page: Callable[[TrainingSession], SessionPage]
-            page = PreparingPage if self._waits_for_picture else trial_page
+            page = PreparingPage if self.waits_for_picture else trial_page
             page = practice_page if self._trial_screen.is_practice_over else page
             session.pages.show(page(session), ignore_input_briefly=not is_requested)
         elif training.phase is Phase.REGISTERED:
@@ -293,16 +285,3 @@ class Flow:
             session.mode = training.mode
         if training.phase is Phase.COMPLETE and training.task == TRIAL_RUN:
             session.note_done()
-
-    def _wait_for_picture(self, dt: float) -> None:
-        """Pause a trial whose picture is not there, so that its clock waits for it."""
-        session = self._session
-        is_running = session.training.is_running
-        if session.picture_share is None or not is_running:
-            self._without_picture_s = 0.0
-            self._waits_for_picture = False
-            return
-        self._without_picture_s += dt
-        if self._without_picture_s > PICTURE_GRACE_S and not self._waits_for_picture:
-            self._waits_for_picture = True
-            session.do(CommandName.PAUSE)

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
+from rastrainer.commands import CommandName
 from rastrainer.protocol import Mode
 from rastrainer_simulator.flow.flow import Flow
 from rastrainer_simulator.flow.operated_views import OperatedView, OperatedViews
@@ -27,11 +28,10 @@ from rastrainer_simulator.input.inputs import (
 )
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.presentation.feedback_event import (
-    FEEDBACK_EFFECTS,
     FeedbackEvent,
     feedback_of,
 )
-from rastrainer_simulator.presentation.messages import Frames, Hello, InstructorOrder, Seat
+from rastrainer_simulator.presentation.messages import Hello, InstructorOrder, Seat
 from rastrainer_simulator.presentation.presenter import Control, Presenter, TraceGuidance
 from rastrainer_simulator.presentation.screen import PRESS, Tone
 from rastrainer_simulator.record.trial_context import DisplayReport, ViewReport
@@ -43,8 +43,10 @@ from rastrainer_simulator.state import (
     SimulationState,
     StepResult,
 )
-from rastrainer_simulator.viewpoint.view_control import Pictures, ViewMotion
+from rastrainer_simulator.viewpoint.view_control import Pictures
 
+PICTURE_GRACE_S = 0.5
+"""A picture that is there so soon is no reason to pause a trial."""
 REFRESH_S = 0.1
 """How often a screen is rebuilt though nothing was pressed: its clock, distances and axes."""
 
@@ -91,6 +93,7 @@ class FlowPresenter(Presenter):
         self._views = OperatedViews()
         self._noted_view: tuple[str, ViewReport] | None = None
         self._since_noted_s = 0.0
+        self._without_picture_s = 0.0
         self._number = 0
         self._sent_sticks = NEUTRAL_STICKS
         self._is_changed = True
@@ -178,18 +181,12 @@ class FlowPresenter(Presenter):
         self._settle(is_changed=True)
         return problem
 
-    @property
-    def is_tracing_guided(self) -> bool:
-        """Whether a trainee who traces the skin now sees the covered area and the next place."""
-        return self._session.places.guidance(self._control_loop.latest).covered_mm > 0.0
-
     def start_tutorial(self, trainee: str, mode: str) -> Answer:
         answer = self._flow.start_tutorial(trainee, mode)
         self._settle(is_changed=True)
         return answer
 
     def view_joined(self, view: int, hello: Hello) -> None:
-        """Register a view; with a headset the next trial is one in a headset."""
         self._views.joined[view] = OperatedView(hello)
         self._choose_mode(hello)
 
@@ -207,7 +204,6 @@ class FlowPresenter(Presenter):
         self._settle()
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
-        """Process a key: it types if a text has the focus, otherwise it has its function."""
         source = self._views.source(SourceKind.KEYBOARD, view)
         typed = self._session.pages.typed(code, text) if is_down else None
         if typed is None:
@@ -235,7 +231,6 @@ class FlowPresenter(Presenter):
         is_fine: bool,
         yaw_deg: float,
     ) -> None:
-        """Process XR controllers' sticks and the gaze above them, or sticks on a screen."""
         source = self._views.sticks_source(view, self._session.screen_sticks.is_shown)
         if source.kind is SourceKind.XR and view in self._views.joined:
             self._views.joined[view].yaw_deg = yaw_deg
@@ -278,17 +273,14 @@ class FlowPresenter(Presenter):
             self._session.pages.write(name, value)
             self._is_changed = True
 
-    def on_frames(self, view: int, frames: Frames) -> None:
-        """Process how smoothly a view draws; the journal notes it of the trainee's view."""
+    def on_frames(self, view: int, shown: int, dropped: int, refresh_hz: float) -> None:
         if view not in self._views.joined:
             return
         self._views.joined[view].is_silent = False
         if view != self._views.watched(self.controls.holder):
             return
         hello = self._views.joined[view].hello
-        report = DisplayReport(
-            hello.kind, hello.device, frames.refresh_hz, frames.shown, frames.dropped
-        )
+        report = DisplayReport(hello.kind, hello.device, refresh_hz, shown, dropped)
         self._control_loop.note_display(report)
 
     def on_picture(self, view: int, task: str, share: float) -> None:
@@ -302,7 +294,6 @@ class FlowPresenter(Presenter):
             self._settle()
 
     def on_silence(self, view: int) -> None:
-        """Pause the trial when its picture freezes, and release control."""
         self._lose_sight(view, "unseen.still")
         if view in self._views.joined:
             self._views.joined[view].is_silent = True
@@ -335,7 +326,6 @@ class FlowPresenter(Presenter):
         self._is_changed = True
 
     def unplugged(self, source: Source) -> None:
-        """Drop a gamepad that is gone; a trial that it drove is paused, since no one can act."""
         if source == self.controls.holder:
             self._flow.pause("unseen.unplugged")
         self.controls.forget(source)
@@ -350,7 +340,7 @@ class FlowPresenter(Presenter):
         self._number += 1
         feedback = feedback_of(what, self._number, volume)
         if feedback.rumble > 0.0:
-            self.rumble(feedback.rumble, FEEDBACK_EFFECTS[what].seconds)
+            self.rumble(feedback.rumble, what.seconds)
         self.updates.publish(feedback)
 
     def _lose_sight(self, view: int, why: str) -> None:
@@ -362,20 +352,25 @@ class FlowPresenter(Presenter):
 
     def _await_picture(self, dt: float, newest: SimulationState) -> None:
         session, watched = self._session, self._views.watched(self.controls.holder)
-        if watched is None and self._views.joined:
-            return
         view = None if watched is None else self._views.joined.get(watched)
         # The views show the newest state only when it has been processed.
         is_replayed = self._flow.playback is not None
         training = (self.shown.latest if is_replayed else self._flow.shown(newest)).training
         task = training.task if training.is_marked else ""
-        share = None if view is None else view.awaited_share(dt, task)
         is_blind = session.goes_on_blind == session.training.trial_id != ""
-        session.picture_share = None if is_blind else share
+        if view is not None or not self._views.joined:
+            share = None if view is None else view.awaited_share(dt, task)
+            session.picture_share = None if is_blind else share
+        # A trial whose picture is not there is paused, so that its clock waits for it.
+        is_missing = session.picture_share is not None and session.training.is_running
+        self._without_picture_s = self._without_picture_s + dt if is_missing else 0.0
+        waited = self._flow.waits_for_picture
+        self._flow.waits_for_picture = self._without_picture_s > PICTURE_GRACE_S
+        if self._flow.waits_for_picture and not waited:
+            session.do(CommandName.PAUSE)
 
-    @property
     def _follows(self) -> bool:
-        """Whether the view goes automatically to the best view of each next point."""
+        """Return whether the view goes automatically to the best view of each next point."""
         session, tutorial = self._session, self._session.tutorial
         practiced = session.training if tutorial is None else tutorial
         # In a headset the trainee looks around by turning the head.
@@ -388,12 +383,12 @@ class FlowPresenter(Presenter):
 
     def _advance_view(self, dt: float) -> None:
         """Move the view by `dt` seconds, and have the trial's journal say where it is."""
-        session, view, follows = self._session, self._session.view, self._follows
+        session, view, follows = self._session, self._session.view, self._follows()
         view.advance(
             dt,
             self.shown.latest,
             self.shown.setup.scenario,
-            ViewMotion(*self.controls.view),
+            self.controls.view,
             self.controls.sticks,
             follows and self.controls.situation is ControlContext.WORK,
         )
@@ -414,7 +409,6 @@ class FlowPresenter(Presenter):
             self._control_loop.note_display(report)
 
     def _choose_mode(self, changed: Hello) -> None:
-        """Let the next trial be one in a headset while there is one; people may choose again."""
         if changed.kind == "headset":
             kinds = {view.hello.kind for view in self._views.joined.values()}
             self._session.mode = (Mode.HMD if "headset" in kinds else Mode.DESKTOP).value

@@ -41,7 +41,7 @@ class OperatedView:
 
 
 class OperatedViews:
-    """Knows who operates which view."""
+    """The views that have joined, and who operates which."""
 
     def __init__(self) -> None:
         self.joined: dict[int, OperatedView] = {}

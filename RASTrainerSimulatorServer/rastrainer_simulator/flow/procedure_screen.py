@@ -130,7 +130,6 @@ class ProcedureScreen(ArmScreen):
         )
 
     def _marks(self) -> tuple[ErrorArrow, ...]:
-        """Return the plan by the registration, and checkpoints as named marks on the skin."""
         session, procedure = self._session, self._procedure
         if procedure.stage is Phase.VERIFYING:
             touched = {each.name for each in procedure.checkpoints}
@@ -160,7 +159,6 @@ class ProcedureScreen(ArmScreen):
         return procedure
 
     def _figures(self) -> tuple[str, ...]:
-        """Return the position of the guide, the drill or the instrument, by the registration."""
         state, say = self._session.state, self._session.texts.say
         alignment, ruler = state.alignment, self._ruler()
         if ruler is not None:
@@ -230,7 +228,8 @@ def procedure_page(page: SessionPage) -> PageContent:
     names = [name for name in steps if name != "align" or can_align]
     alignment = session.state.alignment
     is_far = alignment is not None and not alignment.is_exact
-    title = page.say(f"procedure.title.{training.phase.value}") if names else ""
+    key = f"procedure.title.{training.phase.value}"
+    title = page.say(key) if names else session.task_title(training.task)
     said = (session.texts.again(training.instruction),)
     rows = (*map(step, names), page.button("work"))
-    return PageContent(title, said, rows=rows, first="align" if is_far else "")
+    return PageContent(said, rows=rows, title=title, first="align" if is_far else "")

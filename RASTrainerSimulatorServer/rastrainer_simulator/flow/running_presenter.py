@@ -83,7 +83,7 @@ class RunningPresenter:
             elif news.kind == "unknown":
                 presenter.warn("gamepad", "warning.unmapped", name=news.name)
             else:
-                # The first gamepad is that of the simulator's own station.
+                # The first gamepad belongs to the simulator's own station.
                 taken = {source.station for source in self._sources.values()}
                 is_first = SIMULATOR_STATION not in taken
                 station = SIMULATOR_STATION if is_first else f"gamepad {number}"

@@ -237,10 +237,6 @@ class TrialScreen(ArmScreen):
         return self._hints(movement, names)
 
     def _is_off_the_path(self) -> bool:
-        """Return whether the tip is off the path between the last point and the next.
-
-        This guides, too: without guidance it is not told.
-        """
         training = self._session.training
         target = self._points.get(training.next_point or "")
         if self.guidance is Guidance.NONE or not training.touches or target is None:
@@ -252,7 +248,6 @@ class TrialScreen(ArmScreen):
 
 
 def registration_so_far(training: TrainingState, scenario: Scenario) -> TouchRegistration:
-    """Return how the open trial would be registered, by what has been touched and traced."""
     answer = {"task": training.task, "method": training.method.value, **given(training)}
     return register_trial(GivenPoints.of_answer(answer), scenario)
 
@@ -288,10 +283,11 @@ def match_page(page: SessionPage, looked: Future[TouchRegistration]) -> PageCont
         page.button("draw", lambda: session.pages.show(None)),
     )
     # A double press must not accept a match that was not read.
-    return PageContent(say("match.title"), said, facts, rows, first="draw")
+    return PageContent(said, facts, rows, first="draw")
 
 
-def _resume(session: TrainingSession) -> None:
+def _resume(page: SessionPage) -> None:
+    session = page.session
     if session.training.phase is Phase.PAUSED:
         session.do(CommandName.RESUME)
     else:
@@ -329,7 +325,7 @@ def trial_page(page: SessionPage) -> PageContent:
         end,
     )
     title = page.say("trial.title", task=session.task_title(training.task))
-    return PageContent(title, (text,), rows=rows)
+    return PageContent((text,), rows=rows, title=title)
 
 
 def _abort(session: TrainingSession, reason: AbortReason) -> partial[None]:
@@ -355,7 +351,7 @@ class PreparingPage(SessionPage):
             self.button("menu", label=self.say("hint.menu")),
             self.button("begin", begin_without_picture),
         )
-        return PageContent(self.say("preparing.title"), said, rows=rows, first="menu")
+        return PageContent(said, rows=rows, first="menu")
 
     def back(self) -> None:
         self.session.pages.replace(trial_page(self.session))
@@ -368,15 +364,14 @@ class PreparingPage(SessionPage):
 
 @page_kind("abort")
 def abort_page(page: SessionPage) -> PageContent:
-    """Ask for confirmation before a trial is aborted."""
     training = page.session.training
     text = page.say("abort.text", trainee=training.trainee, kept=len(training.touches))
     abort = _abort(page.session, AbortReason.TRAINEE)
     rows = (page.button("keep"), page.button("abort", abort))
-    return PageContent(page.say("abort.title"), (text,), rows=rows, first="keep")
+    return PageContent((text,), rows=rows, first="keep")
 
 
-@page_kind("practice", leave=lambda session: session.do(CommandName.RESUME))
+@page_kind("practice", leave=lambda page: page.session.do(CommandName.RESUME))
 def practice_page(page: SessionPage) -> PageContent:
     """Say that the trial run's minutes are over: the trainee decides how to continue."""
     session = page.session
@@ -389,12 +384,11 @@ def practice_page(page: SessionPage) -> PageContent:
 
     rows = (page.button("finish", finish), page.button("resume"))
     text = page.say(key, trainee=session.training.trainee)
-    return PageContent(page.say("practice.title"), (text,), rows=rows, first="resume")
+    return PageContent((text,), rows=rows, first="resume")
 
 
 @page_kind("complete")
 def complete_page(page: SessionPage) -> PageContent:
-    """Say that all points are touched: they are registered, or the last one is undone."""
     session, training = page.session, page.session.training
     text = page.say("complete.text", trainee=training.trainee, count=len(training.touches))
     rows = (
@@ -402,4 +396,4 @@ def complete_page(page: SessionPage) -> PageContent:
         page.button("undo", partial(session.do, CommandName.UNDO)),
         page.button("abort", page.open_page(abort_page)),
     )
-    return PageContent(page.say("complete.title"), (text,), rows=rows)
+    return PageContent((text,), rows=rows)

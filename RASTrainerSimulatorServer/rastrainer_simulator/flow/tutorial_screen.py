@@ -74,7 +74,6 @@ class TutorialScreen(ArmScreen):
         )
 
     def advance(self, dt: float) -> None:
-        """Advance by `dt` seconds: bring the arm to its start, then check the progress."""
         session, tutorial = self._session, self._tutorial
         if tutorial is not self._seen:
             self._seen, self._has_paused = tutorial, False
@@ -195,13 +194,11 @@ class TutorialScreen(ArmScreen):
         return self._hints(moving, names)
 
     def _play_reply(self, reply: TrainingReply) -> None:
-        """Play the sound of a touch's outcome, and show why it was refused."""
         for event in reply.events:
             self._arm.note_event(event, self._session.tip)
         self._session.feel(reply.events, self._state.touch)
 
     def _sentence(self, step: TutorialStep | None) -> str:
-        """Return what to do in a step, as it is done with the device in use."""
         if step is None:
             return ""
         session = self._session

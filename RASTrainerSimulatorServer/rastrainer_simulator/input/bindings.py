@@ -33,14 +33,13 @@ _EXAMPLES = {
 }
 
 
-def _is_input(device: InputDevice, name: object) -> bool:
-    if device is InputDevice.KEYBOARD:
-        return isinstance(name, str) and _KEY.fullmatch(name) is not None
-    return name in GAMEPAD_INPUTS
-
-
 def _table(device: InputDevice, usual: Table) -> Callable[[Any], Table]:
-    """Accept an object of controls, each with its inputs; missing ones have their usual."""
+    """Accept an object of controls, each with its inputs; missing controls keep the `usual`."""
+
+    def is_input(name: object) -> bool:
+        if device is InputDevice.GAMEPAD:
+            return name in GAMEPAD_INPUTS
+        return isinstance(name, str) and _KEY.fullmatch(name) is not None
 
     def check(value: Any) -> Table:
         if not isinstance(value, Mapping):
@@ -50,7 +49,7 @@ def _table(device: InputDevice, usual: Table) -> Callable[[Any], Table]:
             raise ValueError(f"an object without {min(unknown)[:40]!r}; its names are {known}")
         for name, inputs in value.items():
             is_list = isinstance(inputs, (list, tuple)) and 1 <= len(inputs) <= MAX_INPUTS
-            if not is_list or not all(_is_input(device, each) for each in inputs):
+            if not is_list or not all(map(is_input, inputs)):
                 raise ValueError(
                     f"an object, its {name} a list of 1 to {MAX_INPUTS} inputs, such as "
                     f"{_EXAMPLES[device]}"
@@ -72,11 +71,10 @@ LAYOUTS: Mapping[InputDevice, Mapping[str, Table]] = {each: _layouts(each) for e
 """For each device the ready-made layouts: for two hands (the default), for the left-handed, and for
 one hand alone.
 
-The default is for a Logitech F310, and the keys of an American keyboard by their places. With one
-hand, everything that a trial by touches needs is within that hand's reach. Up and down are
-buttons for the thumb that otherwise pushes the stick, so the tip is moved in one direction after
-the other. Turning the tool, which only procedures need, and turning the view by hand stay with the
-other side: *Best view* turns it by one press.
+The default is for a Logitech F310, and the keys of an American keyboard by their places. A layout
+for one hand has everything that a trial by touches needs within that hand's reach: up and down are
+buttons for the thumb that otherwise pushes the stick. Turning the tool, which only procedures need,
+and turning the view by hand stay with the other side: *Best view* turns it by one press.
 """
 _PAD, _KEYS = LAYOUTS[InputDevice.GAMEPAD][TWO_HANDS], LAYOUTS[InputDevice.KEYBOARD][TWO_HANDS]
 
@@ -85,8 +83,8 @@ _PAD, _KEYS = LAYOUTS[InputDevice.GAMEPAD][TWO_HANDS], LAYOUTS[InputDevice.KEYBO
 class Bindings:
     """For each device and control the inputs that work it.
 
-    Within a situation an input does one thing, and every control has an input: so that no
-    settings file and no rebinding can leave the trainee without a way out of a menu.
+    Within a situation an input does one thing, and every control has an input: no settings file
+    and no rebinding can leave the trainee without a way out of a menu.
     """
 
     gamepad: Annotated[Table, _table(InputDevice.GAMEPAD, _PAD)] = field(
@@ -112,7 +110,7 @@ class Bindings:
     def control(
         self, device: InputDevice, name: str, situation: ControlContext
     ) -> ControlName | None:
-        """Return what an input does in a situation, None where it does nothing."""
+        """Return the control that an input works in a situation, None if it works none."""
         for control, inputs in self.table(device).items():
             if name in inputs and situation in SITUATIONS[control]:
                 return control
@@ -163,7 +161,7 @@ DEFAULT_BINDINGS = Bindings()
 
 
 def read_bindings(path: Path) -> Bindings:
-    """Return the bindings of a settings file; missing ones have their defaults."""
+    """Return the bindings of a settings file; missing controls have their defaults."""
     return record_from_json(Bindings, read_json(path, MAX_BYTES), str(path), only_known=True)
 
 

@@ -34,12 +34,12 @@ _REPEATED = (ControlName.UP, ControlName.DOWN, ControlName.LEFT, ControlName.RIG
 
 @dataclasses.dataclass(frozen=True)
 class ControlsListener:
-    """What is called when somebody operates.
+    """Callbacks for operations.
 
     Attributes:
         input_pressed: returns whether an input was consumed, as while a control is rebound.
-        taken_over: is told who has taken control from another operator.
-        refused: is told who wants to operate without control.
+        taken_over: a source has taken control from another operator.
+        refused: a source wants to operate without control.
     """
 
     pressed: Callable[[ControlName], None]
@@ -49,18 +49,17 @@ class ControlsListener:
 
 
 class Controls:
-    """Who holds the control, and what they do with it.
+    """The operator: the source of input that holds the control, and its deflections.
 
-    Whoever acts first holds the control. What is at the same station (the simulator's gamepad, the
-    keys and the mouse of its windows; the keys, pad and controllers of one page) shares it and
-    passes it on by being used. Another station's input does nothing, except that pressing `menu`
-    takes the control over once the holder has done nothing for `IDLE_S` seconds: on purpose,
-    never while someone operates, and only where it `may_be_taken`. A holder that is unplugged or
-    leaves gives the control up.
+    The first source that acts holds the control. All sources at one station (the simulator's
+    gamepad, the keys and the mouse of its windows; the keys, pad and controllers of one page)
+    share it. Another station's input does nothing, except that pressing `menu` takes the control
+    over once the holder has been idle for `IDLE_S` seconds, if it `may_be_taken`. A holder that is
+    unplugged or leaves gives the control up.
 
     Attributes:
         bindings: which input does what; may be exchanged at any time.
-        holder: what drives the arm; None until someone acts.
+        holder: the source that drives the arm; None until someone acts.
     """
 
     def __init__(
@@ -110,21 +109,21 @@ class Controls:
 
     @property
     def has_gamepad(self) -> bool:
-        """Whether a gamepad is plugged in here, or one that a browser reads has moved."""
+        """Whether a gamepad is plugged in here, or a browser's gamepad has moved."""
         return any(
             source.kind in (SourceKind.GAMEPAD, SourceKind.BROWSER_GAMEPAD)
             for source in self._states
         )
 
     def add(self, source: Source) -> InputState:
-        """Return what a source is doing, which is accepted before anything is pressed on it."""
+        """Return the state of a source, known before anything is pressed on it."""
         if source not in self._states:
             keys = source.kind is SourceKind.KEYBOARD
             self._states[source] = InputState(InputDevice.KEYBOARD if keys else InputDevice.GAMEPAD)
         return self._states[source]
 
     def enter(self, situation: ControlContext) -> None:
-        """Change the situation; what is held does nothing until it is released."""
+        """Change the situation; held inputs do nothing until they are released."""
         if situation is not self.situation:
             self.situation = situation
             self._repeating = None
@@ -155,17 +154,17 @@ class Controls:
     def allows(self, source: Source, control: ControlName | None = None) -> bool:
         """Return whether a source may act, and give it control if so."""
         if self.is_operator(source):
-            self._hold(source)
+            self.holder, self._idle = source, 0.0
             return True
         if control is ControlName.MENU and self._idle >= IDLE_S and self._may_be_taken():
-            self._hold(source)
+            self.holder, self._idle = source, 0.0
             self._listener.taken_over(source)
             return False
         self._listener.refused(source)
         return False
 
     def forget(self, source: Source) -> None:
-        """Drop a source that is gone: what it held is released, and so is the control."""
+        """Drop a source that is gone: its inputs are released, and so is the control."""
         self._states.pop(source, None)
         if self._repeating is not None and self._repeating[0] == source:
             self._repeating = None
@@ -173,7 +172,7 @@ class Controls:
             self.holder = None
 
     def advance(self, dt: float) -> None:
-        """Advance by `dt` seconds: what is pressed, repeated steps in menus, and idle time."""
+        """Advance presses, repeated steps in menus, and idle time by `dt` seconds."""
         for state in self._states.values():
             state.advance(dt)
         held = self._held_state
@@ -197,7 +196,7 @@ class Controls:
         if self.holder is None or (
             self.holder.station == source.station and (holding is None or holding.is_at_rest)
         ):
-            self._hold(source)
+            self.holder, self._idle = source, 0.0
 
     def _press_all(self, source: Source, state: InputState, names: list[str]) -> None:
         for name in names:
@@ -211,20 +210,16 @@ class Controls:
                 self._repeat_in = REPEAT_AFTER_S
             self._listener.pressed(control)
 
-    def _hold(self, source: Source) -> None:
-        self.holder = source
-        self._idle = 0.0
-
 
 DOWN_FROM = 0.6
 UP_BELOW = 0.4
 """An input counts as pressed from the first on, and as released below the second."""
 AT_REST_BELOW = 0.15
-"""Released sticks come to rest up to about here, beyond the dead zone of `StickResponse`: one that
-rests at its edge neither moves anything nor keeps the control."""
+"""Released sticks come to rest up to about here, beyond the dead zone of `StickResponse`: a stick
+that rests at its edge neither moves anything nor keeps the control."""
 DRIFT_BELOW, FURTHER = 0.3, 0.2
-"""What was held less far than the first when it was blocked, such as a worn stick that does not
-return, is free again once it is pushed further by the second."""
+"""An input that was held less far than the first when it was blocked, such as a worn stick that
+does not return, is free again once it is pushed further by the second."""
 
 STEP_PUSH, FINE_STEP_PUSH = 0.22, 0.4
 """How far a key or a button pushes its stick at first, and in slow motion: both mean 2 mm/s."""
@@ -232,17 +227,15 @@ STEP_S = 0.1
 """Every press lasts at least so long: a tap moves the tip by one step of 0.2 mm; in slow motion,
 down onto the skin, of 0.1 mm."""
 HOLD_AFTER_S, RAMP_S = 0.15, 0.6
-"""What is held for longer speeds up, from the first on until the second."""
-
-_UNUSED = OperatorInput()
+"""Keys and buttons that are held speed up from the first until the second."""
 
 
 class InputState:
-    """What a source is doing.
+    """The inputs of one source.
 
-    Keys and buttons are pressed or not: a tap moves the tip by one small step, what is held speeds
-    up smoothly, and stops at once, as a released stick does. What is held while the situation
-    changes does nothing until it is released: the arm must not start because a menu closes.
+    Keys and buttons are pressed or not: a tap moves the tip by one small step, and a held key
+    speeds up smoothly and stops at once. Inputs that are held while the situation changes do
+    nothing until they are released: the arm must not start because a menu closes.
     """
 
     def __init__(self, device: InputDevice) -> None:
@@ -253,20 +246,20 @@ class InputState:
         self.down: set[str] = set()
         self._again: set[str] = set()
         self._blocked: dict[str, float] = {}
-        self._sticks = _UNUSED
+        self._sticks = NEUTRAL_STICKS
         self._sticks_blocked = False
 
     @property
     def is_at_rest(self) -> bool:
         """Whether nothing is pressed or pushed."""
-        is_pushed = any(map(_is_pushed, self._inputs.values()))
-        return not self.down and self._sticks == _UNUSED and not is_pushed
+        is_pushed = any(value >= AT_REST_BELOW for value in self._inputs.values())
+        return not self.down and self._sticks == NEUTRAL_STICKS and not is_pushed
 
     def is_still_held(self, name: str) -> bool:
-        """Return whether an input that is pressed is known to be held still.
+        """Return whether a pressed input is known to be held still.
 
-        A key is if it has come down again since it was asked for last. That no release has come
-        says nothing: a window that draws slowly may not have looked.
+        A key must have come down again since the last call: a window that draws slowly may not
+        have reported its release yet.
         """
         if self.device is not InputDevice.KEYBOARD:
             return True
@@ -280,16 +273,16 @@ class InputState:
         pressed = []
         for name, value in self._inputs.items():
             held = self._blocked.get(name, 1.0)
-            if not _is_pushed(value) or (held < DRIFT_BELOW and value > held + FURTHER):
+            if value < AT_REST_BELOW or (held < DRIFT_BELOW and value > held + FURTHER):
                 self._blocked.pop(name, None)
             if value >= DOWN_FROM and name not in self.down:
                 self.down.add(name)
                 pressed.append(name)
-                if self._is_key_or_button(name):
+                if self.device is InputDevice.KEYBOARD or name in BUTTONS:
                     self._pressed_s[name] = 0.0
             elif value < UP_BELOW:
                 self.down.discard(name)
-        self._end_presses()
+        self.advance(0.0)
         return pressed
 
     def set_key(self, code: str, is_down: bool) -> list[str]:
@@ -304,25 +297,28 @@ class InputState:
         return pressed
 
     def set_sticks(self, sticks: OperatorInput) -> None:
-        """Take sticks that need no bindings, those of a headset."""
+        """Take sticks that need no bindings, as of a headset."""
         self._sticks = sticks
         self._sticks_blocked = self._sticks_blocked and _are_pushed(sticks)
 
     def block(self) -> None:
-        """Ignore what is held now until it is released."""
-        self._blocked = {name: value for name, value in self._inputs.items() if _is_pushed(value)}
+        """Ignore the inputs that are held now until they are released."""
+        self._blocked = {
+            name: value for name, value in self._inputs.items() if value >= AT_REST_BELOW
+        }
         self._pressed_s.clear()
         self._sticks_blocked = _are_pushed(self._sticks)
 
     def advance(self, dt: float) -> None:
-        """Advance what is pressed by `dt` seconds, and end the steps of taps."""
-        for name in self._pressed_s:
+        """Advance presses by `dt` seconds, and end the steps of taps."""
+        for name in tuple(self._pressed_s):
             self._pressed_s[name] += dt
-        self._end_presses()
+            if self._pressed_s[name] >= STEP_S and name not in self.down:
+                del self._pressed_s[name]
 
     def sticks(self, bindings: Bindings) -> OperatorInput:
         table = bindings.table(self.device)
-        direct = _UNUSED if self._sticks_blocked else self._sticks
+        direct = NEUTRAL_STICKS if self._sticks_blocked else self._sticks
         is_fine = direct.fine or any(name in self.down for name in table[ControlName.FINE])
         step = FINE_STEP_PUSH if is_fine else STEP_PUSH
         right, forward, up = map(add, self.pushed(table, TRANSLATION, step), direct.translation)
@@ -344,7 +340,7 @@ class InputState:
             self._value(table[above], step) - self._value(table[below], step)
             for below, above in axes
         ]
-        is_pushed = any(_is_pushed(abs(value)) for value in pushed)
+        is_pushed = any(abs(value) >= AT_REST_BELOW for value in pushed)
         if self.device is InputDevice.GAMEPAD and not is_pushed:
             return (0.0,) * len(pushed)
         return tuple(pushed)
@@ -355,7 +351,7 @@ class InputState:
         for name in names:
             if name in self._blocked:
                 continue
-            if not self._is_key_or_button(name):
+            if self.device is InputDevice.GAMEPAD and name not in BUTTONS:
                 pushed = self._inputs.get(name, 0.0)
             elif name in self._pressed_s:
                 share = (self._pressed_s[name] - HOLD_AFTER_S) / (RAMP_S - HOLD_AFTER_S)
@@ -365,19 +361,6 @@ class InputState:
                 continue
             farthest = max(farthest, pushed)
         return farthest
-
-    def _end_presses(self) -> None:
-        """End the presses of what is released, but the steps of taps."""
-        for name, seconds in tuple(self._pressed_s.items()):
-            if seconds >= STEP_S and name not in self.down:
-                del self._pressed_s[name]
-
-    def _is_key_or_button(self, name: str) -> bool:
-        return self.device is InputDevice.KEYBOARD or name in BUTTONS
-
-
-def _is_pushed(value: float) -> bool:
-    return value >= AT_REST_BELOW
 
 
 def _are_pushed(sticks: OperatorInput) -> bool:

@@ -1,4 +1,4 @@
-"""Gamepads: the names of their inputs, and those of the simulator, read by SDL.
+"""Gamepads: the names of their inputs, and the simulator's own gamepads, read by SDL.
 
 A button is named as in SDL's GameController mappings ("a", "dpup"); an axis is two inputs, one for
 each direction in which it can be pushed ("-leftx", "+leftx").
@@ -56,9 +56,9 @@ _HINTS = {
 
 
 class GamepadNews(NamedTuple):
-    """What has happened to a gamepad: SDL knows no layout of an unknown one, which has no number.
+    """An event of a gamepad, with all `inputs` (0…1) if it has moved.
 
-    `inputs` are all inputs of one that has moved, 0…1.
+    SDL knows no layout of an unknown gamepad, which has no number.
     """
 
     kind: Literal["added", "removed", "moved", "unknown"]
@@ -71,7 +71,7 @@ class Gamepads:
     """Polls SDL; one poll takes some ten microseconds, and SDL's part of it leaves Python alone."""
 
     def __init__(self) -> None:
-        """Start SDL and find what is plugged in at the first poll."""
+        """Start SDL; the first poll finds the gamepads."""
         self._pygame, self._controller = start_sdl()
         self._open: dict[int, Any] = {}
         self._reported: dict[int, tuple[tuple[float, ...], tuple[float, ...]]] = {}
@@ -79,7 +79,7 @@ class Gamepads:
         self._has_looked = False
 
     def poll(self) -> Iterator[GamepadNews]:
-        # `get` pumps SDL's events; what came or went is looked for by asking.
+        # `get` pumps SDL's events; `_look` finds which gamepads came or went.
         if self._pygame.event.get() or not self._has_looked:
             self._has_looked = True
             yield from self._look()
@@ -102,7 +102,7 @@ class Gamepads:
         self._pygame.display.quit()
 
     def _look(self) -> Iterator[GamepadNews]:
-        """Open newly plugged gamepads and forget unplugged ones."""
+        """Open newly plugged gamepads and forget unplugged gamepads."""
         for number, pad in tuple(self._open.items()):
             if not pad.attached():
                 del self._open[number]
@@ -123,7 +123,7 @@ class Gamepads:
 
 
 class NoGamepadsError(RASTrainerError):
-    """This computer cannot read gamepads; the sentence says why."""
+    """This computer cannot read gamepads."""
 
 
 def start_sdl() -> tuple[ModuleType, ModuleType]:

@@ -10,14 +10,14 @@ SIMULATOR_STATION = "simulator"
 
 
 class InputDevice(str, Enum):
-    """What the inputs belong to; each has its own bindings."""
+    """The kinds of devices with bindings."""
 
     GAMEPAD = "gamepad"
     KEYBOARD = "keyboard"
 
 
 class SourceKind(str, Enum):
-    """What people read about who has control."""
+    """The kinds of sources, as people read them."""
 
     GAMEPAD = "gamepad"
     KEYBOARD = "keyboard"
@@ -31,10 +31,8 @@ class SourceKind(str, Enum):
 class Source:
     """One thing that can hold the control.
 
-    Attributes:
-        station: where the person sits. What is at one station belongs to one operator.
-        view: number of the view that reads it; None for a gamepad at the simulator.
-        number: of the gamepad, to tell several of one station apart.
+    All sources at one `station` belong to one operator. `view` is the number of the view that
+    reads it, None for a gamepad at the simulator, whose `number` tells several apart.
     """
 
     kind: SourceKind
@@ -44,7 +42,7 @@ class Source:
 
 
 class ControlName(str, Enum):
-    """What the trainee can do. A stick is two controls, one for each direction."""
+    """The trainee's controls; each direction of a stick is a control."""
 
     # So that it is written as a name of a JSON object.
     __str__ = str.__str__

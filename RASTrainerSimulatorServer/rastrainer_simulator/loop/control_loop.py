@@ -7,7 +7,7 @@ import threading
 import time
 import uuid
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -44,7 +44,7 @@ from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training.rules import ENDING_A_TRIAL, RECORDING_FAILED, REFUSALS
 
 CATCH_UP_S = 0.1
-"""How far behind the loop may fall and still make up for it tick by tick."""
+"""Delay up to which the loop catches up tick by tick."""
 COMMANDS_PER_TICK = 16
 SHUTTING_DOWN = "The simulator is shutting down."
 ARCHIVE_FAILED = "The trial's record could not be used: the simulator's log says why."
@@ -105,6 +105,8 @@ class ControlLoop:
         self._sticks = NEUTRAL_STICKS
         self._arrived: deque[OperatorCommand] = deque()
         self._displayed: deque[NotedReport] = deque()
+        self.note_display = self._displayed.append
+        """Records in the trial's journal what its views show."""
         self._answers = PendingAnswers()
         limits = trial_limits or TrialLimits()
         self._starts = RateLimit(limits.starts_per_s, limits.starts_at_once)
@@ -113,6 +115,8 @@ class ControlLoop:
         """Whether another simulation is being made: no trial begins on the present one."""
         self._successor: tuple[Simulation, int] | None = None
         self._subscribers: Subscribers[StepResult] = Subscribers()
+        self.subscribe = self._subscribers.add
+        """Calls a callback in the loop's thread after each tick; it must return immediately."""
         self._statistics = LoopStatistics()
         self.thread = threading.Thread(target=self._run, name="control loop", daemon=True)
         self._is_stopping = threading.Event()
@@ -141,20 +145,8 @@ class ControlLoop:
     def statistics(self) -> LoopStatistics:
         return replace(self._statistics)
 
-    def subscribe(self, callback: Callable[[StepResult], None]) -> Callable[[], None]:
-        """Call `callback` in the loop's thread after each tick; it must return immediately.
-
-        Returns a function that unsubscribes.
-        """
-        return self._subscribers.add(callback)
-
     def hold_sticks(self, sticks: OperatorInput) -> None:
-        """Hold the sticks like this until the next call; the commands in it are ignored."""
         self._sticks = replace(sticks, commands=())
-
-    def note_display(self, report: NotedReport) -> None:
-        """Record in the trial's journal what is seen of it."""
-        self._displayed.append(report)
 
     def submit(
         self, name: str, arguments: Mapping[str, Any] | None = None, sender: str = ""
@@ -177,9 +169,9 @@ class ControlLoop:
     def begin_replacement(self) -> Future[Answer]:
         """Have no trial begin from now on, since another simulation is being made.
 
-        Refused while a trial is open. It takes its turn among the commands: whatever trial was
-        asked for before has begun, and none does after it. If it is not refused, one may call
-        `replace_simulation` and has to call `end_replacement`.
+        Refused while a trial is open. It takes its turn among the commands: trials that were
+        requested before have begun. If it is not refused, the caller may call
+        `replace_simulation` and must call `end_replacement`.
         """
         return self.submit(_BEGIN_REPLACEMENT)
 
@@ -199,24 +191,21 @@ class ControlLoop:
     def _run(self) -> None:
         try:
             with precise_timing(self.is_first_in_line):
-                self._tick_on_time()
+                due = time.monotonic()
+                while not self._is_stopping.is_set():
+                    self._statistics.count(time.monotonic() - due if self._period else 0.0)
+                    self._tick()
+                    due += self._period
+                    behind = time.monotonic() - due
+                    if self._period and behind > CATCH_UP_S:
+                        skipped = int(behind / self._period)
+                        self._statistics.skipped += skipped
+                        due += skipped * self._period
+                    sleep_until(due)
         except Exception:
             _log.exception("The control loop has failed")
         finally:
             self._finish()
-
-    def _tick_on_time(self) -> None:
-        due = time.monotonic()
-        while not self._is_stopping.is_set():
-            self._statistics.count(time.monotonic() - due if self._period else 0.0)
-            self._tick()
-            due += self._period
-            behind = time.monotonic() - due
-            if self._period and behind > CATCH_UP_S:
-                skipped = int(behind / self._period)
-                self._statistics.skipped += skipped
-                due += skipped * self._period
-            sleep_until(due)
 
     def _tick(self) -> None:
         if self._successor is not None and not self._held.is_waiting:

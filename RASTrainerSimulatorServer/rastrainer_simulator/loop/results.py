@@ -48,7 +48,7 @@ class DurableResults:
     def publishable(
         self, result: StepResult, written: Written | None
     ) -> tuple[StepResult, str | None]:
-        """Return what may be published now, and why writing has failed (None if it has not)."""
+        """Return the result to publish now, and the reason if writing has failed."""
         if written is None and not self._awaited and not self._unwatched:
             self.safe = result.state.training
             return result, None
@@ -66,7 +66,7 @@ class DurableResults:
         return StepResult(state, tuple(events), tuple(answers)), reason
 
     def _collect(self, events: list[Event], answers: list[Answer]) -> str | None:
-        """Add what was written since the last tick, in order; return the reason if it failed."""
+        """Add the results written since the last tick, in order; return the reason of a failure."""
         while self._unwatched and self._unwatched[0][0].future.done():
             error = self._unwatched.popleft()[0].future.exception()
             if error is not None:
@@ -97,10 +97,7 @@ T = TypeVar("T")
 
 
 class Subscribers(Generic[T]):
-    """Callbacks that are called with every published item, in the publishing thread.
-
-    They may be added and removed at any time, also from other threads.
-    """
+    """Callbacks for every published item; threads may add and remove them at any time."""
 
     def __init__(self) -> None:
         self._callbacks: tuple[Callable[[T], None], ...] = ()
@@ -123,19 +120,17 @@ class StateSource(Protocol):
     """A control loop, a playback, or what switches between the two."""
 
     @property
-    def latest(self) -> SimulationState:
-        """The newest state."""
+    def latest(self) -> SimulationState: ...
 
     @property
-    def setup(self) -> SimulationSetup:
-        """Head and robot."""
+    def setup(self) -> SimulationSetup: ...
 
     @property
-    def statistics(self) -> LoopStatistics:
-        """How punctual the control loop has been."""
+    def statistics(self) -> LoopStatistics: ...
 
-    def subscribe(self, callback: Callable[[StepResult], None]) -> Callable[[], None]:
-        """Call `callback` with each state, in any thread; return a function that unsubscribes."""
+    @property
+    def subscribe(self) -> Callable[[Callable[[StepResult], None]], Callable[[], None]]:
+        """Calls a callback with each result, in any thread; returns what unsubscribes it."""
 
 
 class StateFeed:
@@ -147,7 +142,7 @@ class StateFeed:
         deliver: Callable[[SimulationState], None],
         loop: asyncio.AbstractEventLoop,
     ):
-        """`is_due` is called at every tick, in its thread; `deliver` in that of `loop`."""
+        """`is_due` is called at every tick, in its thread; `deliver` in the thread of `loop`."""
         self._is_due = is_due
         self._deliver = deliver
         self._loop = loop
@@ -167,10 +162,7 @@ class StateFeed:
 
 
 def trial_log(loop: asyncio.AbstractEventLoop) -> Callable[[StepResult], None]:
-    """Return what logs the phases of trials, as a control loop's subscriber.
-
-    Files are written in the event loop's thread only.
-    """
+    """Return a subscriber that logs the phases of trials, in the event loop's thread."""
 
     def note(training: TrainingState) -> None:
         data = {

@@ -33,81 +33,41 @@ def sleep_until(moment: float) -> None:
 
 @contextlib.contextmanager
 def precise_timing(is_first_in_line: bool) -> Iterator[None]:
-    """Let this process wake up on time; everything is as before when it ends.
+    """Let this process wake up on time until the end of the context.
 
-    With `is_first_in_line` the thread runs before all ordinary ones, if the system permits it. That
-    is for a thread that sleeps between its ticks: one that never sleeps would leave them nothing.
+    With `is_first_in_line` this thread runs before all ordinary threads from now on, if the system
+    permits it; it must sleep between its ticks, or they would never run.
     """
     interval = sys.getswitchinterval()
     sys.setswitchinterval(SWITCH_INTERVAL_S)
+    if is_first_in_line:
+        raise_thread_priority(FIRST)
     try:
-        with _fine_timer(), _in_line(FIRST) if is_first_in_line else contextlib.nullcontext():
+        with _fine_timer():
             yield
     finally:
         sys.setswitchinterval(interval)
 
 
-def raise_thread_priority() -> None:
-    """Let this thread run before all ordinary ones from now on, but after the control loop.
+def raise_thread_priority(priority: int = SECOND) -> None:
+    """Let this thread run before all ordinary threads from now on, but after the control loop.
 
-    It is for the threads that share the interpreter with the loop in every tick. One that is put
-    aside for another program while it holds the interpreter makes the loop wait for both, whatever
-    the loop's own priority (priority inversion). Nothing happens where the system does not permit
-    it; processes and threads that the thread starts stay ordinary.
+    It is for the threads that share the interpreter with the loop in every tick: if such a thread
+    is put aside while it holds the interpreter, the loop waits, too (priority inversion). Windows
+    permits it to everyone, Linux to root and up to the limit of `ulimit -r`; else nothing happens.
     """
     if sys.platform == "win32":
-        _set_windows_priority(_WINDOWS_PRIORITY[SECOND])
-    elif hasattr(os, "SCHED_FIFO"):
-        set_real_time(SECOND)
-
-
-@contextlib.contextmanager
-def _in_line(priority: int) -> Iterator[None]:
-    """Request real-time priority; Linux grants it to root and up to the limit of `ulimit -r`."""
-    if sys.platform == "win32":
-        before = _set_windows_priority(_WINDOWS_PRIORITY[priority])
-        try:
-            yield
-        finally:
-            _set_windows_priority(before)
-        return
-    if not hasattr(os, "SCHED_FIFO"):
-        yield
-        return
-    policy, parameters = os.sched_getscheduler(0), os.sched_getparam(0)
-    if not set_real_time(priority):
-        yield
-        return
-    try:
-        yield
-    finally:
-        # Only root may clear the flag again.
-        os.sched_setscheduler(0, policy | os.SCHED_RESET_ON_FORK, parameters)
-
-
-def set_real_time(priority: int) -> bool:
-    """Set the priority of this thread; return whether the system permits it."""
-    # What the thread starts, such as the window, stays ordinary.
-    policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK
-    try:
-        os.sched_setscheduler(0, policy, os.sched_param(priority))
-    except PermissionError:
-        return False
-    return True
-
-
-if sys.platform == "win32":
-
-    def _set_windows_priority(priority: int) -> int:
-        """Set this thread's priority, which Windows permits to everyone; return the former one."""
         import ctypes
 
         kernel = ctypes.windll.kernel32
         kernel.GetCurrentThread.restype = ctypes.c_void_p
         thread = ctypes.c_void_p(kernel.GetCurrentThread())
-        before = kernel.GetThreadPriority(thread)
-        kernel.SetThreadPriority(thread, priority)
-        return before
+        kernel.SetThreadPriority(thread, _WINDOWS_PRIORITY[priority])
+    elif hasattr(os, "SCHED_FIFO"):
+        # Processes and threads that the thread starts, such as the window, stay ordinary.
+        policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK
+        with contextlib.suppress(PermissionError):
+            os.sched_setscheduler(0, policy, os.sched_param(priority))
 
 
 @contextlib.contextmanager
@@ -133,8 +93,8 @@ LATE_S = 0.001
 class LoopStatistics:
     """Counts of ticks since the loop was started.
 
-    Late ones started more than 1 ms after their time. Skipped ones were never carried out, because
-    the loop had fallen too far behind: the simulated clock has lost them.
+    Late ticks started more than 1 ms after their time. Skipped ticks were never carried out,
+    because the loop had fallen too far behind: the simulated clock has lost them.
     """
 
     ticks: int = 0
@@ -204,10 +164,9 @@ class Pacer:
         self.next = -math.inf if hz > 0 else math.inf
 
     def is_due(self, now: float) -> bool:
-        """Return whether the next moment has come, and plan the one after it.
+        """Return whether the next event is due, and plan the following event.
 
-        The rate holds on average although `now` comes in ticks; moments that were missed are not
-        made up for.
+        The rate holds on average although `now` comes in ticks; missed events are dropped.
         """
         has_restarted = now + 1.5 * self._period < self.next < math.inf
         if now < self.next - _TOLERANCE_S and not has_restarted:
@@ -221,8 +180,8 @@ class Pacer:
 class ReadingBudget:
     """Time to spend on a client's bytes: it grows steadily, and a debt makes the client wait.
 
-    A client that sends much, or what is costly to read, is read later and never delays the control
-    loop. A new client has nothing saved, so that connecting again gains nothing.
+    A client that sends much is read later and never delays the control loop. A new client has
+    nothing saved, so that connecting again gains nothing.
     """
 
     def __init__(self, now: float):

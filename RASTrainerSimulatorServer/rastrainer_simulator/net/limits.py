@@ -20,10 +20,8 @@ Count = Annotated[int, above_zero(2**16, is_whole=True)]
 class LinkLimits:
     """Limits of the OpenIGTLink server.
 
-    Attributes:
-        clients: connections at a time; a further one replaces the oldest that has never sent a
-            message, and is closed immediately if all have.
-        slow_client_s: time after which a client that does not read is dropped.
+    Another connection replaces the oldest that has never sent a message, if any; a client that does
+    not read is dropped after `slow_client_s`.
     """
 
     clients: Count = 128
@@ -32,13 +30,10 @@ class LinkLimits:
 
 @dataclass(frozen=True)
 class ViewLimits:
-    """Limits of the view server.
+    """Limits of the view server: streams at a time, and times without a message from a view.
 
-    Attributes:
-        views: streams at a time; further ones are refused.
-        silent_s: after which what a silent view holds is released.
-        lost_s: after which a view that reported its frames every second counts as not seen.
-        gone_s: time without any sign of life after which a view counts as gone.
+    After `silent_s` its held inputs are released, after `lost_s` it counts as not seen if it
+    reported its frames every second, after `gone_s` it counts as gone.
     """
 
     views: Count = 32

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from rastrainer.files.writing import make_private_folder, write_text
 from rastrainer.home_folder import home_folder
-from rastrainer_simulator.ops.processes import environment_without_secrets
+from rastrainer.journal.folder import lock
 
 PROGRAMS = (
     *("google-chrome-stable", "google-chrome", "chromium", "chromium-browser"),
@@ -55,6 +55,8 @@ AS_ROOT = ("--no-sandbox", "--test-type")
 NICENESS = "10"
 """A browser that draws on the processor leaves it to the control loop first."""
 ENDING_S, LOOK_S = 5.0, 0.1
+LOCK_NAME = "in-use.lock"
+"""Locked by the simulator whose window has the folder, until its process ends."""
 GONE = (
     "continues without its window, which ended with status {status}: open {url} in a browser, and "
     "type the pairing code {code}"
@@ -78,26 +80,45 @@ def application_browser() -> Path | None:
 
 
 def application_command(browser: Path, page: str, profile: Path) -> list[str]:
-    """Return the command that shows a page as an application, with a profile of its own."""
+    """Return the command that shows a page as an application, with a separate profile."""
     command = [str(browser), *OPTIONS, f"--app={page}", f"--user-data-dir={profile}"]
     if sys.platform != "win32" and os.geteuid() == 0:
         command += AS_ROOT
-    # Of Linux, the driver says whether there is a graphics processor.
+    # On Linux, the driver's file tells whether there is a graphics processor.
     if not sys.platform.startswith("linux") or any(Path("/dev/dri").glob("renderD*")):
         return command
     niceness = [] if shutil.which("nice") is None else ["nice", "-n", NICENESS]
     return [*niceness, *command, *WITHOUT_GRAPHICS]
 
 
+def remove_unused_folders(parent: Path) -> None:
+    """Remove the windows' folders that killed simulators have left."""
+    for file in parent.glob(f"*/{LOCK_NAME}"):
+        with contextlib.suppress(OSError):
+            os.close(_locked(file))
+            shutil.rmtree(file.parent, ignore_errors=True)
+
+
+def _locked(path: Path) -> int:
+    descriptor = os.open(path, os.O_CREAT | os.O_RDWR, 0o600)
+    try:
+        lock(descriptor)
+    except OSError:
+        os.close(descriptor)
+        raise
+    return descriptor
+
+
 class ApplicationWindow:
-    """Shows the page of one simulator in a browser of its own, with a profile of its own."""
+    """Shows the page of one simulator in a separate browser with a separate profile."""
 
     def __init__(self, url: str, code: str) -> None:
-        """`url` is that of the views, `code` pairs one."""
+        """`url` is the address of the views, `code` pairs a view."""
         self._url = url
         self._code = code
         self._process: asyncio.subprocess.Process | None = None
         self._folder: Path | None = None
+        self._lock = -1
 
     async def run(self, on_closed: Callable[[], None], announce: Callable[[str], None]) -> None:
         """Open the window and wait for its end.
@@ -106,10 +127,12 @@ class ApplicationWindow:
         usual browser shows the page, the simulator stays; `announce` says how to come back.
         """
         browser = application_browser()
-        # Not in a hidden folder or that of temporary files: Ubuntu's Chromium sees neither.
+        # Ubuntu's Chromium sees neither hidden folders nor temporary files.
         parent = home_folder() / "RASTrainer" / "window"
         make_private_folder(parent)
+        remove_unused_folders(parent)
         self._folder = Path(tempfile.mkdtemp(dir=parent))
+        self._lock = _locked(self._folder / LOCK_NAME)
         # A page that leads to ours: others can read a command line, but not this file.
         page = self._folder / "open.html"
         write_text(page, _REDIRECTION.format(url=self._url, code=self._code), is_private=True)
@@ -118,10 +141,9 @@ class ApplicationWindow:
                 announce(NO_BROWSER.format(url=self._url, code=self._code))
             return
         self._process = await asyncio.create_subprocess_exec(
-            # It ends when this process does, even by a crash; only Linux has that.
+            # The window ends when this process does, even by a crash, on Linux.
             *([] if shutil.which("setpriv") is None else ["setpriv", "--pdeathsig", "TERM"]),
             *application_command(browser, page.as_uri(), page.parent / "profile"),
-            env=environment_without_secrets(),
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
@@ -142,6 +164,8 @@ class ApplicationWindow:
             except asyncio.TimeoutError:
                 process.kill()
                 await process.wait()
+        if self._lock >= 0:
+            os.close(self._lock)
         # A browser's other processes write until they have noticed the end of the first.
         for _ in range(round(ENDING_S / LOOK_S)):
             if self._folder is None or not self._folder.exists():

@@ -1,4 +1,4 @@
-"""Processes: our environment and that of children, and ending by a signal."""
+"""Processes: displays, priorities, and ending by a signal."""
 
 from __future__ import annotations
 
@@ -11,17 +11,10 @@ import subprocess
 import sys
 from collections.abc import Iterator
 
-VIEW_KEY_VARIABLE = "RASTRAINER_VIEW_KEY"
-"""Environment variable with a key by which views of who starts the simulator join."""
 BELOW_NORMAL = getattr(subprocess, "BELOW_NORMAL_PRIORITY_CLASS", 0)
 """Windows' flag of a process of low priority; elsewhere such a process raises its niceness."""
 
 _log = logging.getLogger(__name__)
-
-
-def environment_without_secrets() -> dict[str, str]:
-    """Return the environment without the views' key, which other processes must not know."""
-    return {name: value for name, value in os.environ.items() if name != VIEW_KEY_VARIABLE}
 
 
 def has_display() -> bool:

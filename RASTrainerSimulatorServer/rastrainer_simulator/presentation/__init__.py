@@ -1,1 +1,1 @@
-"""What views show: screens as data, events with sound and vibration, and who presents them."""
+"""Screens as data, events with sound and vibration, and the presenter that shows them."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import Enum
 
 from rastrainer.protocol import PROCEDURE_PHASES, Phase, Proximity
@@ -13,61 +11,45 @@ from rastrainer_simulator.training.feed import FeedLayer
 
 
 class FeedbackEvent(str, Enum):
-    """Everything that has a sound or a vibration; the kinds of the views' events."""
+    """Everything that has a sound or a vibration: the kinds of the views' events.
 
-    TOUCH = "touch"
-    UNDO = "undo"
-    ERROR = "error"
-    PROXIMITY_IN = "proximity-in"
-    PROXIMITY_OUT = "proximity-out"
-    CONTACT = "contact"
-    ON_SKIN = "on-skin"
-    CONTACT_OUT = "contact-out"
-    FINISH = "finish"
-    FOCUS = "focus"
-    ACCEPT = "accept"
-    TEST = "test"
-    STEP = "step"
-    CHECKPOINT = "checkpoint"
-    BONE = "bone"
-    THROUGH = "through"
-    BLOCKED = "blocked"
-
-
-@dataclass(frozen=True)
-class FeedbackEffect:
-    """The sound of an event, "" for none, and how strongly (0 to 1) and how long it vibrates."""
+    Each has a sound, "" for none, and vibrates so strongly (0 to 1) and so long.
+    """
 
     sound: str
-    rumble: float = 0.0
-    seconds: float = 0.0
+    rumble: float
+    seconds: float
 
+    TOUCH = "touch", "touch", 0.5, 0.12
+    UNDO = "undo", "undo", 0.3, 0.12
+    ERROR = "error", "error", 0.7, 0.3
+    PROXIMITY_IN = "proximity-in", "proximity", 0.35, 0.2
+    PROXIMITY_OUT = "proximity-out", "", 0.15, 0.08
+    CONTACT = "contact", "contact", 1.0, 0.4
+    ON_SKIN = "on-skin", "on-skin", 0.25, 0.1
+    CONTACT_OUT = "contact-out", "", 0.2, 0.08
+    FINISH = "finish", "finish", 0.6, 0.5
+    FOCUS = "focus", "focus"
+    ACCEPT = "accept", "accept"
+    TEST = "test", "", 0.6, 0.2
+    STEP = "step", "accept", 0.3, 0.12
+    CHECKPOINT = "checkpoint", "touch", 0.5, 0.12
+    BONE = "bone", "proximity", 0.5, 0.3
+    THROUGH = "through", "contact", 1.0, 0.4
+    BLOCKED = "blocked", "error", 0.7, 0.3
 
-FEEDBACK_EFFECTS: Mapping[FeedbackEvent, FeedbackEffect] = {
-    FeedbackEvent.TOUCH: FeedbackEffect("touch", 0.5, 0.12),
-    FeedbackEvent.UNDO: FeedbackEffect("undo", 0.3, 0.12),
-    FeedbackEvent.ERROR: FeedbackEffect("error", 0.7, 0.3),
-    FeedbackEvent.PROXIMITY_IN: FeedbackEffect("proximity", 0.35, 0.2),
-    FeedbackEvent.PROXIMITY_OUT: FeedbackEffect("", 0.15, 0.08),
-    FeedbackEvent.CONTACT: FeedbackEffect("contact", 1.0, 0.4),
-    FeedbackEvent.ON_SKIN: FeedbackEffect("on-skin", 0.25, 0.1),
-    FeedbackEvent.CONTACT_OUT: FeedbackEffect("", 0.2, 0.08),
-    FeedbackEvent.FINISH: FeedbackEffect("finish", 0.6, 0.5),
-    FeedbackEvent.FOCUS: FeedbackEffect("focus"),
-    FeedbackEvent.ACCEPT: FeedbackEffect("accept"),
-    FeedbackEvent.TEST: FeedbackEffect("", 0.6, 0.2),
-    FeedbackEvent.STEP: FeedbackEffect("accept", 0.3, 0.12),
-    FeedbackEvent.CHECKPOINT: FeedbackEffect("touch", 0.5, 0.12),
-    FeedbackEvent.BONE: FeedbackEffect("proximity", 0.5, 0.3),
-    FeedbackEvent.THROUGH: FeedbackEffect("contact", 1.0, 0.4),
-    FeedbackEvent.BLOCKED: FeedbackEffect("error", 0.7, 0.3),
-}
+    def __new__(
+        cls, kind: str, sound: str, rumble: float = 0.0, seconds: float = 0.0
+    ) -> FeedbackEvent:
+        event = str.__new__(cls, kind)
+        event._value_, event.sound = kind, sound
+        event.rumble, event.seconds = rumble, seconds
+        return event
 
 
 def feedback_of(what: FeedbackEvent, number: int, volume: float = 1.0) -> Feedback:
-    effect = FEEDBACK_EFFECTS[what]
-    rumble_ms = round(1000.0 * effect.seconds)
-    return Feedback(number, what.value, effect.sound, volume, effect.rumble, rumble_ms)
+    rumble_ms = round(1000.0 * what.seconds)
+    return Feedback(number, what.value, what.sound, volume, what.rumble, rumble_ms)
 
 
 _OF_A_KIND = {
@@ -81,13 +63,13 @@ _OF_A_LAYER = {
     FeedLayer.THROUGH.value: FeedbackEvent.THROUGH,
     FeedLayer.BLOCKED.value: FeedbackEvent.BLOCKED,
 }
-"""What a hand feels of a drill or an instrument; skin and scalp are not felt."""
+"""Layers that a hand feels through a drill or an instrument; skin and scalp are not felt."""
 
 
 def feedback_event(
     event: Event, touch: TouchStage, not_recorded: bool = False
 ) -> FeedbackEvent | None:
-    """Return the feedback to an event of the simulation, None where it has none.
+    """Return the feedback to an event of the simulation; None without any.
 
     `touch` is how the touch is going when it happens: a contact where a touch counts is no alarm.
     `not_recorded` says that a change of the phase undid what the disk had refused.

@@ -105,7 +105,7 @@ class HeadsetPose:
     right: HeadsetPart
 
 
-# From the simulator to its views.
+# Sent by the simulator.
 
 
 @dataclass(frozen=True)
@@ -355,7 +355,7 @@ News = (
 """Everything that a view is sent; a board is sent a `WelcomeNews` and `SeatNews`."""
 
 
-# From a view to the simulator.
+# Sent by a view.
 
 
 @dataclass(frozen=True)
@@ -549,7 +549,7 @@ class OrderRequest:
 
     @property
     def sentence(self) -> str:
-        """What the trainee is told, "" for other orders."""
+        """The sentence to the trainee, "" for other orders."""
         return self.text.strip() if self.order is InstructorOrder.SAY else ""
 
 
@@ -562,7 +562,7 @@ def message_text(message: ViewMessage) -> str:
 
 
 def _members(record: Any) -> dict[str, Any]:
-    """Return the members of a record; faster than `record_to_json`, as nested ones stay records."""
+    """Return the members of a record, faster than `record_to_json`: nested records stay records."""
     fields = record_fields(cast("Any", type(record)))
     return {each.key: getattr(record, each.name) for each in fields}
 

@@ -1,8 +1,7 @@
-"""What stands between the views and the simulation: who reads what, and what each control does."""
+"""The presenter between the views and the simulation: it makes screens and takes input."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +9,6 @@ import numpy as np
 from rastrainer_simulator.loop.results import Subscribers
 from rastrainer_simulator.presentation.messages import (
     Feedback,
-    Frames,
     Hello,
     InstructorOrder,
     Seat,
@@ -23,7 +21,7 @@ from rastrainer_simulator.viewpoint.view_control import Pictures
 
 @dataclass(frozen=True)
 class Control:
-    """What drives the arm.
+    """The source that drives the arm.
 
     Attributes:
         holder: what people read, such as "gamepad" or "keyboard"; "" while no one drives.
@@ -43,8 +41,8 @@ class TraceGuidance:
     """How a trainee who traces the skin is guided.
 
     Attributes:
-        covered_mm: so far around the traced points the skin is painted; 0 where it is not.
-        next_place: where the next points would help most; None where that is not shown.
+        covered_mm: distance around the traced points that is painted on the skin; 0 for none.
+        next_place: place where the next points would help most; None if it is not shown.
     """
 
     covered_mm: float = 0.0
@@ -52,12 +50,11 @@ class TraceGuidance:
 
 
 class Presenter:
-    """What the view server shows, and where it passes on what views send; ignores it by default.
+    """Makes what the view server shows, and takes the input of views; ignores it by default.
 
-    Everything is called in the event loop's thread, and what is subscribed is called there too;
-    every call returns at once. Values have been checked: numbers are finite and within their
-    range, texts short and printable, `view` is the number of a view that has joined. Each message
-    of a view goes to the method of its type.
+    Everything is called in the event loop's thread, subscribers too; every call returns at once.
+    Values have been checked: numbers are finite and within their range, texts short and printable,
+    `view` is the number of a view that has joined.
 
     Attributes:
         updates: each new screen, feedback and holder of the control.
@@ -73,9 +70,9 @@ class Presenter:
         raise NotImplementedError
 
     def ghost(self, now: SimulationState) -> tuple[np.ndarray, ...] | None:  # noqa: ARG002
-        """Return the poses of the ghost beside the arm in a state, in the order of `GHOST_BODIES`.
+        """Return the poses of the ghost next to the arm in a state, in the order of `GHOST_BODIES`.
 
-        Each is (4, 4) float, to World, m; None where none is shown.
+        Each is (4, 4) float, to World, m; None without a ghost.
         """
         return None
 
@@ -84,7 +81,7 @@ class Presenter:
         return TraceGuidance()
 
     def seat(self) -> Seat:
-        """Return what a teacher's board shows of this seat; nothing where no one trains."""
+        """Return the seat as a teacher's board shows it; empty while no one trains."""
         return Seat()
 
     def instruct(self, order: InstructorOrder, text: str) -> str:
@@ -98,51 +95,17 @@ class Presenter:
         """Register a view."""
 
     def view_left(self, view: int) -> None:
-        """Forget a view; what it held has been released before."""
+        """Forget a view; its held inputs have been released before."""
 
-    def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
-        """Process a `KeyInput`.
+    def receive(self, view: int, kind: str, *values: object) -> None:
+        """Process a message of a view, with the values of its fields; ignored by default.
 
-        While a key is held it may come down again and again, as keyboards repeat it. A view
-        that leaves or falls silent releases each key that it held, with `is_down` False.
+        It goes to the method of its type, such as `on_key` for `KeyInput`. A key that is
+        held may come down again and again, as keyboards repeat it. A view that leaves or falls
+        silent releases everything: each key comes up, a pad has nothing pressed, sticks are at
+        zero. The `kind` "silence" says that a view has been silent for so long that its picture
+        must be frozen.
         """
-
-    def on_layout(self, view: int, keys: Mapping[str, str]) -> None:
-        """Process a `LayoutInput`."""
-
-    def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
-        """Process a `PadInput`; one of a view that leaves or falls silent has nothing pressed."""
-
-    def on_sticks(
-        self,
-        view: int,
-        translation: tuple[float, float, float],
-        rotation: tuple[float, float],
-        is_fine: bool,
-        yaw_deg: float,
-    ) -> None:
-        """Process a `SticksInput`; a view that leaves or falls silent releases them: zeros."""
-
-    def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
-        """Process an `OrbitInput`."""
-
-    def on_press(self, view: int, control: str) -> None:
-        """Process a `PressInput`; any name."""
-
-    def on_item(self, view: int, name: str) -> None:
-        """Process an `ItemInput`; any name, the menu may have changed."""
-
-    def on_text(self, view: int, name: str, value: str) -> None:
-        """Process a `TextInput`; any name, the menu may have changed."""
-
-    def on_frames(self, view: int, frames: Frames) -> None:
-        """Process how smoothly a view draws, once a second."""
-
-    def on_picture(self, view: int, task: str, share: float) -> None:
-        """Process a `PictureProgress`."""
-
-    def on_visibility(self, view: int, is_visible: bool) -> None:
-        """Process a `Visibility`."""
-
-    def on_silence(self, view: int) -> None:
-        """Process that a view has been silent for so long that its picture must be frozen."""
+        process = getattr(self, f"on_{kind}", None)
+        if process is not None:
+            process(view, *values)

@@ -1,4 +1,4 @@
-"""What the trainee reads and can choose at a moment, for every view to draw in its own way."""
+"""The screen: everything that the trainee reads and can choose now, for every view to draw."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Tone(str, Enum):
 
 
 class ItemKind(str, Enum):
-    """What can be done with an item.
+    """The kind of an item.
 
     A button is pressed, a choice goes left and right through its options, a text is typed, and an
     axis only shows a position from −1 to 1, as on the screen that tests the gamepad.
@@ -130,7 +130,7 @@ class ErrorArrow:
         begin, end: (x, y, z) in World, m, with a ball at the end; equal for the ball alone. Errors
             of touches are drawn longer than they are.
         tone: how large the error is, or which line it is.
-        name: written above the ball, such as that of a checkpoint; "" for nothing.
+        name: written above the ball, such as the name of a checkpoint; "" for nothing.
     """
 
     begin: RecordVector
@@ -144,8 +144,8 @@ class DepthRuler:
     """A scale along the axis of the locked guide: planned distances from its tip.
 
     Attributes:
-        outer_mm, inner_mm: of the tables of the skull; None where the line does not meet them.
-        names: of the four in their order, written beside the scale.
+        outer_mm, inner_mm: of the tables of the skull; None if the line does not meet them.
+        names: of the four in their order, written next to the scale.
     """
 
     entry_mm: Depth
@@ -171,7 +171,7 @@ class Hint:
 
 @dataclasses.dataclass(frozen=True)
 class Screen:
-    """Everything beside the scene.
+    """Everything except the scene.
 
     Attributes:
         menu: None while the trainee works.
@@ -182,7 +182,7 @@ class Screen:
         sticks_navigate: whether a headset's sticks step as in a menu, though none is open: while
             a trial is shown again.
         has_arrow: whether a view shows an arrow toward a next point that is out of sight.
-        is_head_clear: whether the skin is drawn so that what is within the head is seen.
+        is_head_clear: whether the skin is drawn clear, so that the inside of the head is seen.
         coverage: what the paint on the skin says while it is traced; "" where none is painted.
         is_private: whether what the menu offers is only for the views of who operates.
     """
@@ -216,7 +216,7 @@ NOTICE_S = 5.0
 
 
 class Notices:
-    """What is said beside the instruction: for some seconds, or until it is called off."""
+    """Sentences besides the instruction, shown for some seconds or until they are withdrawn."""
 
     def __init__(self) -> None:
         self._time = 0.0

@@ -1,9 +1,9 @@
-"""What views show and accept while a rater watches replays and marks them: one domain a page."""
+"""The presenter and the pages for a rater who watches replays and marks them, a domain a page."""
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from functools import partial
 
@@ -14,22 +14,19 @@ from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.gamepads import w3c_gamepad_inputs
 from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_of
-from rastrainer_simulator.presentation.messages import InstructorOrder
-from rastrainer_simulator.presentation.presenter import Presenter, ViewUpdate
 from rastrainer_simulator.presentation.screen import Fact, Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.rating.rating_work import RatingWork
 from rastrainer_simulator.replay.playback import Playback, ShownPlayback
 from rastrainer_simulator.replay.replay_presenter import RATE, ReplayPresenter
-from rastrainer_simulator.state import SimulationState
+from rastrainer_simulator.state import StepResult
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label, pair_label
-from rastrainer_simulator.viewpoint.view_control import Pictures
 
 _DOWN = 0.5
 _REPEATED = ("ArrowLeft", "ArrowRight")
 _IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlName.BACK}
 
 
-class RatingPresenter(Presenter):
+class RatingPresenter(ReplayPresenter):
     """The presenter for one rater: replays under numbers, and the pages of the forms over them."""
 
     def __init__(
@@ -41,25 +38,26 @@ class RatingPresenter(Presenter):
         end: Callable[[], None],
     ) -> None:
         """Begin with a replay; `load` begins to load another, by its trial's UUID."""
-        super().__init__()
         self.work = work
-        self.texts = Texts(LANGUAGES[language])
         self.pages = OpenPages(self._happened)
         self.shown = ShownPlayback(first)
         self.leave = end
-        self._language, self._load = language, load
+        self._load = load
         self._loading: Future[Playback] | None = None
-        self._held: dict[int, tuple[frozenset[int], frozenset[int]]] = {}
+        self._inputs: dict[int, tuple[frozenset[int], frozenset[int]]] = {}
         self._keys: dict[int, set[str]] = {}
         self._problem = ""
-        self._count = 0
-        self.screen = Screen()
-        self._watch(first)
+        blinded = Texts(LANGUAGES[language]).say("rating.replay", **work.numbers)
+        super().__init__(first, language, self.rate, blinded)
         if work.open_domain is None:
             self.rate()
 
+    def say(self, key: str, **values: object) -> str:
+        """Return a sentence in the chosen language, with the replay's number among all."""
+        return self._texts.say(key, **self.work.numbers, **values)
+
     def advance(self, dt: float) -> None:
-        """Show what is loaded."""
+        """Show a replay that has been loaded."""
         self.pages.advance(dt)
         loading = self._loading
         if loading is None or not loading.done():
@@ -74,7 +72,7 @@ class RatingPresenter(Presenter):
     def watch(self) -> None:
         """Show the present replay again, from where it was left or, at its end, the beginning."""
         self.pages.show(None)
-        self.shown.playback.pause(False)
+        self._playback.pause(False)
         self._refresh()
 
     def load(self, go: Callable[[], object]) -> None:
@@ -86,7 +84,7 @@ class RatingPresenter(Presenter):
 
     def rate(self) -> None:
         """Open the next domain that has no mark, or the marks of the replay."""
-        self.shown.playback.pause(True)
+        self._playback.pause(True)
         open_ = self.work.open_domain
         self.pages.show(RatedPage(self) if open_ is None else DomainPage(self, *open_))
         self._refresh()
@@ -95,17 +93,10 @@ class RatingPresenter(Presenter):
         self.work.undo()
         self.rate()
 
-    def pictures(self, now: SimulationState) -> Pictures:
-        return self._replay.pictures(now)
-
-    def instruct(self, order: InstructorOrder, text: str) -> str:
-        """Refuse: a recorded trial takes no orders."""
-        return self._replay.instruct(order, text)
-
     def view_left(self, view: int) -> None:
-        self._held.pop(view, None)
+        super().view_left(view)
+        self._inputs.pop(view, None)
         self._keys.pop(view, None)
-        self._replay.view_left(view)
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
         """Process a key: for the open page, else for the replay.
@@ -118,19 +109,15 @@ class RatingPresenter(Presenter):
         (keys.add if is_down else keys.discard)(code)
         if self.pages.top is None:
             if not is_again or code in _REPEATED:
-                self._replay.on_key(view, code, is_down, text)
+                super().on_key(view, code, is_down, text)
         elif is_down and not is_again:
-            self._do(lambda: self._page_pressed(InputDevice.KEYBOARD, code))
-
-    def on_layout(self, view: int, keys: Mapping[str, str]) -> None:
-        """Name the replay's keys as on the latest keyboard: the pages' own are no letters."""
-        self._replay.on_layout(view, keys)
+            self._try(lambda: self._page_pressed(InputDevice.KEYBOARD, code))
 
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
-        """Process a gamepad: what is newly pressed is for the open page, else for the replay."""
+        """Process a gamepad: newly pressed buttons are for the open page, else for the replay."""
         now = _pressed(axes), _pressed(buttons)
-        before = self._held.get(view, (frozenset(), frozenset()))
-        self._held[view] = now
+        before = self._inputs.get(view, (frozenset(), frozenset()))
+        self._inputs[view] = now
         moved, tapped = (
             [value * (number in new - old) for number, value in enumerate(values)]
             for values, new, old in zip((axes, buttons), now, before, strict=True)
@@ -143,54 +130,32 @@ class RatingPresenter(Presenter):
                 for name in names:
                     self._page_pressed(InputDevice.GAMEPAD, name)
 
-            self._do(press)
+            self._try(press)
             return
         # Released at once: a button that has led from the form back here is not pressed again.
-        self._replay.on_pad(view, axes, tapped)
-        self._replay.on_pad(view, axes, ())
+        super().on_pad(view, axes, tapped)
+        super().on_pad(view, axes, ())
 
     def on_press(self, view: int, control: str) -> None:
         """Process a button of an XR controller, or of a touch screen."""
         if self.pages.top is None:
-            self._replay.on_press(view, control)
+            super().on_press(view, control)
         elif control in ControlName._value2member_map_:
             name = ControlName(control)
-            self._do(lambda: self.pages.pressed(_IN_MENUS.get(name, name)))
-
-    def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
-        self._replay.on_orbit(view, around_deg, higher_deg, zoom)
+            self._try(lambda: self.pages.pressed(_IN_MENUS.get(name, name)))
 
     def on_item(self, view: int, name: str) -> None:  # noqa: ARG002
         """Process a click on an item of the page, or on the hint that leads to the form."""
         if self.pages.top is None and name == RATE:
-            self._do(self.rate)
+            self._try(self.rate)
         else:
-            self._do(lambda: self.pages.choose(name))
-
-    def on_visibility(self, view: int, is_visible: bool) -> None:
-        self._replay.on_visibility(view, is_visible)
-
-    def on_silence(self, view: int) -> None:
-        self._replay.on_silence(view)
+            self._try(lambda: self.pages.choose(name))
 
     def _watch(self, playback: Playback) -> None:
         """Show a replay from its beginning, under its number."""
-        place = {"number": self.work.place + 1, "count": len(self.work.trial_ids)}
-        blinded = self.texts.say("rating.replay", **place)
         self.shown.show(playback)
-        self._replay = ReplayPresenter(playback, self._language, self.rate, blinded)
-        self._replay.updates.add(self._pass_on)
         self.pages.show(None)
-        self._refresh()
-
-    def _pass_on(self, update: ViewUpdate) -> None:
-        """Pass on the replay's feedback, while it is watched."""
-        if self.pages.top is not None:
-            return
-        if isinstance(update, Screen):
-            self._refresh()
-        else:
-            self.updates.publish(update)
+        self._play(playback, self.say("rating.replay"))
 
     def _page_pressed(self, device: InputDevice, name: str) -> None:
         page = self.pages.top
@@ -200,7 +165,7 @@ class RatingPresenter(Presenter):
         if control is not None:
             self.pages.pressed(control)
 
-    def _do(self, act: Callable[[], None]) -> None:
+    def _try(self, act: Callable[[], None]) -> None:
         """Carry out the request, and report failures."""
         self._problem = ""
         try:
@@ -210,22 +175,23 @@ class RatingPresenter(Presenter):
             self._happened(FeedbackEvent.ERROR)
         self._refresh()
 
-    def _refresh(self) -> None:
-        menu, say = self.pages.menu(), self.texts.say
-        problem = (ScreenMessage(self._problem, Tone.ERROR),) if self._problem else ()
-        screen = self._replay.screen
+    def _follow(self, result: StepResult) -> None:
+        if self.pages.top is None:
+            super()._follow(result)
+
+    def _make_screen(self) -> Screen:
+        menu, say = self.pages.menu(), self._texts.say
+        screen = super()._make_screen()
         if menu is not None:
             up, down, enter, escape = (
-                input_label(self.texts, InputDevice.KEYBOARD.value, code)
+                input_label(self._texts, InputDevice.KEYBOARD.value, code)
                 for code in ("ArrowUp", "ArrowDown", "Enter", "Escape")
             )
             choose = Hint(pair_label(up, down), say("hint.choose"))
             hints = (choose, Hint(enter, say("hint.accept")), Hint(escape, say("hint.back")))
             screen = Screen(menu=menu, hints=hints, language=self._language)
-        screen = dataclasses.replace(screen, warnings=(*screen.warnings, *problem))
-        if screen != self.screen:
-            self.screen = screen
-            self.updates.publish(screen)
+        problem = (ScreenMessage(self._problem, Tone.ERROR),) if self._problem else ()
+        return dataclasses.replace(screen, warnings=(*screen.warnings, *problem))
 
     def _happened(self, what: FeedbackEvent) -> None:
         self._count += 1
@@ -249,10 +215,7 @@ class RatingPage(Page):
         self.actions = actions
 
     def say(self, key: str, **values: object) -> str:
-        """Return a sentence in the chosen language, with the replay's number among all."""
-        work = self.actions.work
-        place = {"number": work.place + 1, "count": len(work.trial_ids)}
-        return self.actions.texts.say(key, **place, **values)
+        return self.actions.say(key, **values)
 
     def rows(self, *names: str) -> tuple[PageRow, ...]:
         """Return buttons that several pages have; "watch" goes back."""
@@ -281,7 +244,7 @@ class DomainPage(RatingPage):
         self._form, self._domain = form, domain
 
     def content(self) -> PageContent:
-        """Return the marks, three of them with what they mean."""
+        """Return the marks, three of them with their meaning."""
         marks = (
             self.button(f"mark {mark}", partial(self._give, mark), self._label(mark))
             for mark in MARKS
@@ -291,7 +254,7 @@ class DomainPage(RatingPage):
         title = self.say("rating.title", form=self._form.title, domain=domain)
         # The focus is not on a mark, which would then be given more often than others.
         said = (self.say("rating.text"),)
-        return PageContent(title, said, rows=(*marks, *others), first="watch")
+        return PageContent(said, rows=(*marks, *others), title=title, first="watch")
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
         """Store a typed mark."""
@@ -330,7 +293,7 @@ class RatedPage(RatingPage):
         following = [] if is_last else ["next"]
         previous = ["previous"] if work.place else []
         rows = self.rows(*following, "undo", "watch", *previous, "leave")
-        return PageContent(title, (text,), facts, rows, first="next")
+        return PageContent((text,), facts, rows, title=title, first="next")
 
 
 class LoadingPage(RatingPage):
@@ -349,7 +312,7 @@ class LoadingPage(RatingPage):
             problem = str(error) if isinstance(error, InputError) else ""
         text = problem or self.say("rating-loading.text")
         rows = self.rows(*(["previous"] if self.actions.work.place else []), "leave")
-        return PageContent(self.say("rating-loading.title"), (text,), rows=rows)
+        return PageContent((text,), rows=rows)
 
     def back(self) -> None:
         """There is nothing to go back to yet."""

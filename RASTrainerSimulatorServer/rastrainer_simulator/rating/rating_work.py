@@ -36,13 +36,18 @@ class RatingWork:
         return self.trial_ids[self.place]
 
     @property
+    def numbers(self) -> dict[str, int]:
+        """The number of the present replay, from 1, and of all, for sentences."""
+        return {"number": self.place + 1, "count": len(self.trial_ids)}
+
+    @property
     def marks(self) -> dict[str, int]:
         """The marks of the present replay, by domain, in the order in which they were given."""
         return self._marks[self.trial_id]
 
     @property
     def open_domain(self) -> tuple[RatingForm, RatingDomain] | None:
-        """The first domain of the present replay without a mark; None where all have one."""
+        """The first domain of the present replay without a mark; None if all have one."""
         return self._open_of(self.marks)
 
     @property

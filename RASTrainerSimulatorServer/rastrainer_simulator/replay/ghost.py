@@ -13,7 +13,6 @@ from rastrainer.journal.recording import ReplayTrack, read_track
 from rastrainer.json_records import record_from_json
 from rastrainer.protocol import GhostRule, Phase
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.core.arm import moving_links
 from rastrainer_simulator.core.setup import RecordedSetup, SimulationSetup
 from rastrainer_simulator.net.views.outgoing import GHOST_LINKS
 from rastrainer_simulator.replay.recorded_trial import JournalLoading
@@ -43,7 +42,7 @@ class Ghost:
         self._moved[:3, 3] /= MM_PER_M
         self._track = track
         self._kinematics = make_kinematics(setup.robot)
-        self._links = tuple(moving_links(setup.robot)[joint] for joint in GHOST_LINKS)
+        self._links = tuple(setup.robot.moving_links[joint].name for joint in GHOST_LINKS)
         self._tip = setup.robot.tip.name
         self.duration_s = touches[-1].time_s + AFTER_S
 

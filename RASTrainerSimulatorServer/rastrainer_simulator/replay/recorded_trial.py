@@ -21,7 +21,6 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.analysis import analyze_trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.collision.collision import stand_pose
-from rastrainer_simulator.core.arm import moving_links
 from rastrainer_simulator.core.interrupted_trial import refusing_malformed, seed_of
 from rastrainer_simulator.core.setup import RecordedSetup, SimulationSetup
 from rastrainer_simulator.loop.timing import raise_thread_priority
@@ -86,7 +85,8 @@ class RecordedTrial:
             self.trainee, self.task = str(header["trainee"]), str(header["task"])
             self._track = track
             self._kinematics = make_kinematics(setup.robot)
-            self._links, self._tip = moving_links(setup.robot), setup.robot.tip.name
+            self._links = tuple(link.name for link in setup.robot.moving_links)
+            self._tip = setup.robot.tip.name
             self._head_to_world = scenario.perturbed_head_to_world(seed_of(header))
             self._head_to_world[:3, 3] /= MM_PER_M
             base = read_head_mesh(scenario.head).base / MM_PER_M

@@ -160,21 +160,27 @@ class ReplayPresenter(Presenter):
                 worst touch, which only the truth reveals; "" for everybody else.
         """
         super().__init__()
-        self._playback = playback
         self._language = language
         self._texts = Texts(LANGUAGES[language])
         self._count = 0
         self._held: dict[int, frozenset[int]] = {}
+        self._key_names: Mapping[str, str] = {}
+        self._end = end
+        self.screen = Screen()
+        self._play(playback, blinded)
+
+    def _play(self, playback: Playback, blinded: str) -> None:
+        """Show a trial from its beginning."""
+        self._playback = playback
         self._view = ViewControl()
         self._best = BestViews()
         self._search: Future[BestView | None] | None = None
         self._wants_worst = False
-        self._player = Player(playback, end, blinded)
+        self._player = Player(playback, self._end, blinded)
         self._blinded = blinded
-        self._key_names: Mapping[str, str] = {}
-        self.screen = self._make_screen()
         playback.changed = self._refresh
         playback.subscribe(self._follow)
+        self._refresh()
 
     def pictures(self, now: SimulationState) -> Pictures:
         self._view.use(now.camera)

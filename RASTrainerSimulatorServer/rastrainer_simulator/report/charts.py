@@ -10,6 +10,7 @@ import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
@@ -31,41 +32,12 @@ MODE_COLORS = {"desktop": "#0b6fa4", "hmd": "#d1661b"}
 """The paper's two, distinguishable for the color-blind."""
 OTHER_COLORS = ("#3d7f5f", "#8a4f9e", "#b3972c", "#5a6672")
 FONT, MEASURED_FONT = "'Helvetica Neue', Helvetica, Arial, sans-serif", "'DejaVu Sans'"
-"""The font of pages, and the one that Matplotlib contains and measures texts with."""
-STYLE: Any = {
-    "font.family": "DejaVu Sans",
-    "font.size": 10.0,
-    "text.color": INK,
-    "text.parse_math": False,
-    "axes.edgecolor": GRID,
-    "axes.labelcolor": FAINT,
-    "axes.grid": True,
-    "axes.grid.axis": "y",
-    "axes.axisbelow": True,
-    "axes.autolimit_mode": "round_numbers",
-    "axes.xmargin": 0.0,
-    "axes.ymargin": 0.0,
-    "axes.spines.left": False,
-    "axes.spines.right": False,
-    "axes.spines.top": False,
-    "axes.spines.bottom": False,
-    "grid.color": GRID,
-    "grid.linewidth": 1.0,
-    "xtick.color": FAINT,
-    "xtick.major.size": 0.0,
-    "ytick.color": FAINT,
-    "ytick.major.size": 0.0,
-    "legend.frameon": False,
-    "legend.borderpad": 0.0,
-    "legend.borderaxespad": 0.0,
-    "legend.handletextpad": 0.5,
-    "legend.columnspacing": 1.4,
-    "svg.fonttype": "none",
-    "svg.hashsalt": "RASTrainer",
-}
+"""The font of pages, and the font of Matplotlib, which measures texts with it."""
+STYLE = Path(__file__).with_name("charts.mplstyle")
 SVG = "{http://www.w3.org/2000/svg}"
 LEFT_OUT = {f"{SVG}style", f"{SVG}metadata"}
 """The style would hold for the whole page, the metadata have dates."""
+SHAPES = {f"{SVG}use", f"{SVG}path"}
 LINK = "{http://www.w3.org/1999/xlink}href"
 PX_PER_INCH = 72
 """As Matplotlib counts in SVG files."""
@@ -127,8 +99,11 @@ class Chart:
             self.figure.savefig(written, format="svg", transparent=True)
         root = ElementTree.fromstring(written.getvalue())
         for name, titles in self.titles.items():
-            if titles:
-                self._name(next(each for each in root.iter() if each.get("id") == name), titles)
+            group = next(each for each in root.iter() if each.get("id") == name)
+            outside = (part for part in group if part.tag != f"{SVG}defs")
+            shapes = (each for part in outside for each in part.iter() if each.tag in SHAPES)
+            for shape, title in zip(shapes, titles, strict=False):
+                ElementTree.SubElement(shape, f"{SVG}title").text = title
         for parent in list(root.iter()):
             for child in [each for each in parent if each.tag in LEFT_OUT]:
                 parent.remove(child)
@@ -147,18 +122,6 @@ class Chart:
         root.set("stroke-linejoin", "round")
         ElementTree.register_namespace("", SVG.strip("{}"))
         return Markup(ElementTree.tostring(root, encoding="unicode"))
-
-    @staticmethod
-    def _name(group: ElementTree.Element, titles: Sequence[str]) -> None:
-        outside = [each for each in group if each.tag != f"{SVG}defs"]
-        shapes = [
-            each
-            for part in outside
-            for each in part.iter()
-            if each.tag in (f"{SVG}use", f"{SVG}path")
-        ]
-        for shape, title in zip(shapes, titles, strict=True):
-            ElementTree.SubElement(shape, f"{SVG}title").text = title
 
 
 @contextmanager
@@ -179,7 +142,7 @@ def drawn(
     from matplotlib.figure import Figure
 
     left, right, top, bottom = box
-    with rc_context(STYLE):
+    with rc_context(fname=STYLE):
         figure = Figure(figsize=(width / PX_PER_INCH, height / PX_PER_INCH), dpi=PX_PER_INCH)
         axes = figure.add_axes(
             (left / width, 1 - bottom / height, (right - left) / width, (bottom - top) / height)
@@ -334,7 +297,7 @@ def paired_lines(comparison: ModeComparison) -> Markup:
             x, y = DIFFERENCE / HALF_WIDTH, 0.5
             chart.figure.text(x, y, "no test", color=FAINT, ha="center")
         else:
-            _difference(chart, result.mean_difference, result.interval)
+            _difference(chart, result.difference.value, result.difference.interval)
         return chart.svg()
 
 
@@ -363,9 +326,9 @@ MAX_EFFECT_SIZE = 6.0
 def effect_sizes(comparisons: Sequence[ModeComparison]) -> Markup:
     """Return the chart; intervals beyond the axis end in an arrow."""
     shown = [
-        (comparison, result.hedges_gz, result.gz_interval)
+        (comparison, result.effect.value, result.effect.interval)
         for comparison, result in tested(comparisons)
-        if result.hedges_gz is not None and result.gz_interval is not None
+        if result.effect is not None
     ]
     reach = max([1.0, *(abs(end) for _comparison, _gz, interval in shown for end in interval)])
     reach = min(MAX_EFFECT_SIZE, reach * 1.05)

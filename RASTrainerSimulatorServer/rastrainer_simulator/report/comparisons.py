@@ -68,8 +68,8 @@ def compare_modes(
     """Compare two modes on every outcome that trials of both have.
 
     A trainee's mean is over the tasks done in both modes, so a missing trial does not make a mode
-    look easier. With different orders of the modes, the effect of the period is removed. Only
-    the `confirmatory` outcomes have an adjusted p.
+    look easier. The effect of the period is removed if trainees had different orders of the modes.
+    Only the `confirmatory` outcomes have an adjusted p.
     """
     found = []
     delays = mode_delays(data, first, second) if data.has_order else None

@@ -1,4 +1,4 @@
-"""The modes side by side: by task (the paper's Fig. 8), as distributions, and by motion metric."""
+"""The modes side by side: by task (the paper's Fig. 8), as distributions, and by trainee."""
 
 from __future__ import annotations
 
@@ -19,39 +19,35 @@ from rastrainer.study.study_data import StudyData, values_of
 from rastrainer_simulator.report import charts
 from rastrainer_simulator.report.comparisons import ModeComparison, tested
 from rastrainer_simulator.report.page import render
+from rastrainer_simulator.statistics.paired import equivalence_margin
 
 SHOWN = ("completion_time_s", "rmse_mm", "ctps", "score")
+MAX_PAIRED_CHARTS = 6
 
 
 def mode_comparison(data: StudyData) -> Markup:
-    """Return one chart per outcome, with the modes side by side for every task."""
-    found = {name for trial in data.trials for name in trial.values}
-    outcomes = [each for each in MAIN_OUTCOMES if each.name in SHOWN and each.name in found]
-    titles, pictures = [task_title(task) for task in data.tasks], []
-    for outcome in outcomes:
-        series = []
-        for index, mode in enumerate(data.modes):
-            values = [
-                values_of((t for t in data.of_mode(mode) if t.task == task), outcome.name)
-                for task in data.tasks
-            ]
-            series.append((mode_title(mode), charts.mode_color(mode, index), values))
-        pictures.append(charts.grouped_bars(outcome.heading, titles, series))
-    return render("task_by_task", charts=pictures)
-
-
-def distributions(data: StudyData) -> Markup:
-    """Return one chart per outcome, with a lane for each mode."""
-    pictures = []
+    """Return one chart per outcome by task, and one with a lane for each mode."""
+    modes = [(mode, charts.mode_color(mode, index)) for index, mode in enumerate(data.modes)]
+    by_task, distributions = [], []
     for outcome in MAIN_OUTCOMES:
         lanes = [
-            (short_mode_title(mode), charts.mode_color(mode, index), values)
-            for index, mode in enumerate(data.modes)
+            (short_mode_title(mode), color, values)
+            for mode, color in modes
             if (values := values_of(data.of_mode(mode), outcome.name))
         ]
-        if lanes:
-            pictures.append(charts.distribution(outcome.heading, lanes))
-    return render("distributions", charts=pictures)
+        if not lanes:
+            continue
+        distributions.append(charts.distribution(outcome.heading, lanes))
+        if outcome.name not in SHOWN:
+            continue
+        series = []
+        for mode, color in modes:
+            trials = [[t for t in data.of_mode(mode) if t.task == task] for task in data.tasks]
+            by_trial = [values_of(own, outcome.name) for own in trials]
+            series.append((mode_title(mode), color, by_trial))
+        titles = [task_title(task) for task in data.tasks]
+        by_task.append(charts.grouped_bars(outcome.heading, titles, series))
+    return render("mode_comparison", by_task=by_task, distributions=distributions)
 
 
 def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> Markup:
@@ -67,6 +63,24 @@ def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> Markup:
         means = [mean_and_sd(own, outcome.digits) for own in values]
         rows.append((outcome, means, [len(own) for own in values], compared.get(outcome.name)))
     return render("motion", modes=data.modes, rows=rows)
+
+
+def paired_statistics(comparisons: Sequence[ModeComparison]) -> Markup:
+    """Return tables, charts and sentences; "" if no trainee did two modes."""
+    if not comparisons:
+        return Markup()
+    results = tested(comparisons)
+    return render(
+        "paired_statistics",
+        first=comparisons[0].first,
+        second=comparisons[0].second,
+        comparisons=comparisons,
+        margin=equivalence_margin,
+        separated=[(one.outcome, found.sequences) for one, found in results if found.sequences],
+        is_order_known=any(comparison.order is not None for comparison in comparisons),
+        charts=[charts.paired_lines(one) for one in comparisons[:MAX_PAIRED_CHARTS]],
+        effects=charts.effect_sizes(comparisons) if any(r.effect for _, r in results) else None,
+    )
 
 
 def mean_and_sd(values: Sequence[float], digits: int) -> str:

@@ -9,9 +9,10 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from rastrainer.number_text import counted, fixed, p_phrase, p_text, percent, significant
+from rastrainer.number_text import counted, fixed, p_phrase, p_text, percent, signed, significant
 from rastrainer.study.outcomes import mode_name, mode_title, short_mode_title, task_title
 from rastrainer.study.tre_calibration import share_text
+from rastrainer_simulator.statistics.intervals import ALPHA, TARGET_POWER, Estimate
 
 
 @dataclass(frozen=True)
@@ -33,9 +34,9 @@ def left(words: str) -> Cell:
     return Cell(words, kind="text")
 
 
-def interval_text(value: float, interval: tuple[float, float], digits: int) -> str:
-    low, high = interval
-    return f"{fixed(value, digits)} [{fixed(low, digits)}, {fixed(high, digits)}]"
+def interval_text(found: Estimate, digits: int, unit: str = "") -> str:
+    low, high = (fixed(limit, digits) for limit in found.interval)
+    return f"{fixed(found.value, digits)}{unit} [{low}, {high}]"
 
 
 def or_dash(value: float | None, digits: int) -> str:
@@ -48,7 +49,7 @@ def p_or_dash(p: float | None) -> str:
 
 WRITERS = (
     *(cell, left, interval_text, or_dash, p_or_dash, share_text),
-    *(counted, fixed, p_phrase, p_text, percent, significant),
+    *(counted, fixed, p_phrase, p_text, percent, signed, significant),
     *(mode_name, mode_title, short_mode_title, task_title),
 )
 """The functions that templates call."""
@@ -63,8 +64,9 @@ _TEMPLATES = Environment(
 )
 for _writer in WRITERS:
     _TEMPLATES.globals[_writer.__name__] = _TEMPLATES.filters[_writer.__name__] = _writer
-_ELEMENTS = _TEMPLATES.get_template("elements.html").module
-_TEMPLATES.globals |= {name: getattr(_ELEMENTS, name) for name in ("table", "row", "figure")}
+_TEMPLATES.globals |= {"alpha": ALPHA, "target_power": TARGET_POWER}
+for _macros in ("elements", "conclusions"):
+    _TEMPLATES.globals |= vars(_TEMPLATES.get_template(f"{_macros}.html").module)
 
 
 def render(template: str, **values: Any) -> Markup:

@@ -58,19 +58,18 @@ def started_trials(data: StudyData) -> Markup:
 
 @dataclass(frozen=True)
 class ModePassing:
-    """The trials of a mode that passed, of all that count, also those aborted after a touch."""
+    """The trials of a mode that passed, of all that count, with trials aborted after a touch.
+
+    Attributes:
+        competent: Number of the trial that showed a trainee's competence.
+    """
 
     mode: str
     passed: Proportion
     competence: dict[str, lc_cusum.LcCusum]
+    competent: dict[str, int]
     aborted: int
     unscored: int
-
-    @property
-    def competent(self) -> dict[str, int]:
-        """The number of the trial that showed it, of each trainee who is competent."""
-        shown = {trainee: chart.competent_at for trainee, chart in self.competence.items()}
-        return {trainee: number for trainee, number in shown.items() if number is not None}
 
 
 def passing_of(data: StudyData) -> list[ModePassing]:
@@ -85,8 +84,11 @@ def passing_of(data: StudyData) -> list[ModePassing]:
         if trials:
             passed = proportion(len(trials) - sum(trials), len(trials))
             charts_ = {who: trial_feedback.competence_of(own) for who, own in failures.items()}
+            competent = {
+                who: at for who, c in charts_.items() if (at := c.competent_at) is not None
+            }
             unscored = sum(SCORE not in trial.values for trial in data.of_mode(mode))
-            found.append(ModePassing(mode, passed, charts_, aborted, unscored))
+            found.append(ModePassing(mode, passed, charts_, competent, aborted, unscored))
     return found
 
 

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from collections import Counter
-from collections.abc import Sequence
 from dataclasses import replace
 from datetime import datetime, timezone
 from pathlib import Path
@@ -13,44 +11,30 @@ from markupsafe import Markup
 
 import rastrainer
 from rastrainer.files.writing import make_folder, write_text
-from rastrainer.number_text import counted, with_units
+from rastrainer.number_text import with_units
 from rastrainer.study.outcomes import MAIN_OUTCOMES, MOTION_OUTCOMES
 from rastrainer.study.study_data import StudyData
 from rastrainer.study.tidy_csv import trials_csv
 from rastrainer.work_progress import Progress, no_progress
-from rastrainer_simulator.report.calibration import calibration
-from rastrainer_simulator.report.comparisons import (
-    ModeComparison,
-    compare_modes,
-    compared_method,
-    tested,
-)
-from rastrainer_simulator.report.learning import learning
-from rastrainer_simulator.report.method_comparison import (
-    as_conditions,
-    compare_methods,
-    method_comparison,
-    method_findings,
-    shifted_skin,
-)
-from rastrainer_simulator.report.mode_comparison import distributions, mode_comparison, motion
+from rastrainer_simulator.report.comparisons import compare_modes, compared_method
+from rastrainer_simulator.report.conclusions import answers, left_out_methods, limits, methods
+from rastrainer_simulator.report.mode_comparison import mode_comparison, motion, paired_statistics
 from rastrainer_simulator.report.page import render
-from rastrainer_simulator.report.paired_statistics import findings, order_caveat, paired_statistics
-from rastrainer_simulator.report.passing import ModePassing, passing, passing_of, started_trials
+from rastrainer_simulator.report.passing import passing, passing_of, started_trials
 from rastrainer_simulator.report.procedures import procedures
 from rastrainer_simulator.report.published_tables import paper_notes, published_tables, with_ctps
 from rastrainer_simulator.report.raters import raters
-from rastrainer_simulator.report.statistical_methods import (
-    FEW_SUBJECTS,
-    limits,
-    methods,
-    what_is_detected,
+from rastrainer_simulator.report.target_errors import (
+    as_conditions,
+    calibration,
+    compare_methods,
+    method_comparison,
+    shifted_skin,
 )
-from rastrainer_simulator.report.trainees import curricula, groups, questionnaires
+from rastrainer_simulator.report.trainees import curricula, groups, learning, questionnaires
 from rastrainer_simulator.report.variation import variation
 
 PAGE, NUMBERS = "report.html", "trials.csv"
-MAX_NAMED = 12
 
 
 def write_report(
@@ -68,8 +52,8 @@ def report_html(
     data: StudyData, made_utc: str | None = None, progress: Progress = no_progress
 ) -> str:
     """Return the page, in the order of its readers: answers, the paper's tables, and the rest."""
-    left_out, everything = methods_note(data), data
-    of_methods = method_findings(compare_methods(as_conditions(data)))
+    left_out, everything = left_out_methods(data), data
+    of_methods = compare_methods(as_conditions(data))
     data = with_ctps(with_one_method(data))
     pairs = list(itertools.combinations(sorted(data.modes), 2))
     main = [compare_modes(data, MAIN_OUTCOMES, *pair) for pair in pairs]
@@ -80,7 +64,7 @@ def report_html(
         ("Answers", lambda: answers(data, comparisons, of_methods, passed, left_out)),
         ("The paper's tables", lambda: published_tables(data) + paper_notes(data)),
         ("Comparison of modes", lambda: Markup().join(map(paired_statistics, main))),
-        ("Charts by task", lambda: mode_comparison(data) + distributions(data)),
+        ("Charts by task", lambda: mode_comparison(data)),
         ("Learning", lambda: learning(data)),
         ("Sources of variation", lambda: variation(data)),
         ("Passed trials", lambda: started_trials(data) + passing(data, passed) + curricula(data)),
@@ -107,32 +91,6 @@ def report_html(
     return with_units(page)
 
 
-def answers(
-    data: StudyData,
-    comparisons: Sequence[ModeComparison],
-    of_methods: Sequence[str],
-    passed: Sequence[ModePassing],
-    left_out: str,
-) -> Markup:
-    """Return the first screen: who passed, the differences shown, and the limits."""
-    results = tested(comparisons)
-    n = max((len(comparison.trainees) for comparison in comparisons), default=0)
-    with_period = any(result.sequences is not None for _one, result in results)
-    return render(
-        "answers",
-        data=data,
-        has_score=any("score" in trial.values for trial in data.trials),
-        passed=passed,
-        most_named=MAX_NAMED,
-        findings=[*findings(comparisons), *of_methods],
-        compared=n,
-        are_few=0 < n < FEW_SUBJECTS,
-        detected=what_is_detected(n, with_period) if results else "",
-        caveat=order_caveat(comparisons) if results else "",
-        left_out=left_out,
-    )
-
-
 def with_one_method(data: StudyData) -> StudyData:
     """Return the study with the trials of the compared method only, finished and aborted."""
     method = compared_method(data)
@@ -140,23 +98,4 @@ def with_one_method(data: StudyData) -> StudyData:
         data,
         trials=tuple(t for t in data.trials if t.method == method),
         aborted=tuple(stored for stored in data.aborted if stored.record.method == method),
-    )
-
-
-def methods_note(data: StudyData) -> str:
-    """Return which trials `with_one_method` leaves out; "" if none."""
-    compared = compared_method(data)
-    started = [trial.method for trial in data.trials]
-    started += [stored.record.method.value for stored in data.aborted]
-    left_out = Counter(method for method in started if method != compared)
-    if not left_out:
-        return ""
-    others = " and ".join(
-        f"{counted(count, 'trial')} by {method}" for method, count in sorted(left_out.items())
-    )
-    return (
-        f"Trials by different methods of registration have other points, times and residuals: "
-        f"but for “Methods of registration”, which compares their errors, this report is about "
-        f"those by {compared} and leaves out {others}. trials.csv has all of them, each with its "
-        "method."
     )

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 from markupsafe import Markup
 
-from rastrainer.number_text import fixed
 from rastrainer.study.study_data import StudyData, TrialRow
 from rastrainer.study.tre_calibration import Proportion, proportion
 from rastrainer_simulator.report.page import interval_text, render
@@ -115,24 +114,7 @@ def variation(data: StudyData) -> Markup:
         found=found,
         modes=modes,
         biases=biases,
-        factor=_factor,
-        sd=_sd,
-        length=lambda square: interval_text(
-            _root(square.value), (_root(square.interval[0]), _root(square.interval[1])), 2
-        ),
+        factor=lambda found: "× " + interval_text(found.mapped(math.exp), 2),
+        sd=lambda found: interval_text(found.mapped(lambda x: 100 * max(x, 0.0) ** 0.5), 1, " %"),
+        length=lambda found: interval_text(found.mapped(lambda x: max(x, 0.0) ** 0.5), 2),
     )
-
-
-def _sd(found: Estimate) -> str:
-    """Return a standard deviation of logarithms in percent, with its interval."""
-    low, high = (100 * _root(limit) for limit in found.interval)
-    return f"{fixed(100 * _root(found.value), 1)} % [{fixed(low, 1)}, {fixed(high, 1)}]"
-
-
-def _factor(found: Estimate) -> str:
-    low, high = (math.exp(limit) for limit in found.interval)
-    return f"× {interval_text(math.exp(found.value), (low, high), 2)}"
-
-
-def _root(square: float) -> float:
-    return math.sqrt(max(square, 0.0))

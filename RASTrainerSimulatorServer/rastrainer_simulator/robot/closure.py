@@ -6,8 +6,8 @@ a cos φ + b sin φ + c = 0 (Shimizu et al. 2008, 10.1109/TRO.2008.2003266, sect
 elbow nearest to φ = 0 is therefore φ = 0 itself or one of those ends.
 
 A shoulder, elbow or wrist is a pan and a tilt: turning the pan by π and mirroring the tilt gives
-the same direction. Two choices at each of three places make eight branches (section III); taken is
-the one nearest to the last q.
+the same direction. Two choices at each of three places make eight branches (section III); the
+branch nearest to the last q is taken.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ class ElbowCircle(NamedTuple):
 
 
 def elbow_circle(arm: CanonicalArm, wrist: Vector, guess: Vector) -> ElbowCircle:
-    """Return the circle of elbows for a wrist within reach; φ = 0 is the one nearest to `guess`."""
+    """Return the circle of elbows for a wrist within reach; φ = 0 is nearest to `guess`."""
     wx, wy, wz = wrist
     gx, gy, gz = guess
     upper = arm.upper
@@ -81,7 +81,7 @@ def elbow_circle(arm: CanonicalArm, wrist: Vector, guess: Vector) -> ElbowCircle
     if size < _TINY:
         (gx, gy, gz), size = any_perpendicular((wx, wy, wz)), 1.0
     square = upper * upper - along * along
-    # A radius that rounding alone could make is that of a stretched arm: it has no direction.
+    # A radius as small as a rounding error has no direction: the arm is stretched.
     factor = sqrt(square) / size if square > _ROUNDING * upper * upper else 0.0
     return ElbowCircle(
         (along * wx, along * wy, along * wz), (factor * gx, factor * gy, factor * gz), (wx, wy, wz)
@@ -105,7 +105,19 @@ def nearest_elbow(
     arm: CanonicalArm, circle: ElbowCircle, wrist: Vector, tool: Vector
 ) -> Vector | None:
     """Return the elbow nearest to φ = 0 that the tilts allow, or None."""
-    waves = _tilt_waves(arm, circle, wrist, tool)
+    # Values that are negative where the tilt of shoulder or wrist exceeds its limits.
+    up, back, out = (0.0, 0.0, 1.0), scale(tool, -1.0), dot(wrist, tool)
+    waves = []
+    low, high = arm.shoulder_cosines
+    if low > -1.0:
+        waves.append(circle.wave(up, -low * arm.upper))
+    if high < 1.0:
+        waves.append(circle.wave((0.0, 0.0, -1.0), high * arm.upper))
+    low, high = arm.wrist_cosines
+    if low > -1.0:
+        waves.append(circle.wave(back, out - low * arm.fore))
+    if high < 1.0:
+        waves.append(circle.wave(tool, high * arm.fore - out))
     if any(c + hypot(a, b) < 0.0 for a, b, c in waves):
         return None
     for angle in _nearest_first(waves):
@@ -122,7 +134,7 @@ def elbows_at_limits(
     out = dot(wrist, tool)
     up, back = circle.wave((0.0, 0.0, 1.0), 0.0), circle.wave(scale(tool, -1.0), out)
     waves = []
-    # A tilt's limits differ from its range where the two branches have different ones.
+    # A tilt's limits differ from its range if the two branches have different limits.
     for joint, cosine, length in ((1, up, arm.upper), (5, back, arm.fore)):
         a, b, c = cosine
         waves += [(a, b, c - length * cos(limit)) for limit in arm.limits[joint]]
@@ -147,23 +159,6 @@ def _pans_at(pans: dict[int, tuple[Wave, Wave]], angles: Sequence[tuple[float, .
             c, s = cos(angle), sin(angle)
             (ax, ay, az), (bx, by, bz) = sine, cosine
             waves.append((ax * c - bx * s, ay * c - by * s, az * c - bz * s))
-    return waves
-
-
-def _tilt_waves(arm: CanonicalArm, circle: ElbowCircle, wrist: Vector, tool: Vector) -> list[Wave]:
-    """Return values that are negative where the tilt of shoulder or wrist exceeds its limits."""
-    up, back, out = (0.0, 0.0, 1.0), scale(tool, -1.0), dot(wrist, tool)
-    waves = []
-    low, high = arm.shoulder_cosines
-    if low > -1.0:
-        waves.append(circle.wave(up, -low * arm.upper))
-    if high < 1.0:
-        waves.append(circle.wave((0.0, 0.0, -1.0), high * arm.upper))
-    low, high = arm.wrist_cosines
-    if low > -1.0:
-        waves.append(circle.wave(back, out - low * arm.fore))
-    if high < 1.0:
-        waves.append(circle.wave(tool, high * arm.fore - out))
     return waves
 
 
@@ -210,7 +205,7 @@ TURN = 2.0 * pi
 _PI2 = pi * pi
 # A tilt below this leaves its pan free; the tip moves by less than 2e-10 m.
 _STRAIGHT = 1e-10
-# Below this the normal of two links, a small difference, is less exact than the pan it gave.
+# A smaller normal of two links, a small difference, is less exact than the pan it gave.
 _NEARLY_STRAIGHT = 1e-3
 # Rounding may carry an angle this far past its limit; it is then put onto the limit.
 _ANGLE_SLACK = 1e-11

@@ -6,7 +6,7 @@ joint rates have a closed form, so the angle of least squares is one division (G
 
 from __future__ import annotations
 
-from itertools import islice
+import itertools
 from math import inf, sqrt
 
 from rastrainer_simulator.robot.closure import (
@@ -36,9 +36,9 @@ def close(
 ) -> Angles | None:
     """Return θ that holds the wrist and the tool's direction, and its roll where given, or None.
 
-    The elbow is the feasible one nearest to φ = 0 of its circle, the branch the one nearest to
-    `last`. Where that leaves a joint more than `farthest` (rad) from `last`, an elbow at a limit is
-    taken if it avoids such a jump.
+    It takes the feasible elbow nearest to φ = 0 of its circle, and the branch nearest to `last`. If
+    that leaves a joint more than `farthest` (rad) from `last`, an elbow at a limit is taken if it
+    avoids such a jump.
     """
     (cx, cy, cz), (sx, sy, sz), _ = circle
     elbow = (cx + sx, cy + sy, cz + sz)
@@ -47,21 +47,31 @@ def close(
         if nearest is None:
             return None
         elbow = nearest
-    theta = _branch(arm, elbow, wrist, tool, roll, last)
-    if theta is not None and _near_limits(theta, last, farthest):
-        return theta
-    for elbow in elbows_at_limits(arm, circle, wrist, tool, roll):
-        other = _branch(arm, elbow, wrist, tool, roll, last)
-        if other is not None and _near_limits(other, last, farthest):
-            return other
-        theta = theta or other
+    l1, l2, l3, l4, l5, l6, l7 = last
+    theta = None
+    for place in itertools.chain((elbow,), elbows_at_limits(arm, circle, wrist, tool, roll)):
+        found = _branch(arm, place, wrist, tool, roll, last)
+        if found is None:
+            continue
+        t1, t2, t3, t4, t5, t6, t7 = found
+        if (
+            -farthest <= t1 - l1 <= farthest
+            and -farthest <= t2 - l2 <= farthest
+            and -farthest <= t3 - l3 <= farthest
+            and -farthest <= t4 - l4 <= farthest
+            and -farthest <= t5 - l5 <= farthest
+            and -farthest <= t6 - l6 <= farthest
+            and -farthest <= t7 - l7 <= farthest
+        ):
+            return found
+        theta = theta or found
     return theta
 
 
 def close_at(
     arm: CanonicalArm, elbow: Vector, wrist: Vector, tool: Vector, roll: Roll, last: Angles
 ) -> Angles | None:
-    """Do as `close` with the elbow at a given place of its circle, None where it cannot be."""
+    """Do as `close` with the elbow at a given place of its circle, None if it cannot be there."""
     if not tilts_allow(arm, elbow, wrist, tool):
         return None
     return _branch(arm, elbow, wrist, tool, roll, last)
@@ -79,20 +89,6 @@ def _branch(
     return nearest_branch(arm, angles, last, roll is not None)
 
 
-def _near_limits(theta: Angles, last: Angles, farthest: float) -> bool:
-    a1, a2, a3, a4, a5, a6, a7 = theta
-    b1, b2, b3, b4, b5, b6, b7 = last
-    return (
-        -farthest <= a1 - b1 <= farthest
-        and -farthest <= a2 - b2 <= farthest
-        and -farthest <= a3 - b3 <= farthest
-        and -farthest <= a4 - b4 <= farthest
-        and -farthest <= a5 - b5 <= farthest
-        and -farthest <= a6 - b6 <= farthest
-        and -farthest <= a7 - b7 <= farthest
-    )
-
-
 _FLAT = 1e-9
 _NO_MOTION = 2e-4
 LEAP = 0.02 * 0.02
@@ -106,14 +102,14 @@ def with_least_motion(
 ) -> Angles:
     """Return θ with the elbow where on its circle the joints move least from `last`.
 
-    `theta` already holds the wrist (m) and the goal's tool, and so does what is returned.
+    `theta` already holds the wrist (m) and the goal's tool.
     """
     theta, motion = _slide(arm, theta, circle, wrist, goal, last)
     if motion < LEAP:
         return theta
     # Close to a singularity the nearest elbow can need a pan to turn far: try to keep each.
     elbows = elbows_that_keep_a_pan(arm, circle, wrist, goal.held_tool, goal.roll, last)
-    for elbow in islice(elbows, _MAX_KEPT):
+    for elbow in itertools.islice(elbows, _MAX_KEPT):
         kept = _near(arm, elbow, wrist, goal, last)
         if kept is not None and squared_motion(kept, last) < motion:
             theta, motion = kept, squared_motion(kept, last)
@@ -170,7 +166,7 @@ def _slide_angle(
 ) -> tuple[float, float]:
     """Return the angle (rad) that brings θ nearest to `last`, and how far the joints then move.
 
-    `axis` is that of the elbow's circle, `links` the chain of θ; `rolls`: whether the tool's
+    `axis` is the axis of the elbow's circle, `links` the chain of θ; `rolls`: whether the tool's
     roll is held too.
     """
     motion = self_motion(axis, links, rolls)
@@ -194,7 +190,7 @@ def _slide_angle(
 def self_motion(
     axis: Vector, links: Chain, rolls: bool
 ) -> tuple[float, float, float, float, float, float] | None:
-    """Return the rates of joints 1, 2, 3, 5, 6 and 7 as the elbow turns, None where they are lost.
+    """Return the rates of joints 1, 2, 3, 5, 6 and 7 as the elbow turns, None if they are lost.
 
     `axis` is the unit vector from shoulder to wrist; joint 4 rests. Joint 7 rests too unless the
     tool's roll is held: `rolls`.

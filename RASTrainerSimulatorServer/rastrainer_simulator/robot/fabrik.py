@@ -7,31 +7,28 @@
 2. FABRIK reaches backward from the target and forward from the base, and each pass closes the elbow
    exactly (`reaching`, `closure`): FABRIK alone converges slowly below a micrometer
    (J. Intell. Robot. Syst. 2023, 10.1007/s10846-023-01895-2).
-3. The joint angles are read off the links, on the branch nearest to the last ones (`closure`).
-4. What is out of reach is replaced by the nearest that is not (`reaching`).
+3. The joint angles are read off the links, on the branch nearest to the last angles (`closure`).
+4. A goal out of reach is replaced by the nearest within reach (`reaching`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import cos, dist, inf, sin, sqrt
+from math import cos, dist, inf, isfinite, sin, sqrt
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.robot.closure import elbow_circle
+from rastrainer_simulator.robot.closure import Roll, elbow_circle
 from rastrainer_simulator.robot.elbow_slide import LEAP, close_at, self_motion, squared_motion
 from rastrainer_simulator.robot.goal import (
     BLOCKED,
     OUT_OF_REACH,
     ROLL_BLOCKED,
-    ArmFrame,
     FabrikSettings,
     Goal,
     Solution,
-    solve_rounded,
 )
-from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import RobotModel
-from rastrainer_simulator.robot.reaching import Reached, Start, reach_position, reach_wrist
+from rastrainer_simulator.robot.reaching import Start, reach_position, reach_wrist
 from rastrainer_simulator.robot.srs_arm import (
     Angles,
     CanonicalArm,
@@ -42,13 +39,13 @@ from rastrainer_simulator.robot.srs_arm import (
     inside,
     tip,
 )
-from rastrainer_simulator.vectors import ZERO, Vector, scale, subtract, unit
+from rastrainer_simulator.vectors import ZERO, Vector, dot, scale, subtract, unit
 
 # A warm start that would move a joint farther than this (rad) looks for an elbow that avoids it.
 _JUMP = 0.5
+_NEAR_M = 0.03
+_NEAR_COSINE = 0.95
 _BENT = 1e-6
-# Rounding error of an exact S-R-S arm, m.
-_ROUNDING = 1e-12
 
 
 class Fabrik:
@@ -56,10 +53,8 @@ class Fabrik:
 
     def __init__(self, model: RobotModel, settings: FabrikSettings | None = None) -> None:
         self.settings = settings or FabrikSettings()
-        self._frame = ArmFrame(model.geometry)
-        self._arm = CanonicalArm.of(model.geometry)
-        exact = model.geometry.misfit < _ROUNDING
-        self._true = None if exact else make_kinematics(model)
+        self._arm = model.arm
+        self._q_limits = tuple((joint.lower, joint.upper) for joint in model.joints)
 
     def solve(
         self,
@@ -71,60 +66,46 @@ class Fabrik:
     ) -> Solution:
         """Return joint angles inside the limits that bring the tool to a target in World.
 
-        `target_position` (3,) is that of the tip, m; `target_direction` (3,) that of the tool, from
-        the wrist to the tip; `target_rotation` (3, 3) that of the tip's frame. Without direction
-        and rotation only the position counts. The posture is near to `q_start` (7,) rad.
+        Position (3,), m, and rotation (3, 3) apply to the tip's frame, the direction (3,) to the
+        tool, from the wrist to the tip. A rotation takes precedence over a direction; without both
+        only the position counts. The posture is near to `q_start` (7,) rad.
         """
-        target = (target_position, target_direction, target_rotation, q_start)
-        if self._true:
-            return solve_rounded(self._solve, self._true, self.settings, *target)
-        return self._solve(*target)
-
-    def _solve(
-        self,
-        position: Sequence[float],
-        direction: Sequence[float] | None,
-        rotation: Sequence[Sequence[float]] | None,
-        q_start: Sequence[float],
-    ) -> Solution:
-        target = self._frame.position(position)
-        if rotation is None:
-            tool = None if direction is None else self._frame.direction(direction)
-            goal = Goal(target, tool, None)
-        elif direction is None:
-            x, y, z = self._frame.rotation(rotation)
-            goal = Goal(target, z, (x, y))
-        else:
-            raise InputError("Give the tool a direction or a rotation, not both.")
+        goal = _goal(self._arm, target_position, target_direction, target_rotation)
         aim = goal.within_lengths(self._arm)
-        start: Angles = self._frame.theta(q_start)
+        signs = zip(self._arm.signs, q_start, strict=True)
+        start: Angles = tuple([sign * float(angle) + 0.0 for sign, angle in signs])
+        if not inside(start, self._arm.limits):
+            if not isfinite(sum(start)):
+                raise InputError("The joint angles to start from must be finite.")
+            start = clamped(start, self._arm.limits)
         links = chain(start)
-        if not aim.is_near(self._arm, links):
-            reached = self._reach(goal, aim, start, links, inf)
+        # Whether the tool is not yet almost at the goal, as within a motion.
+        is_far = dist(aim.position, tip(self._arm, links)) > _NEAR_M
+        if aim.tool is not None and not is_far:
+            is_far = dot(links[2], aim.tool) <= _NEAR_COSINE
+        if is_far:
+            theta = self._reach(goal, aim, start, links, inf)
+        elif aim.tool is None:
+            start, links = _predicted(self._arm, start, links, aim.position)
+            theta = self._reach(goal, aim, start, links, _JUMP)
         else:
-            if aim.tool is None:
-                start, links = _predicted(self._arm, start, links, aim.position)
-            else:
-                followed = _followed(self._arm, start, links, aim)
-                if followed is not None:
-                    return self._solution(goal, followed, 1)
-            reached = self._reach(goal, aim, start, links, _JUMP)
-        return self._solution(goal, *reached)
-
-    def _solution(self, goal: Goal, theta: Angles, passes: int, blocked: bool = False) -> Solution:
+            theta = _followed(self._arm, start, links, aim)
+            if theta is None:
+                theta = self._reach(goal, aim, start, links, _JUMP)
+        settings, blocked = self.settings, theta is None
+        theta = start if theta is None else theta
         off, turned = goal.errors(self._arm, theta, chain(theta))
-        converged = self.settings.met(off, turned)
-        if converged:
-            reason = ""
-        elif blocked:
-            reason = BLOCKED
-        else:
-            reason = OUT_OF_REACH if off > self.settings.tolerance_m else ROLL_BLOCKED
-        return Solution(self._frame.q(theta), off, turned, converged, passes, reason)
+        converged = off <= settings.tolerance_m and turned <= settings.tolerance_rad
+        reason = OUT_OF_REACH if off > settings.tolerance_m else ROLL_BLOCKED
+        if converged or blocked:
+            reason = "" if converged else BLOCKED
+        q = tuple([sign * angle for sign, angle in zip(self._arm.signs, theta, strict=True)])
+        q = q if inside(q, self._q_limits) else clamped(q, self._q_limits)
+        return Solution(q, off, turned, converged, reason)
 
     def _reach(
         self, goal: Goal, aim: Goal, theta: Angles, links: Chain, farthest: float
-    ) -> Reached:
+    ) -> Angles | None:
         a, b = self._arm.upper, self._arm.fore
         (ux, uy, uz), (fx, fy, fz), _, _, (nx, ny, nz), _ = links
         ex, ey, ez = a * ux, a * uy, a * uz
@@ -138,6 +119,55 @@ class Fabrik:
         start = Start(theta, wrist, (ex, ey, ez), farthest)
         reach = reach_position if goal.tool is None else reach_wrist
         return reach(self._arm, goal, aim, start, self.settings.max_iterations)
+
+
+# A rotation whose columns are not perpendicular unit vectors to this is no rotation.
+_SKEW = 1e-6
+
+
+def _goal(
+    arm: CanonicalArm,
+    position: Sequence[float],
+    direction: Sequence[float] | None,
+    rotation: Sequence[Sequence[float]] | None,
+) -> Goal:
+    """Return a target of World in the arm's frame."""
+    x, y, z = map(float, position)
+    if not isfinite(x + y + z):
+        raise InputError("The target position must be three finite numbers.")
+    place = (x + 0.0, y + 0.0, z - arm.shoulder)  # No −0.0, which could turn a pan by π.
+    if rotation is not None:
+        return Goal(place, *_axes(rotation))
+    if direction is None:
+        return Goal(place, None, None)
+    x, y, z = map(float, direction)
+    size = sqrt(x * x + y * y + z * z)
+    if not 1e-9 <= size < inf:
+        raise InputError("The tool direction must be a finite vector with a length.")
+    return Goal(place, (x / size + 0.0, y / size + 0.0, z / size + 0.0), None)
+
+
+def _axes(rotation: Sequence[Sequence[float]]) -> tuple[Vector, Roll]:
+    """Return the tool's direction, and its x and y axes, of a rotation (3, 3) of the tip."""
+    (ax, bx, cx), (ay, by, cy), (az, bz, cz) = (map(float, row) for row in rotation)
+    skew = (
+        abs(ax * ax + ay * ay + az * az - 1.0)
+        + abs(bx * bx + by * by + bz * bz - 1.0)
+        + abs(ax * bx + ay * by + az * bz)
+        + abs(ay * bz - az * by - cx)
+        + abs(az * bx - ax * bz - cy)
+        + abs(ax * by - ay * bx - cz)
+    )
+    if not skew <= _SKEW:
+        raise InputError("The tool rotation's columns must be perpendicular unit vectors.")
+    # Perpendicular and of unit length to the last bit: the columns are so to `_SKEW` only.
+    size = sqrt(cx * cx + cy * cy + cz * cz)
+    tx, ty, tz = cx / size, cy / size, cz / size
+    part = ax * tx + ay * ty + az * tz
+    x, y, z = ax - part * tx, ay - part * ty, az - part * tz
+    size = sqrt(x * x + y * y + z * z)
+    x, y, z = x / size, y / size, z / size
+    return (tx, ty, tz), ((x, y, z), (ty * z - tz * y, tz * x - tx * z, tx * y - ty * x))
 
 
 _DAMPING = 1e-6
@@ -158,37 +188,30 @@ def _predicted(
     joint motion (damped pseudo-inverse, Nakamura & Hanafusa 1986, 10.1115/1.3143764) spreads it
     evenly, and the exact closure has only its second-order error to remove.
     """
+    a, b, c = arm.upper, arm.fore, arm.tool
     for _ in range(_MAX_STEPS):
-        columns, error = _equations(arm, links, target)
-        theta, free = _step_inside_limits(arm, theta, columns, error)
+        (ux, uy, uz), (fx, fy, fz), (tx, ty, tz), (ax, ay, _), (bx, by, bz), (cx, cy, cz) = links
+        # The tip as seen from wrist, elbow and shoulder.
+        tx, ty, tz = c * tx, c * ty, c * tz
+        ex, ey, ez = tx + b * fx, ty + b * fy, tz + b * fz
+        px, py, pz = ex + a * ux, ey + a * uy, ez + a * uz
+        # The tip's Jacobian, axis × arm; joint 7 does not move a tip on its axis.
+        columns = (
+            (-py, px, 0.0),
+            (ay * pz, -ax * pz, ax * py - ay * px),
+            (uy * ez - uz * ey, uz * ex - ux * ez, ux * ey - uy * ex),
+            (by * ez - bz * ey, bz * ex - bx * ez, bx * ey - by * ex),
+            (fy * tz - fz * ty, fz * tx - fx * tz, fx * ty - fy * tx),
+            (cy * tz - cz * ty, cz * tx - cx * tz, cx * ty - cy * tx),
+        )
+        missing = (target[0] - px, target[1] - py, target[2] - pz)
+        theta, free = _step_inside_limits(arm, theta, columns, missing)
         links = chain(theta)
-        # What a step leaves over is removed by the closure; close to a singularity or a limit
+        # The closure removes the rest that a step leaves; close to a singularity or a limit
         # that little would still turn a pan far or leave the limits, so there it is refined.
         if (free and clear(theta)) or dist(tip(arm, links), target) < _EXACT:
             break
     return theta, links
-
-
-def _equations(arm: CanonicalArm, links: Chain, target: Vector) -> tuple[Columns, Vector]:
-    """Return the tip's Jacobian for joints 1 to 6 by columns, axis × arm, and what the tip misses.
-
-    Joint 7 does not move a tip on its axis.
-    """
-    (ux, uy, uz), (fx, fy, fz), (tx, ty, tz), (ax, ay, _), (bx, by, bz), (cx, cy, cz) = links
-    a, b, c = arm.upper, arm.fore, arm.tool
-    # The tip as seen from wrist, elbow and shoulder.
-    tx, ty, tz = c * tx, c * ty, c * tz
-    ex, ey, ez = tx + b * fx, ty + b * fy, tz + b * fz
-    px, py, pz = ex + a * ux, ey + a * uy, ez + a * uz
-    columns = (
-        (-py, px, 0.0),
-        (ay * pz, -ax * pz, ax * py - ay * px),
-        (uy * ez - uz * ey, uz * ex - ux * ez, ux * ey - uy * ex),
-        (by * ez - bz * ey, bz * ex - bx * ez, bx * ey - by * ex),
-        (fy * tz - fz * ty, fz * tx - fx * tz, fx * ty - fy * tx),
-        (cy * tz - cz * ty, cz * tx - cx * tz, cx * ty - cy * tx),
-    )
-    return columns, (target[0] - px, target[1] - py, target[2] - pz)
 
 
 def _step(theta: Angles, columns: Columns, error: Vector) -> Angles:
@@ -230,7 +253,7 @@ def _step_inside_limits(
 ) -> tuple[Angles, bool]:
     """Return θ after the step, and whether no limit was met.
 
-    A joint that would pass its limit stops there, and the others make up for it.
+    A joint that would pass its limit stops there, and the others compensate for it.
     """
     moved = _step(theta, columns, error)
     if inside(moved, arm.limits):
@@ -260,8 +283,7 @@ def _followed(arm: CanonicalArm, theta: Angles, links: Chain, goal: Goal) -> Ang
     of first order. Then as much of the arm's self-motion is added as makes the joints move least
     (Gauss–Newton).
 
-    None at a singularity or a limit, and where a joint would leap: there the elbow has to be looked
-    for.
+    None at a singularity or a limit, and if a joint would leap: the elbow has to be searched there.
     """
     if not clear(theta, _LINED_UP):
         return None
@@ -280,7 +302,7 @@ def _followed(arm: CanonicalArm, theta: Angles, links: Chain, goal: Goal) -> Ang
 def _elbow(
     arm: CanonicalArm, theta: Angles, links: Chain, wrist: Vector, goal: Goal
 ) -> Vector | None:
-    """Return roughly where the elbow goes, m, or None where joints line up.
+    """Return roughly where the elbow goes, m, or None if joints line up.
 
     `wrist` is the goal's, m.
     """
@@ -320,7 +342,7 @@ def _wrist_turns(theta: Angles, links: Chain, turned: Vector, goal: Goal) -> Vec
     _, (fx, fy, fz), (tx, ty, tz), _, _, (wx, wy, wz) = links
     ox, oy, oz = turned
     gx, gy, gz = goal.held_tool
-    # What the tool's tip, a unit vector, still has to move: along joint 6's axis and across it.
+    # The remaining motion of the tool's tip, a unit vector: along joint 6's axis and across it.
     mx = gx - tx - (oy * tz - oz * ty)
     my = gy - ty - (oz * tx - ox * tz)
     mz = gz - tz - (ox * ty - oy * tx)

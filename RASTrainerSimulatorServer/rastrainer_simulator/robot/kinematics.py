@@ -37,11 +37,8 @@ def make_kinematics(model: RobotModel, backend: str | None = None) -> Kinematics
     `backend` is "pinocchio" or "numpy"; by default the environment variable RASTRAINER_KINEMATICS
     decides, else Pinocchio is used if it is installed (it has no wheels for Windows).
     """
-    chosen = _chosen(backend)
-    if chosen == "numpy":
+    if _chosen(backend) == "numpy":
         return NumpyKinematics(model)
-    if importlib.util.find_spec("pinocchio") is None:
-        raise InputError(f"Pinocchio is not installed; set {VARIABLE}=numpy.")
     return PinocchioKinematics(model)
 
 
@@ -55,8 +52,10 @@ def kinematics_name() -> str:
 
 
 def _chosen(backend: str | None) -> str:
-    usual = "numpy" if importlib.util.find_spec("pinocchio") is None else "pinocchio"
-    chosen = backend or os.environ.get(VARIABLE) or usual
+    has_pinocchio = importlib.util.find_spec("pinocchio") is not None
+    chosen = backend or os.environ.get(VARIABLE) or ("pinocchio" if has_pinocchio else "numpy")
+    if chosen == "pinocchio" and not has_pinocchio:
+        raise InputError(f"Pinocchio is not installed; set {VARIABLE}=numpy.")
     if chosen not in BACKENDS:
         raise InputError(f"{VARIABLE} is {chosen!r}; it should be one of {', '.join(BACKENDS)}.")
     return chosen

@@ -20,7 +20,7 @@ from rastrainer_simulator.robot.model import MeshPart, RobotModel
 if TYPE_CHECKING:
     import trimesh
 
-    ColoredMesh = tuple[trimesh.Trimesh, tuple[float, float, float, float]]
+    ColoredMesh = tuple[trimesh.Trimesh, tuple[float, ...]]
 
 LARGEST_FILE = 50 * 2**20
 MAX_TRIANGLES = 500_000
@@ -37,8 +37,11 @@ def load_meshes(model: RobotModel, kind: str = "visual") -> dict[str, list[Color
     parts = [part for part in model.meshes if part.kind == kind]
     loaded = [(part, _load(part)) for part in parts]
     replacements = [(part.link, mesh) for part, mesh in loaded if part.replaced]
-    if _lie_in_base_frame(model, replacements):
-        poses = _outstretched(model)
+    bases = [np.eye(4)]
+    for joint in model.joints:
+        bases.append(bases[-1] @ joint.origin)
+    poses = {link.name: bases[link.joint] @ link.offset for link in model.links}
+    if _lie_in_base_frame(model, poses, replacements):
         for link, mesh in replacements:
             mesh.apply_transform(np.linalg.inv(poses[link]))
     meshes: dict[str, list[ColoredMesh]] = {}
@@ -81,12 +84,16 @@ def _load(part: MeshPart) -> trimesh.Trimesh:
     return mesh.apply_transform(part.origin)
 
 
-def _lie_in_base_frame(model: RobotModel, meshes: Iterable[tuple[str, trimesh.Trimesh]]) -> bool:
-    """Return whether meshes lie on the outstretched robot rather than around their links' origins.
+def _lie_in_base_frame(
+    model: RobotModel,
+    poses: dict[str, np.ndarray],
+    meshes: Iterable[tuple[str, trimesh.Trimesh]],
+) -> bool:
+    """Return whether meshes are on the outstretched robot rather than around their links' origins.
 
-    A link's mesh lies about the middle between its own and the next joint.
+    `poses` are the links' (4, 4) at q = 0, m. A link's mesh is about the middle between its own
+    and the next joint.
     """
-    poses = _outstretched(model)
     ends = [*(joint.origin for joint in model.joints), model.tip.offset]
     middles = {
         link.name: (np.linalg.inv(link.offset) @ ends[link.joint])[:3, 3] / 2
@@ -99,14 +106,6 @@ def _lie_in_base_frame(model: RobotModel, meshes: Iterable[tuple[str, trimesh.Tr
         in_link += float(np.linalg.norm(center - middles[link]))
         in_base += float(np.linalg.norm(center - on_robot))
     return in_base < in_link
-
-
-def _outstretched(model: RobotModel) -> dict[str, np.ndarray]:
-    """Return each link's pose (4, 4) in the base frame at q = 0, in meters."""
-    bases = [np.eye(4)]
-    for joint in model.joints:
-        bases.append(bases[-1] @ joint.origin)
-    return {link.name: bases[link.joint] @ link.offset for link in model.links}
 
 
 MAX_NUMBERS = 20_000_000
@@ -123,12 +122,12 @@ def checked_content(data: bytes, kind: str, what: str) -> bytes:
 
     `kind` is the suffix of its name, `what` begins the sentence of an error.
     """
+    numbers = 0
     if kind == "dae":
         text = plain_xml(data, what)
-        if len(text) * text.count("<instance_") > MAX_NUMBERS * MAX_COPIES:
-            raise _too_much(what)
-        return text.encode()
-    if kind == "glb":
+        numbers = len(text) * text.count("<instance_") // MAX_COPIES
+        data = text.encode()
+    elif kind == "glb":
         try:
             magic, version, _size = _HEADER.unpack_from(data)
             size, _kind = _CHUNK.unpack_from(data, _HEADER.size)
@@ -139,14 +138,18 @@ def checked_content(data: bytes, kind: str, what: str) -> bytes:
             numbers = _numbers_shown(tree)
         except (ValueError, TypeError, KeyError, IndexError, AttributeError, struct.error):
             raise InputError(f"{what} is not a GLB file (glTF 2.0).") from None
-        if numbers > MAX_NUMBERS:
-            raise _too_much(what)
+    if numbers > MAX_NUMBERS:
+        raise InputError(f"{what} unfolds into more than {MAX_NUMBERS} numbers.")
     return data
 
 
 def _numbers_shown(tree: Any) -> int:
     """Return at least how many numbers the meshes of all nodes consist of."""
-    counts = [whole(accessor["count"]) * _PARTS[accessor["type"]] for accessor in tree["accessors"]]
+    lengths = [accessor["count"] for accessor in tree["accessors"]]
+    if not all(type(length) is int and length >= 0 for length in lengths):
+        raise ValueError
+    parts = [_PARTS[accessor["type"]] for accessor in tree["accessors"]]
+    counts = [length * part for length, part in zip(lengths, parts, strict=True)]
     meshes = [
         sum(
             counts[index]
@@ -164,14 +167,3 @@ def _numbers_shown(tree: Any) -> int:
         raise ValueError  # If a node has two parents, it is not a tree.
     shown = sum(meshes[node["mesh"]] for node in nodes if "mesh" in node)
     return max(shown, sum(counts))
-
-
-def whole(value: Any) -> int:
-    """Return a count; raise ValueError if it is not one."""
-    if not isinstance(value, int) or isinstance(value, bool) or value < 0:
-        raise ValueError
-    return value
-
-
-def _too_much(what: str) -> InputError:
-    return InputError(f"{what} unfolds into more than {MAX_NUMBERS} numbers.")

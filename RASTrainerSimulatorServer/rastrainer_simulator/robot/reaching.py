@@ -2,9 +2,9 @@
 
 Aristidou & Lasenby 2011 (10.1016/j.gmod.2011.05.003): reach backward from the target, then forward
 from the base, each time moving a joint along the line to its neighbor to the link's length, within
-the joints' cones. Between shoulder and wrist the passes need not be iterated: both keep the elbow
-in the half-plane through the line from shoulder to wrist, so their limit is the nearest point of
-the elbow's circle, which `closure` gives exactly. Only the wrist is left to iterate.
+the joints' cones. The passes need not be iterated for the elbow: both keep it in the half-plane
+through the line from shoulder to wrist, so their limit is the nearest point of the elbow's circle,
+which `closure` gives exactly. Only the wrist is left to iterate.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from rastrainer_simulator.robot.closure import TURN, elbow_circle, fit, joint_an
 from rastrainer_simulator.robot.elbow_slide import close, with_least_motion
 from rastrainer_simulator.robot.goal import Goal
 from rastrainer_simulator.robot.srs_arm import Angles, CanonicalArm, chain, tilt_range
-from rastrainer_simulator.vectors import Vector, any_perpendicular, dot
+from rastrainer_simulator.vectors import Vector, any_perpendicular, dot, scale, subtract
 
 # Passes that change the gap between them by less than this share of it do not converge.
 _STALLED = 1e-3
@@ -34,39 +34,32 @@ class Start(NamedTuple):
     farthest: float  # rad: a joint that would move more calls for another solution
 
 
-class Reached(NamedTuple):
-    """Joint angles, the passes that they took, and whether the limits allowed no better ones."""
-
-    theta: Angles
-    passes: int
-    blocked: bool = False
-
-
-def reach_position(arm: CanonicalArm, goal: Goal, aim: Goal, start: Start, most: int) -> Reached:
+def reach_position(
+    arm: CanonicalArm, goal: Goal, aim: Goal, start: Start, most: int
+) -> Angles | None:
     """Bring the tip to a goal, or as near as it gets, the tool's direction being free.
 
-    `aim` is the goal, moved to where the arm's lengths allow it.
+    `aim` is the goal, moved to where the arm's lengths allow it. At most `most` passes are tried.
+    None if the limits allow nothing better than the start.
     """
     target = aim.position
-    theta, passes = _iterate(arm, target, start, most)
+    theta = _iterate(arm, target, start, most)
     if theta is not None:
-        return Reached(theta, passes)
+        return theta
     for wrist, elbow in _planar_starts(arm, target, start.theta):
-        theta, used = _iterate(arm, target, Start(start.theta, wrist, elbow, inf), 1)
-        passes += used
+        theta = _iterate(arm, target, Start(start.theta, wrist, elbow, inf), 1)
         if theta is not None:
-            return Reached(theta, passes)
+            return theta
     upper, fore, tool = _nearest_links(arm, goal.position, start.theta)
     angles = joint_angles(upper, fore, tool, None, start.theta)
-    theta = nearest_branch(arm, angles, start.theta, False)
-    return Reached(theta, passes) if theta else Reached(start.theta, passes, True)
+    return nearest_branch(arm, angles, start.theta, False)
 
 
-def reach_wrist(arm: CanonicalArm, goal: Goal, aim: Goal, start: Start, most: int) -> Reached:
+def reach_wrist(arm: CanonicalArm, goal: Goal, aim: Goal, start: Start, most: int) -> Angles | None:
     """Bring the tip to a goal with the tool's direction, and its roll where given.
 
-    `aim` is as in `reach_position`. Where the limits do not allow it, the roll is given up first,
-    then the position.
+    The arguments are as in `reach_position`. If the limits do not allow the goal, the roll is given
+    up first, then the position.
     """
     wrist, tool = aim.wrist(arm), goal.held_tool
     circle = elbow_circle(arm, wrist, start.elbow)
@@ -74,17 +67,13 @@ def reach_wrist(arm: CanonicalArm, goal: Goal, aim: Goal, start: Start, most: in
     if theta is not None:
         if start.farthest < inf:
             theta = with_least_motion(arm, theta, circle, wrist, goal, start.theta)
-        return Reached(theta, 1)
-    passes = 1
+        return theta
     if goal.roll:
         theta = close(arm, circle, wrist, tool, None, start.theta)
     if theta is None:
-        passes += most
         wrist, elbow = settle(arm, goal.wrist(arm), start.elbow, tool, most)
         theta = close(arm, elbow_circle(arm, wrist, elbow), wrist, tool, None, start.theta)
-    if theta is None:
-        return Reached(start.theta, passes, True)
-    if goal.roll:
+    if theta is not None and goal.roll:
         # The last joint is turned as near to the roll as its limits allow.
         axis = chain(theta)[5]
         x, y = goal.roll
@@ -93,28 +82,26 @@ def reach_wrist(arm: CanonicalArm, goal: Goal, aim: Goal, start: Start, most: in
         if fitted is None:
             fitted = min(arm.limits[6], key=lambda limit: abs(remainder(limit - wanted, TURN)))
         theta = (*theta[:6], fitted)
-    return Reached(theta, passes)
+    return theta
 
 
-def _iterate(
-    arm: CanonicalArm, target: Vector, start: Start, most: int
-) -> tuple[Angles | None, int]:
+def _iterate(arm: CanonicalArm, target: Vector, start: Start, most: int) -> Angles | None:
     last, wrist, elbow, farthest = start
     gap = inf
-    for passes in range(1, most + 1):
+    for _ in range(most):
         reached = backward(arm, target, wrist, elbow)
         if reached is None:
-            return None, passes
+            return None
         held, tool = reached
         circle = elbow_circle(arm, held, elbow)
         theta = close(arm, circle, held, tool, None, last, farthest)
         if theta is not None:
-            return theta, passes
+            return theta
         wrist, elbow = forward(arm, held, elbow)
         before, gap = gap, dist(wrist, held)
         if abs(before - gap) < _STALLED * gap:
-            return None, passes
-    return None, most
+            return None
+    return None
 
 
 _TINY = 1e-12
@@ -135,25 +122,20 @@ def _planar_starts(
     largest = tilt_range(*arm.limits[1])[1]
     for part in (1.0, -1.0, 0.6, -0.6, 0.2, -0.2):
         r, h = arm.upper * sin(part * largest), arm.upper * cos(part * largest)
-        for wrist_r, wrist_h in _third_corners(arm, beside - r, z - h):
-            along = r + wrist_r
-            yield (c * along, s * along, h + wrist_h), (c * r, s * r, h)
-
-
-def _third_corners(arm: CanonicalArm, r: float, h: float) -> Iterator[tuple[float, float]]:
-    """Yield where the wrist can be, from the elbow, if the target is at (r, h) from it."""
-    square = r * r + h * h
-    if square < _TINY:
-        return
-    along = (square + arm.fore * arm.fore - arm.tool * arm.tool) / (2.0 * square)
-    across = arm.fore * arm.fore / square - along * along
-    if across >= 0.0:
-        for side in (sqrt(across), -sqrt(across)):
-            yield along * r + side * h, along * h - side * r
+        # Where the wrist can be, from the elbow, if the target is at (dr, dh) from it.
+        dr, dh = beside - r, z - h
+        square = dr * dr + dh * dh
+        if square < _TINY:
+            continue
+        along = (square + arm.fore * arm.fore - arm.tool * arm.tool) / (2.0 * square)
+        across = arm.fore * arm.fore / square - along * along
+        for side in (sqrt(across), -sqrt(across)) if across >= 0.0 else ():
+            out, up = r + (along * dr + side * dh), h + (along * dh - side * dr)
+            yield (c * out, s * out, up), (c * r, s * r, h)
 
 
 _SLACK = 1e-12
-# Beside and above the shoulder, m.
+# Horizontal and vertical distance from the shoulder, m.
 Point = tuple[float, float]
 # Each link's angle from the first axis, rad.
 Posture = tuple[float, ...]
@@ -183,11 +165,10 @@ def _nearest_links(
     `target` (m) is out of reach; where it is on the first axis, the arm stays in its plane of
     `last`.
 
-    There every link lies in the plane of the target and the first axis: each link is extreme in
-    its cone, as seen along the line from the tip to the target, and cones about directions of a
-    plane have their extremes in that plane. What is left is a planar arm of three joints, each at
-    an end of its range or free; where one is free, it lies on that line. There are few such
-    postures.
+    Every link is then in the plane of the target and the first axis: each link is extreme in its
+    cone, as seen along the line from the tip to the target, and cones about directions of a plane
+    have their extremes in that plane. A planar arm of three joints remains, each at an end of its
+    range, or free and on that line. There are few such postures.
     """
     x, y, z = target
     beside = hypot(x, y)
@@ -233,7 +214,7 @@ def _distances(
 ) -> Iterator[tuple[float, tuple[int, ...]]]:
     """Yield how near the tip gets with the chords pointing to the target (1) or away (−1).
 
-    From each free joint the tip has to be on the target's side: turned by π it would be nearer.
+    The tip has to be on the target's side of each free joint: turned by π it would be nearer.
     """
     distance = hypot(beside - plan.start[0], above - plan.start[1])
     for signs in product((1, -1), repeat=len(plan.parts)):
@@ -281,10 +262,10 @@ def backward(
     """Reach from the target back to the wrist; return the wrist and the tool's direction.
 
     The tool stays in its cone about the forearm, the wrist in the band that the elbow's tilt
-    leaves it. None where no wrist in the band is a tool's length from the target.
+    leaves it. None if no wrist in the band is a tool's length from the target.
     """
     tool = _inside(_toward(wrist, target), _toward(elbow, wrist), arm.wrist_cosines)
-    wx, wy, wz = _minus(target, arm.tool, tool)
+    wx, wy, wz = subtract(target, scale(tool, arm.tool))
     square = wx * wx + wy * wy + wz * wz
     if arm.nearest * arm.nearest <= square <= arm.farthest * arm.farthest:
         return (wx, wy, wz), tool
@@ -295,9 +276,9 @@ def backward(
 def forward(arm: CanonicalArm, wrist: Vector, elbow: Vector) -> tuple[Vector, Vector]:
     """Reach from the shoulder to the wrist inside the cones; return wrist and elbow."""
     upper = _inside(_toward(_SHOULDER, elbow), _UP, arm.shoulder_cosines)
-    elbow = _minus(_SHOULDER, -arm.upper, upper)
+    elbow = subtract(_SHOULDER, scale(upper, -arm.upper))
     fore = _inside(_toward(elbow, wrist), upper, arm.elbow_cosines)
-    return _minus(elbow, -arm.fore, fore), elbow
+    return subtract(elbow, scale(fore, -arm.fore)), elbow
 
 
 def settle(
@@ -311,9 +292,9 @@ def settle(
     for _ in range(passes):
         before = wrist
         fore = _inside(_toward(elbow, wanted), tool, arm.wrist_cosines)
-        wrist, elbow = forward(arm, wanted, _minus(wanted, arm.fore, fore))
+        wrist, elbow = forward(arm, wanted, subtract(wanted, scale(fore, arm.fore)))
         fore = _inside(_toward(elbow, wrist), tool, arm.wrist_cosines)
-        wrist = _minus(elbow, -arm.fore, fore)
+        wrist = subtract(elbow, scale(fore, -arm.fore))
         if dist(before, wrist) < _SETTLED:
             break
     return wrist, elbow
@@ -348,14 +329,6 @@ def _toward(start: Vector, end: Vector) -> Vector:
     x, y, z = end[0] - start[0], end[1] - start[1], end[2] - start[2]
     size = sqrt(x * x + y * y + z * z)
     return (x / size, y / size, z / size) if size > _TINY else _UP
-
-
-def _minus(point: Vector, length: float, direction: Vector) -> Vector:
-    return (
-        point[0] - length * direction[0],
-        point[1] - length * direction[1],
-        point[2] - length * direction[2],
-    )
 
 
 def _inside(direction: Vector, axis: Vector, cosines: tuple[float, float]) -> Vector:

@@ -1,13 +1,13 @@
-"""A 7R S-R-S arm: recognized by its joints, and as plain floats for FABRIK's inner loops.
+"""A 7R S-R-S arm as plain floats for FABRIK's inner loops.
 
-Three axes that meet in one point act as a shoulder, three as a wrist, and the elbow lies where the
-third, fourth and fifth axes meet (Shimizu et al. 2008, 10.1109/TRO.2008.2003266, section II).
-Every such arm, whatever its axis conventions, is the canonical chain
+Three axes that meet in one point act as a shoulder, three as a wrist, and the elbow is where the
+third, fourth and fifth axes meet (Shimizu et al. 2008, 10.1109/TRO.2008.2003266, section II). Such
+an arm is the canonical chain
 
     Rz(θ1) Ry(θ2) · upper · Rz(θ3) Ry(θ4) · fore · Rz(θ5) Ry(θ6) · tool · Rz(θ7),
 
-whose links all lie along z at θ = 0, with θ = sign · q + offset. The plain floats live in the arm's
-own frame: the shoulder is the origin and θ2 = 0 points the upper arm along z.
+whose links are all along z at θ = 0, with θ = sign · q. The plain floats are in the arm's own
+frame, parallel to World: the shoulder is the origin.
 """
 
 from __future__ import annotations
@@ -19,14 +19,7 @@ from math import cos, sin
 
 import numpy as np
 
-from rastrainer.errors import InputError
-from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.vectors import Vector
-
-# URDFs often round π/2 to a few digits; the solver corrects what such rounding leaves.
-_MEETING_TOLERANCE = 1e-3
-_ANGLE_TOLERANCE = 2e-3
-_HOME = tuple(math.radians(angle) for angle in (0.0, 30.0, 0.0, 90.0, 0.0, 60.0, 0.0))
 
 
 @dataclass(frozen=True)
@@ -39,150 +32,6 @@ class Joint:
     lower: float  # rad
     upper: float  # rad
     velocity: float  # rad/s
-
-
-@dataclass(frozen=True)
-class SrsGeometry:
-    """The canonical chain of an S-R-S arm; meters and radians."""
-
-    base: np.ndarray  # (3, 3) float: rotates World into the canonical base frame
-    shoulder: np.ndarray  # (3,) float: in World
-    upper: float  # shoulder to elbow
-    fore: float  # elbow to wrist
-    tool: float  # wrist to tool tip
-    signs: tuple[float, ...]
-    offsets: tuple[float, ...]
-    q_lower: tuple[float, ...]
-    q_upper: tuple[float, ...]
-    tip_rotation: np.ndarray  # (3, 3) float: rotates the tip's frame into the last canonical frame
-    misfit: float  # how far the URDF is from an exact S-R-S arm (m, or rad · m)
-
-    @property
-    def canonical_limits(self) -> tuple[tuple[float, float], ...]:
-        """Lower and upper limit of each θ."""
-        ends = zip(self.signs, self.offsets, self.q_lower, self.q_upper, strict=True)
-        return tuple(
-            (offset + lower, offset + upper) if sign > 0.0 else (offset - upper, offset - lower)
-            for sign, offset, lower, upper in ends
-        )
-
-    def home(self) -> tuple[float, ...]:
-        """Return q of the home pose: elbow bent by 90°, tool against the base's axis."""
-        return tuple(
-            min(max(sign * (angle - offset), lower), upper)
-            for angle, sign, offset, lower, upper in zip(
-                _HOME, self.signs, self.offsets, self.q_lower, self.q_upper, strict=True
-            )
-        )
-
-
-def srs_geometry(joints: Sequence[Joint], tip_offset: np.ndarray) -> SrsGeometry:
-    """Return the canonical chain of seven joints with a tip fixed at `tip_offset` (4, 4).
-
-    Raises InputError, saying which axes do not fit, where the arm is not S-R-S.
-    """
-    pose, places, directions = np.eye(4), [], []
-    for joint in joints:
-        pose = pose @ joint.origin
-        places.append(pose[:3, 3])
-        directions.append(pose[:3, :3] @ joint.axis)
-    points, axes, tip = np.array(places), np.array(directions), pose @ tip_offset
-    shoulder, elbow, wrist, misfit = _centers(points, axes, tip[:3, 3])
-    upper, fore, tool = (
-        float(np.linalg.norm(b - a))
-        for a, b in ((shoulder, elbow), (elbow, wrist), (wrist, tip[:3, 3]))
-    )
-    if min(upper, fore, tool) < 1e-3:
-        raise InputError("The shoulder, elbow, wrist and tool tip must be four different points.")
-    along = [(elbow - shoulder) / upper, (wrist - elbow) / fore, (tip[:3, 3] - wrist) / tool]
-    base, signs, offsets = _conventions(joints, axes, along)
-    turned = np.eye(3)  # The rotation of the canonical chain's end, Rz(θ1) Ry(θ2) … Rz(θ7).
-    for index, angle in enumerate(offsets):
-        c, s = math.cos(angle), math.sin(angle)
-        about_z = [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]
-        about_y = [[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]]
-        turned = turned @ np.array(about_y if index % 2 else about_z)
-    return SrsGeometry(
-        base=base,
-        shoulder=shoulder,
-        upper=upper,
-        fore=fore,
-        tool=tool,
-        signs=signs,
-        offsets=offsets,
-        q_lower=tuple(joint.lower for joint in joints),
-        q_upper=tuple(joint.upper for joint in joints),
-        tip_rotation=turned.T @ base @ tip[:3, :3],
-        misfit=misfit,
-    )
-
-
-def _centers(
-    points: np.ndarray, axes: np.ndarray, tip: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-    bent = [abs(float(axes[i] @ axes[i + 1])) for i in range(6)]
-    if max(bent) > _ANGLE_TOLERANCE:
-        worst = bent.index(max(bent)) + 1
-        raise InputError(
-            f"This is not an S-R-S arm: the axes of joints {worst} and {worst + 1} "
-            "should be perpendicular."
-        )
-    centers, misfits = [], [max(bent)]
-    for name, first in (("shoulder", 0), ("elbow", 2), ("wrist", 4)):
-        # The point nearest to three lines (least squares), and its distance to the farthest.
-        places, directions = points[first : first + 3], axes[first : first + 3]
-        projectors = np.eye(3) - directions[:, :, None] * directions[:, None, :]
-        right = (projectors @ places[:, :, None]).sum(axis=0)[:, 0]
-        # Parallel lines have no such point; the least-norm solution is then off them.
-        center = np.linalg.lstsq(projectors.sum(axis=0), right, rcond=None)[0]
-        misses = (projectors @ (center - places)[:, :, None])[:, :, 0]
-        distance = float(np.linalg.norm(misses, axis=1).max())
-        if distance > _MEETING_TOLERANCE:
-            raise InputError(
-                f"This is not an S-R-S arm: the axes of joints {first + 1}, {first + 2} and "
-                f"{first + 3} should meet in one point, the {name}; they miss it by "
-                f"{MM_PER_M * distance:.1f} mm."
-            )
-        centers.append(center)
-        misfits.append(distance)
-    beside = float(np.linalg.norm(np.cross(tip - centers[2], axes[6])))
-    if beside > _MEETING_TOLERANCE:
-        raise InputError(
-            f"The tool tip should lie on the axis of joint 7; it is {MM_PER_M * beside:.1f} mm off."
-        )
-    shoulder, elbow, wrist = centers
-    return shoulder, elbow, wrist, max(*misfits, beside)
-
-
-def _conventions(
-    joints: Sequence[Joint], axes: np.ndarray, along: list[np.ndarray]
-) -> tuple[np.ndarray, tuple[float, ...], tuple[float, ...]]:
-    """Return the base rotation (3, 3), the signs and the offsets of θ = sign · q + offset."""
-    arm, forearm, tool = along
-    middle = (joints[1].lower + joints[1].upper) / 2.0
-    # The base axis points to where the upper arm is in the middle of its tilt.
-    in_the_middle = arm * math.cos(middle) + np.cross(axes[1], arm) * math.sin(middle)
-    z = axes[0] * math.copysign(1.0, axes[0] @ in_the_middle)
-    y = axes[1] - z * (z @ axes[1])
-    y /= np.linalg.norm(y)
-    elbow_axis = axes[3] * math.copysign(1.0, y @ axes[3] + 1e-9)
-    wrist_axis = axes[5] * math.copysign(1.0, elbow_axis @ axes[5] + 1e-9)
-    directions = (z, y, arm, elbow_axis, forearm, wrist_axis, tool)
-    signs = tuple(math.copysign(1.0, a @ b) for a, b in zip(axes, directions, strict=True))
-    offsets = (
-        0.0,
-        _angle(z, arm, y),
-        _angle(y, elbow_axis, arm),
-        _angle(arm, forearm, elbow_axis),
-        _angle(elbow_axis, wrist_axis, forearm),
-        _angle(forearm, tool, wrist_axis),
-        0.0,
-    )
-    return np.array([np.cross(y, z), y, z]), signs, tuple(map(float, offsets))
-
-
-def _angle(a: np.ndarray, b: np.ndarray, axis: np.ndarray) -> float:
-    return math.atan2(float(axis @ np.cross(a, b)), float(a @ b))
 
 
 Angles = Sequence[float]
@@ -204,9 +53,11 @@ class CanonicalArm:
     `farthest` from the shoulder.
     """
 
+    shoulder: float  # above World's origin
     upper: float
     fore: float
     tool: float
+    signs: tuple[float, ...]
     limits: Limits
     shoulder_cosines: tuple[float, float]
     elbow_cosines: tuple[float, float]
@@ -216,21 +67,38 @@ class CanonicalArm:
     reach: float  # the stretched arm's
 
     @classmethod
-    def of(cls, geometry: SrsGeometry) -> CanonicalArm:
-        """Return the constants of an arm."""
-        limits = geometry.canonical_limits
+    def of(
+        cls,
+        shoulder: float,
+        upper: float,
+        fore: float,
+        tool: float,
+        signs: Sequence[float],
+        joints: Sequence[Joint],
+    ) -> CanonicalArm:
+        """Return an arm with the shoulder at a height above World's origin; all in m."""
+        limits = tuple(
+            (joint.lower, joint.upper) if sign > 0.0 else (-joint.upper, -joint.lower)
+            for sign, joint in zip(signs, joints, strict=True)
+        )
         elbow = tilt_range(*limits[3])
+        farthest, nearest = (
+            math.sqrt(max(0.0, upper * upper + fore * fore + 2.0 * upper * fore * cos(bend)))
+            for bend in elbow
+        )
         return cls(
-            upper=geometry.upper,
-            fore=geometry.fore,
-            tool=geometry.tool,
+            shoulder=shoulder,
+            upper=upper,
+            fore=fore,
+            tool=tool,
+            signs=tuple(signs),
             limits=limits,
             shoulder_cosines=_cosines(tilt_range(*limits[1])),
             elbow_cosines=_cosines(elbow),
             wrist_cosines=_cosines(tilt_range(*limits[5])),
-            nearest=_third_side(geometry, elbow[1]),
-            farthest=_third_side(geometry, elbow[0]),
-            reach=geometry.upper + geometry.fore + geometry.tool,
+            nearest=nearest,
+            farthest=farthest,
+            reach=upper + fore + tool,
         )
 
 
@@ -265,11 +133,6 @@ def _cosines(tilts: tuple[float, float]) -> tuple[float, float]:
         cos(largest) if largest < math.pi else -_NEVER,
         cos(smallest) if smallest > 0.0 else _NEVER,
     )
-
-
-def _third_side(geometry: SrsGeometry, bend: float) -> float:
-    a, b = geometry.upper, geometry.fore
-    return math.sqrt(max(0.0, a * a + b * b + 2.0 * a * b * cos(bend)))
 
 
 def chain(theta: Angles) -> Chain:

@@ -13,10 +13,7 @@ Color = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Material:
-    """A surface's color (sRGB, 0…1), roughness and metallicity; a `glowing` one needs no light.
-
-    One whose `opacity` is below 1 lets what is behind it be seen.
-    """
+    """A surface's color (sRGB, 0…1), roughness, metallicity and opacity; it may glow by itself."""
 
     name: str
     color: Color
@@ -97,12 +94,9 @@ def painted(color: Sequence[float]) -> Material:
 
 @dataclass(frozen=True)
 class Surface:
-    """Triangles of one material, in their node's frame.
+    """Triangles (m, 3) of one material, in their node's frame, counterclockwise seen from outside.
 
-    Attributes:
-        vertices: (n, 3) float, m.
-        normals: (n, 3) float, unit vectors.
-        triangles: (m, 3) int, counterclockwise seen from outside.
+    Vertices, m, and normals are (n, 3) float.
     """
 
     vertices: np.ndarray
@@ -113,12 +107,10 @@ class Surface:
 
 @dataclass(frozen=True)
 class Node:
-    """A part of the scene that can be moved, colored or hidden by its name.
+    """A part of the scene that can be moved with its children, colored or hidden by its name.
 
-    Attributes:
-        surfaces: at most one of each material.
-        children: what moves with it.
-        is_hidden: whether it is left out of a picture unless something asks for it.
+    It has at most one surface of each material. If `is_hidden`, pictures leave it out unless
+    something asks for it.
     """
 
     name: str

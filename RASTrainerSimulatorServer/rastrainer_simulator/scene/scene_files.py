@@ -22,7 +22,7 @@ from rastrainer.errors import InputError
 from rastrainer.home_folder import home_folder
 from rastrainer.python_environment import python_command
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.ops.processes import BELOW_NORMAL, environment_without_secrets
+from rastrainer_simulator.ops.processes import BELOW_NORMAL
 
 
 def setup_digest(setup: SimulationSetup) -> bytes:
@@ -31,8 +31,8 @@ def setup_digest(setup: SimulationSetup) -> bytes:
     A file that cannot be read counts as empty: building the scene reports the error.
     """
     whole = hashlib.sha256(f"{rastrainer.__version__} {setup.scenario_sha256}".encode())
-    for path in sorted(Path(__file__).parent.glob("*.py")):
-        whole.update(_digest(path))
+    for path in sorted(Path(__file__).parent.glob("*.[pj]*")):
+        whole.update(hashlib.sha256(_content(path)).digest())
     robot = setup.robot
     visuals = [part for part in robot.meshes if part.kind == "visual"]
     links = [(link.name, link.joint, link.offset.tolist()) for link in robot.links]
@@ -41,7 +41,7 @@ def setup_digest(setup: SimulationSetup) -> bytes:
     ]
     whole.update(repr((robot.tip.name, links, parts)).encode())
     for part in visuals:
-        whole.update(_digest(part.path))
+        whole.update(hashlib.sha256(_content(part.path)).digest())
     return whole.digest()
 
 
@@ -49,9 +49,9 @@ def scene_key(digest: bytes, task: str) -> str:
     return hashlib.sha256(digest + task.encode()).hexdigest()[:32]
 
 
-def _digest(path: Path) -> bytes:
+def _content(path: Path) -> bytes:
     try:
-        return hashlib.sha256(path.read_bytes()).digest()
+        return path.read_bytes()
     except OSError:
         return b""
 
@@ -77,7 +77,7 @@ def cache_folder() -> Path:
 
 
 def forget_oldest(folder: Path) -> None:
-    """Delete scenes beyond the newest ones, and partial files left by a crash."""
+    """Delete all but the newest scenes, and partial files left by a crash."""
     with contextlib.suppress(OSError):
         files = [path for path in folder.iterdir() if path.suffix in (".glb", ".partial")]
         files.sort(key=lambda path: path.stat().st_mtime, reverse=True)
@@ -100,7 +100,7 @@ class SceneFile:
 
 
 class SceneFiles:
-    """Provides the scenes of a setup; missing ones are built, the wanted one first."""
+    """Provides the scenes of a setup; missing scenes are built, the wanted scene first."""
 
     def __init__(self, folder: Path, robot_meshes: Path | None = None) -> None:
         """Keep scenes in `folder`; `robot_meshes` are those that the setups were loaded with."""
@@ -113,7 +113,7 @@ class SceneFiles:
         self._one_at_a_time = asyncio.Lock()
 
     async def scene(self, setup: SimulationSetup, task: str) -> SceneFile:
-        """Return the scene of a task, or the one without a task; building it takes seconds.
+        """Return the scene of a task, or without a task; building it takes seconds.
 
         Canceling the wait ends the building, too.
         """
@@ -143,9 +143,10 @@ class SceneFiles:
         return self._paths[1]
 
     async def _use_built(self, path: Path) -> bool:
-        sha256 = await asyncio.to_thread(_sha256_of_glb, path)
-        if sha256 is None:
-            return False
+        content = await asyncio.to_thread(_content, path)
+        if not content.startswith(_HEADER.pack(b"glTF", 2, len(content))):
+            return False  # It is missing, or was not written to its end.
+        sha256 = await asyncio.to_thread(lambda: hashlib.sha256(content).hexdigest())
         file = SceneFile(sha256, path)
         self._ready[path] = self.by_hash[sha256] = file
         return True
@@ -164,7 +165,6 @@ class SceneFiles:
                 stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.PIPE,
-                env=environment_without_secrets(),
                 creationflags=BELOW_NORMAL,
             )
         except OSError as error:
@@ -183,10 +183,7 @@ class SceneFiles:
 
 def read_scene(file: SceneFile) -> bytes | None:
     """Return the content of a scene's file; None if it was changed or is missing."""
-    try:
-        content = file.path.read_bytes()
-    except OSError:
-        return None
+    content = _content(file.path)
     return content if hashlib.sha256(content).hexdigest() == file.sha256 else None
 
 
@@ -194,20 +191,9 @@ def read_scene(file: SceneFile) -> bytes | None:
 def gzipped_scene(file: SceneFile) -> tuple[bytes, int]:
     """Return the content compressed, half as large, and how large it was; takes 0.2 s at first.
 
-    Raises:
-        LookupError: the file has changed.
+    Raises LookupError if the file has changed.
     """
     content = read_scene(file)
     if content is None:
         raise LookupError(file.path)
     return gzip.compress(content, GZIP_LEVEL, mtime=0), len(content)
-
-
-def _sha256_of_glb(path: Path) -> str | None:
-    """Return the hash of a complete GLB file; None if there is none."""
-    try:
-        content = path.read_bytes()
-    except OSError:
-        return None
-    is_whole = content.startswith(_HEADER.pack(b"glTF", 2, len(content)))
-    return hashlib.sha256(content).hexdigest() if is_whole else None

@@ -64,19 +64,17 @@ from rastrainer_simulator.scene.surfaces import shaded, turned
 def robot_nodes(robot: RobotModel) -> list[Node]:
     """Return the nodes of a robot, each in the frame that the stream moves.
 
-    What is fixed behind the flange is the tool; its node's origin is the tool's tip.
+    All links fixed behind the flange make the tool; its node's origin is the tool's tip.
     """
-    # The links whose poses are in the state, by the number of joints before them.
-    first = {link.joint: link for link in reversed(robot.links)}
-    tip_to_flange = robot.tip.offset
-    surfaces: dict[str, list[Surface]] = {link_node_name(joint): [] for joint in sorted(first)}
+    first = robot.moving_links
+    surfaces: dict[str, list[Surface]] = {link_node_name(link.joint): [] for link in first}
     surfaces[TOOL] = []
     marker: list[Surface] = []
     links = {link.name: link for link in robot.links}
     for name, parts in load_meshes(robot).items():
         link = links[name]
         is_tool = link.joint == len(robot.joints) and link is not first[link.joint]
-        frame = tip_to_flange if is_tool else first[link.joint].offset
+        frame = robot.tip.offset if is_tool else first[link.joint].offset
         to_node = np.linalg.inv(frame) @ link.offset
         for mesh, color in parts:
             mesh.apply_transform(to_node)

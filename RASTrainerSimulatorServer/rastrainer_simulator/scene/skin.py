@@ -22,12 +22,9 @@ PATCH_RADIUS = 10.0
 
 @dataclass(frozen=True)
 class Shape:
-    """Triangles in the head's frame, RAS mm, or flat ones in the x-y plane.
+    """Triangles (m, 3) in the head's frame, RAS mm, counterclockwise seen from outside.
 
-    Attributes:
-        points: (n, 3) float, mm.
-        triangles: (m, 3) int, counterclockwise seen from outside.
-        outward: (n, 3) float, unit normals of the skin below.
+    `points` are (n, 3) float, and `outward` (n, 3) the unit normals of the skin below them.
     """
 
     points: np.ndarray
@@ -95,7 +92,7 @@ class Skin:
 
 DOT_RADIUS = 4.0
 RIM_RADIUS = 5.2
-"""Of a fiducial's colored disk, and of the pale ring around it, which reaches a little under it."""
+"""Radii of a fiducial's colored disk, and of the pale ring that reaches a little under it."""
 NUMBER_HEIGHT = 11.0
 LONGEST_EDGE = 1.5
 
@@ -166,17 +163,18 @@ _ACROSS = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
 class Arrow:
     """The middle line of an arrow; mm, RAS.
 
-    Attributes:
-        path: (n, 3) float, on the skin, from the fiducial on, a step apart.
-        outward: (n, 3) float, the skin's normals there.
-        start: length of the path at which the arrow starts.
-        end: and at which its tip is; no more where fiducials leave no room for it.
+    The `path` (n, 3) is on the skin, from the fiducial on, a step apart, with the skin's normals
+    `outward`. The arrow starts and ends at lengths of it, the same if there is no room for it.
     """
 
     path: np.ndarray
     outward: np.ndarray
     start: float
     end: float
+
+    @property
+    def length(self) -> float:
+        return self.end - self.start
 
     def half_width(self, along: np.ndarray) -> np.ndarray:
         """Return half the arrow's width at lengths of the path (k,)."""
@@ -286,28 +284,24 @@ def _walk(
 
 
 def _kept_apart(made: list[Arrow]) -> list[Arrow]:
-    """Shorten arrows until none comes near another; very short ones may still meet."""
+    """Shorten arrows until none comes near another; very short arrows may still meet."""
     made = list(made)
     while True:
         close = [
             (i, j)
             for j in range(len(made))
             for i in range(j)
-            if _distance(made[i], made[j]) < APART and max(_spare(made[i]), _spare(made[j])) > 0.0
+            if _distance(made[i], made[j]) < APART
+            and max(made[i].length, made[j].length) > SHORTEST
         ]
         if not close:
             return made
         for pair in close:
-            longer = max(pair, key=lambda index: _spare(made[index]))
+            longer = max(pair, key=lambda index: made[index].length)
             arrow = made[longer]
-            if _spare(arrow) > 0.0:
+            if arrow.length > SHORTEST:
                 end = max(arrow.end - STEP, arrow.start + SHORTEST)
                 made[longer] = Arrow(arrow.path, arrow.outward, arrow.start, end)
-
-
-def _spare(arrow: Arrow) -> float:
-    """Return by how much an arrow may be shortened."""
-    return arrow.end - arrow.start - SHORTEST
 
 
 def _distance(first: Arrow, second: Arrow) -> float:

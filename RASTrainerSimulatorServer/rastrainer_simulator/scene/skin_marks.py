@@ -1,4 +1,4 @@
-"""What guides the trainee on the skin: dots, rims, numbers and arrows that follow its curve."""
+"""The trainee's guides on the skin: dots, rims, numbers and arrows that follow its curve."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ ANGLES = np.radians(np.arange(0, 360, 20))
 MARGINS = (2.5, 1.5)
 """How far a number keeps from everything else, mm: the most that is possible for all."""
 NUMBERS_APART = 3.0
-"""How many times that margin two numbers keep from each other: 5 beside 2 must not read as 52."""
+"""How many times that margin two numbers keep from each other: 5 next to 2 must not read 52."""
 OWN_SHARE = 0.8
 """Largest ratio of a number's distance to its own dot and to any other, so that it is clear."""
 ENOUGH = 16
@@ -40,12 +40,10 @@ _ROOM_ENOUGH = 6.0
 
 @dataclass(frozen=True)
 class Place:
-    """One possible position of a number; its middle (3,) is on the skin.
+    """One possible position of a number, its middle (3,) on the skin.
 
-    Attributes:
-        covers: (k, 3) float, places all over the number's rectangle on the skin.
-        clearance: to arrows and to the rims of all dots.
-        cost: how much worse it is than the best place there could be, mm.
+    `covers` (k, 3) are places all over its rectangle, with the clearance to arrows and rims;
+    `cost` is how much worse it is than the best place there could be, mm.
     """
 
     middle: np.ndarray

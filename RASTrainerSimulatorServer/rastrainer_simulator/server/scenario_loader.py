@@ -1,4 +1,4 @@
-"""LoadScenario: another head and other tasks, loaded beside the running control loop."""
+"""LoadScenario: loads another head and other tasks while the control loop runs."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ _log = logging.getLogger(__name__)
 class ScenarioLoader:
     """Makes simulations of other scenarios and has the control loop continue with them.
 
-    One at a time, since that is costly, and between two trials: from the moment that one is asked
-    for until it is used, or cannot be, no trial begins. All methods belong to one thread.
+    One at a time, since that is costly, and between two trials: from the request until the
+    simulation is used, or has failed, no trial begins. All methods belong to one thread.
     """
 
     def __init__(
@@ -41,14 +41,14 @@ class ScenarioLoader:
         self._make_simulation = make_simulation
         self._may_be_anywhere = may_be_anywhere
         self._library = library or user_library()
-        self._pictures: dict[str, Path] = {}
+        self.pictures: dict[str, Path] = {}
+        """Pictures of the listed scenarios, by name."""
         self._worker = ThreadPoolExecutor(max_workers=1, thread_name_prefix="scenario")
         self._loading: Future[Answer] | None = None
 
     def load(self, folder: str) -> Future[Answer]:
-        """Load a scenario by its name, or by the path of its folder.
+        """Load a scenario by its name (ours, or in the user's library), or by its folder's path.
 
-        Names are those of the scenarios that come with us and of those in the user's library.
         It is refused in a trial, and while another simulation is being made.
         """
         return self._begin(lambda: self._found(folder), is_checked=True)
@@ -62,7 +62,7 @@ class ScenarioLoader:
         present = self._control_loop.setup.scenario
         if name in ("", present.name):
             return present
-        for entry in self._known():
+        for entry in list_scenarios([asset_path("scenarios"), self._library]):
             if entry.name == name:
                 return load_scenario(entry.folder)
         raise InputError(f"There is no scenario {name} here, in which the trial was played.")
@@ -70,10 +70,6 @@ class ScenarioLoader:
     def listed(self) -> Future[list[ListedScenario]]:
         """Return the scenarios that can be loaded by their names, and those with a problem."""
         return self._worker.submit(self._listed)
-
-    def picture(self, name: str) -> Path | None:
-        """Return the picture of a scenario that has been listed, None where it has none."""
-        return self._pictures.get(name)
 
     def close(self) -> None:
         """Wait for the scenario that is being loaded, and load no other."""
@@ -111,12 +107,9 @@ class ScenarioLoader:
             self._control_loop.end_replacement()
 
     def _listed(self) -> list[ListedScenario]:
-        found = self._known()
-        self._pictures = {entry.name: entry.preview for entry in found if entry.preview}
+        found = list_scenarios([asset_path("scenarios"), self._library])
+        self.pictures = {entry.name: entry.preview for entry in found if entry.preview}
         return found
-
-    def _known(self) -> list[ListedScenario]:
-        return list_scenarios([asset_path("scenarios"), self._library])
 
     def _found(self, folder: str) -> Path:
         if is_identifier(folder):

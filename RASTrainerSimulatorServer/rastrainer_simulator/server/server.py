@@ -52,18 +52,13 @@ _LOOP_CHECK_PERIOD_S = 1.0
 
 @dataclass(frozen=True)
 class ServerOptions:
-    """What the simulator is started with.
+    """The options of the simulator.
 
-    Attributes:
-        seed: of the heads' poses in the trials, which determines the truth.
-        is_seeded: whether that seed was chosen, not drawn.
-        port: to listen on; 0 is any free one.
-        connect_to: host and port of a listening Slicer, in place of listening.
-        scenario: folder; None is the one that comes with RASTrainer.
-        view_port: of the views; 0 is any free one, None the usual one or else any free one.
-        has_network: whether views of other computers are served, too.
-        has_desktop: whether a window is opened; the simulator ends when its user closes it.
-        scores_alone: whether a trial outside of a study is scored where no Slicer is connected.
+    The `seed` determines the heads' poses; `is_seeded` is whether it was chosen, not drawn. A port
+    0 is any free port; a `view_port` None is the usual port if it is free. `connect_to` is a
+    listening Slicer, in place of listening. With `has_network`, other computers may show views,
+    too; with `has_desktop`, the simulator ends when its window is closed; with `scores_alone`, it
+    scores trials outside of a study if no Slicer is connected.
     """
 
     records: Path
@@ -151,7 +146,7 @@ class SimulatorServer:
         self._presenter = presenter
         views = None if presenter is None else self._make_view_server(presenter, on_ready)
         window = None
-        # Keep garbage collection between two ticks short: what is loaded now is never freed.
+        # Garbage collection between two ticks stays short if it skips everything loaded so far.
         gc.collect()
         gc.freeze()
         with stop_on_signals(stop):
@@ -234,7 +229,8 @@ class SimulatorServer:
             pin=self._pin,
         )
         running = RunningPresenter(self._control_loop, services, self._options.has_gamepad)
-        link.publisher.is_guided = lambda: running.presenter.is_tracing_guided
+        guidance, loop = running.presenter.trace_guidance, self._control_loop
+        link.publisher.is_guided = lambda: guidance(loop.latest).covered_mm > 0.0
         return running
 
     def _use_settings(self, settings: SimulationSettings) -> Future[Answer]:
@@ -253,7 +249,7 @@ class SimulatorServer:
             announce,
             self._options.robot_meshes,
             self._limits.views,
-            self._scenarios.picture,
+            lambda name: self._scenarios.pictures.get(name),
             self._config,
             self._pin,
         )

@@ -1,4 +1,4 @@
 """Paired tests, learning and clusters, without any knowledge of trials.
 
-Of scipy, `import scipy` imports nearly nothing: each part is imported when it is first used.
+`import scipy` is cheap: scipy imports each of its parts at the first use.
 """

@@ -9,7 +9,7 @@ from typing import TypeVar
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.statistics.intervals import TAIL, t_quantile
+from rastrainer_simulator.statistics.intervals import TAIL, coefficient
 
 FEWEST = 3
 """The agreement on two rated objects cannot be computed."""
@@ -46,8 +46,8 @@ def intraclass_correlations(ratings: np.ndarray) -> IntraclassCorrelations:
     """Return the agreement of (n, k) float ratings: n objects by k raters.
 
     The coefficients are defined by Shrout and Fleiss (1979). Their 95 % limits are generalized
-    confidence limits (Weerahandi 1993): those of McGraw and Wong (1996, table 7) hold the truth in
-    as few as 75 % of simulated studies where raters differ as much as objects; see
+    confidence limits (Weerahandi 1993): the limits of McGraw and Wong (1996, table 7) hold the
+    truth in as few as 75 % of simulated studies if raters differ as much as objects; see
     docs/error-rates.md. Raters who differ by nothing but a constant leave no limits.
     """
     ratings = np.asarray(ratings, dtype=float)
@@ -95,7 +95,7 @@ def _single(n: int, k: int, rows: _Number, columns: _Number, error: _Number) -> 
 
 
 def _of_mean(value: float, k: int) -> float:
-    """Return the agreement of the mean of k raters (Spearman and Brown) from that of one."""
+    """Return the agreement of the mean of k raters from a single rater's (Spearman and Brown)."""
     below = 1 + (k - 1) * value
     # Below −1/(k − 1), the mean of the raters means nothing.
     return k * value / below if below > 0 else -math.inf
@@ -130,8 +130,8 @@ def quadratic_kappa(first: np.ndarray, second: np.ndarray, lowest: int, highest:
         return Agreement(value, None)
     z = np.arctanh(without)
     error = math.sqrt((n - 1) / n * float(np.sum((z - z.mean()) ** 2)))
-    middle, reach = math.atanh(value), t_quantile(n - 1) * error
-    return Agreement(value, (math.tanh(middle - reach), math.tanh(middle + reach)))
+    low, high = coefficient(math.atanh(value), error, n - 1).interval
+    return Agreement(value, (math.tanh(low), math.tanh(high)))
 
 
 def kappa_of_table(table: np.ndarray, weights: np.ndarray) -> float:

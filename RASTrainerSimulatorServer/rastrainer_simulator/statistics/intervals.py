@@ -5,7 +5,7 @@ from __future__ import annotations
 import bisect
 import functools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,28 +35,23 @@ def noncentrality_interval(t: float, dof: float) -> tuple[float, float]:
     the limits of the population's effect size itself. They are not multiplied by Hedges' J, which
     corrects the estimate: with it they would cover too rarely.
     """
-    return _noncentrality(t, dof, 1 - TAIL), _noncentrality(t, dof, TAIL)
 
-
-def _noncentrality(t: float, dof: float, probability: float) -> float:
-    """Return the noncentrality at which so much of the distribution lies below t.
-
-    `scipy.special.nctdtrinc` is right to 10⁻⁶ only.
-    """
-    below = scipy.stats.nct.cdf
-
-    def excess(noncentrality: float) -> float:
-        share = float(below(t, dof, noncentrality))
+    def excess(noncentrality: float, probability: float) -> float:
+        share = float(scipy.stats.nct.cdf(t, dof, noncentrality))
         # Far out in a tail, scipy gives no number.
         share = float(noncentrality < t) if math.isnan(share) else share
         return share - probability
 
-    low, high, step = t - 1.0, t + 1.0, 2.0
-    while excess(low) < 0:
-        low, step = low - step, 2 * step
-    while excess(high) > 0:
-        high, step = high + step, 2 * step
-    return float(scipy.optimize.brentq(excess, low, high, xtol=1e-12))
+    limits = []
+    for tail in (1 - TAIL, TAIL):
+        low, high, step = t - 1.0, t + 1.0, 2.0
+        while excess(low, tail) < 0:
+            low, step = low - step, 2 * step
+        while excess(high, tail) > 0:
+            high, step = high + step, 2 * step
+        # `scipy.special.nctdtrinc` is accurate to 10⁻⁶ only.
+        limits.append(float(scipy.optimize.brentq(excess, low, high, args=(tail,), xtol=1e-12)))
+    return limits[0], limits[1]
 
 
 ALPHA = 0.05
@@ -144,6 +139,11 @@ class Estimate:
         low, high = self.interval
         return Estimate(-self.value, (-high, -low))
 
+    def mapped(self, function: Callable[[float], float]) -> Estimate:
+        """Return the estimate on another scale, by a function that rises."""
+        low, high = map(function, self.interval)
+        return Estimate(function(self.value), (low, high))
+
 
 @dataclass(frozen=True)
 class MeanSquare:
@@ -155,7 +155,7 @@ class MeanSquare:
 
 def coefficient(value: float, error: float, dof: float) -> Estimate:
     """Return a normal estimate whose standard error has so many degrees of freedom."""
-    reach = t_quantile(dof) * error
+    reach = float(scipy.stats.t.isf(TAIL, dof)) * error
     return Estimate(value, (value - reach, value + reach))
 
 
@@ -170,8 +170,8 @@ def rms(values: Sequence[float] | np.ndarray) -> float:
 
 
 def variance(square: MeanSquare) -> Estimate:
-    low, high = (chi2_ratio(tail, square.dof) for tail in (TAIL, 1 - TAIL))
-    return Estimate(square.value, (square.value / high, square.value / low))
+    high, low = scipy.stats.chi2.ppf((TAIL, 1 - TAIL), square.dof) / square.dof
+    return Estimate(square.value, (square.value / float(low), square.value / float(high)))
 
 
 def difference(first: MeanSquare, second: MeanSquare) -> Estimate:
@@ -195,19 +195,8 @@ def _factors(tail: float, dof: float, other_dof: float) -> np.ndarray:
 
     `tail`, the probability above the first mean square's quantile, is small for the lower limit.
     """
-    own = 1 - 1 / chi2_ratio(1 - tail, dof)
-    others = 1 - 1 / chi2_ratio(tail, other_dof)
-    ratio = float(scipy.stats.f.isf(tail, dof, other_dof))
+    own = 1 - dof / scipy.stats.chi2.ppf(1 - tail, dof)
+    others = 1 - other_dof / scipy.stats.chi2.ppf(tail, other_dof)
+    ratio = scipy.stats.f.isf(tail, dof, other_dof)
     product = ((ratio - 1) ** 2 - (own * ratio) ** 2 - others**2) / ratio
     return np.array([own**2, others**2, product])
-
-
-@functools.lru_cache(maxsize=256)
-def t_quantile(dof: float) -> float:
-    """Return by how many standard errors a 95 % interval reaches to either side."""
-    return float(scipy.stats.t.isf(TAIL, dof))
-
-
-@functools.lru_cache(maxsize=256)
-def chi2_ratio(probability: float, dof: float) -> float:
-    return float(scipy.stats.chi2.ppf(probability, dof)) / dof

@@ -1,8 +1,8 @@
 """Two conditions on the same subjects: difference, interval, effect size and tests.
 
-A subject has more practice, or is more tired, in the later condition. With balanced orders half of
-the subjects gain by this in one condition and half in the other: the mean difference is right, but
-the differences scatter by twice the effect of the period, so a paired test finds little. The
+A subject has more practice, or is more tired, in the later condition. If orders are balanced, half
+of the subjects gain by this in one condition and half in the other: the mean difference is right,
+but the differences scatter by twice the effect of the period, so a paired test finds little. The
 regression here removes it (for two sequences AB and BA it is the usual analysis of a crossover:
 Hills and Armitage 1979; Senn 2002, chapter 3).
 
@@ -20,6 +20,7 @@ import scipy
 from rastrainer.errors import InputError
 from rastrainer_simulator.statistics.intervals import (
     CONFIDENCE,
+    Estimate,
     coefficient,
     noncentrality_interval,
     small_sample_factor,
@@ -45,7 +46,7 @@ class DifferenceFit:
 
 
 def is_separable(order: np.ndarray | None) -> bool:
-    """Return whether the effect of the period can be separated from that of the conditions.
+    """Return whether the effects of the period and of the conditions can be separated.
 
     Args:
         order: (n,) float, by how many periods each subject did the second condition later than the
@@ -59,7 +60,7 @@ def is_separable(order: np.ndarray | None) -> bool:
 def fit_differences(differences: np.ndarray, order: np.ndarray | None = None) -> DifferenceFit:
     """Return the mean of (…, n) float differences, second condition minus first.
 
-    `order` is that of `is_separable`; where it is not separable, the plain mean is returned.
+    `order` is as in `is_separable`; if the period cannot be separated, the plain mean is returned.
     """
     n = differences.shape[-1]
     means = differences.mean(axis=-1)
@@ -91,17 +92,16 @@ class Sequences:
     """Subjects by the condition that they did first.
 
     Attributes:
-        between: Mean over both conditions of those who did the second one first, minus that of the
-            others; None with fewer than two subjects in a sequence. Without carry-over it is 0 but
-            for chance.
+        later: What one period later adds.
+        between: Mean over both conditions of the subjects who did the second condition first, minus
+            the mean of the others; None with fewer than two subjects in a sequence. It differs from
+            0 by chance or carry-over.
     """
 
     first_first: int
     second_first: int
-    later: float
-    later_interval: tuple[float, float]
-    between: float | None
-    between_interval: tuple[float, float] | None
+    later: Estimate
+    between: Estimate | None
 
 
 def compare_sequences(
@@ -109,26 +109,17 @@ def compare_sequences(
 ) -> Sequences:
     """Return the effects of the order on (n,) float values of both conditions.
 
-    `order` is that of `is_separable`, and `fit` that of the differences, with the period.
+    `order` is as in `is_separable`; `fit` is the fit of the differences, with the period.
     """
     if fit.later is None or fit.later_error is None:
         raise ValueError("The effect of the period is not separated.")
+    means, between = (first + second) / 2, None
+    one, other = means[order > 0], means[order < 0]
+    if min(len(one), len(other)) >= MIN_SEQUENCE_SIZE and np.ptp(means) > 0:
+        low, high = scipy.stats.ttest_ind(other, one).confidence_interval(CONFIDENCE)
+        between = Estimate(float(other.mean() - one.mean()), (float(low), float(high)))
     later = coefficient(float(fit.later), float(fit.later_error), fit.dof)
-    means = (first + second) / 2
-    groups = means[order < 0], means[order > 0]
-    between, between_interval = None, None
-    if min(map(len, groups)) >= MIN_SEQUENCE_SIZE and np.ptp(means) > 0:
-        between = float(groups[0].mean() - groups[1].mean())
-        limits = scipy.stats.ttest_ind(*groups).confidence_interval(CONFIDENCE)
-        between_interval = (float(limits.low), float(limits.high))
-    return Sequences(
-        first_first=len(groups[1]),
-        second_first=len(groups[0]),
-        later=later.value,
-        later_interval=later.interval,
-        between=between,
-        between_interval=between_interval,
-    )
+    return Sequences(len(one), len(other), later, between)
 
 
 @dataclass(frozen=True)
@@ -136,25 +127,23 @@ class PairedComparison:
     """Two conditions, compared on the subjects who did both.
 
     Attributes:
-        mean_difference: Mean of second minus first; free of the effect of the period where
+        difference: Mean of second minus first; free of the effect of the period where
             `sequences` is not None.
-        hedges_gz: Mean difference over its standard deviation, corrected for few subjects; None
-            with one degree of freedom.
-        gz_interval: 95 % interval of the population's own (noncentral t); None likewise.
+        effect: Hedges' g_z, the mean difference over its standard deviation, corrected for few
+            subjects, with the interval of the population's own (noncentral t); None with one
+            degree of freedom.
         ranks: Wilcoxon's signed ranks, or his rank sums where periods are separated; None if
             neither can be computed.
         sequences: What the order did; None if it is unknown, or the same for all.
     """
 
     n: int
-    mean_difference: float
+    difference: Estimate
     standard_error: float
     dof: int
-    interval: tuple[float, float]
     t: float
     p: float
-    hedges_gz: float | None
-    gz_interval: tuple[float, float] | None
+    effect: Estimate | None
     ranks: RankTest | None
     sequences: Sequences | None = None
 
@@ -167,7 +156,7 @@ def compare_paired(
     The t-test is Student's (1908), with the period as a covariate where the order allows it. The
     effect size is Cohen's d_z with Hedges' exact correction (1981).
 
-    `order` is that of `is_separable`.
+    `order` is as in `is_separable`.
     """
     first, second = np.asarray(first, dtype=float), np.asarray(second, dtype=float)
     differences, n = second - first, len(first)
@@ -180,20 +169,18 @@ def compare_paired(
         raise InputError("All subjects differ by the same amount: no test can be computed.")
     error = float(fit.standard_error)
     t, dof = mean / error, fit.dof
-    gz, gz_interval, factor = None, None, small_sample_factor(dof)
+    effect, factor = None, small_sample_factor(dof)
     if factor is not None:
         low, high = noncentrality_interval(t, dof)
-        gz, gz_interval = factor * mean / sd, (low * error / sd, high * error / sd)
+        effect = Estimate(factor * mean / sd, (low * error / sd, high * error / sd))
     return PairedComparison(
         n=n,
-        mean_difference=mean,
+        difference=coefficient(mean, error, dof),
         standard_error=error,
         dof=dof,
-        interval=coefficient(mean, error, dof).interval,
         t=t,
         p=float(2 * scipy.stats.t.sf(abs(t), dof)),
-        hedges_gz=gz,
-        gz_interval=gz_interval,
+        effect=effect,
         ranks=rank_test(differences, order),
         sequences=None if order is None else compare_sequences(first, second, order, fit),
     )
@@ -206,7 +193,7 @@ def equivalence_margin(comparison: PairedComparison) -> float:
     small a difference may be neglected must be decided before the study.
     """
     quantile = float(scipy.stats.t.ppf(CONFIDENCE, comparison.dof))
-    return abs(comparison.mean_difference) + quantile * comparison.standard_error
+    return abs(comparison.difference.value) + quantile * comparison.standard_error
 
 
 def holm(p_values: np.ndarray) -> np.ndarray:

@@ -53,7 +53,7 @@ def cluster_trainees(
     Any population can be cut, and a skewed one is cut better than a normal one. So groups are
     reported only if there is more than one peak: Hartigans' dip test on the first principal
     component, which is chosen without looking for groups, at 5 % for every population with a single
-    peak. The number of clusters is the one with the best mean silhouette, and every cluster must
+    peak. The number of clusters with the best mean silhouette is taken, and every cluster must
     come back when trainees are resampled. Otherwise, `NoClustersError` says why there are none.
     """
     names = sorted(name for name, values in trainees.items() if set(metrics) <= set(values))
@@ -74,7 +74,11 @@ def cluster_trainees(
             f"No groups are shown: {len(names)} trainees of one group would often look as clearly "
             f"divided as these (dip test, {p_phrase(p)}). That is not evidence that there are none."
         )
-    labels, silhouette = _best(points, random)
+    found = []
+    for count in range(2, max(2, min(MAX_CLUSTERS, len(points) // TRAINEES_A_CLUSTER)) + 1):
+        labels = np.unique(k_means(points, count, random), return_inverse=True)[1]
+        found.append((float(silhouettes(points, labels).mean()), labels))
+    silhouette, labels = max(found, key=lambda one: one[0])
     stable = stability(points, labels, random, STABILITY_ROUNDS)
     if stable.min() < STABLE:
         raise NoClustersError(
@@ -100,16 +104,6 @@ def one_peak_p(points: np.ndarray) -> float:
     return dip_p(points @ np.linalg.svd(points, full_matrices=False)[2][0])
 
 
-def _best(points: np.ndarray, random: np.random.Generator) -> tuple[np.ndarray, float]:
-    """Return the labels, from 0 without gaps, and the mean silhouette of the best number."""
-    most = min(MAX_CLUSTERS, len(points) // TRAINEES_A_CLUSTER)
-    found = []
-    for count in range(2, max(2, most) + 1):
-        labels = np.unique(k_means(points, count, random), return_inverse=True)[1]
-        found.append((labels, float(silhouettes(points, labels).mean())))
-    return max(found, key=lambda one: one[1])
-
-
 REFERENCE_SAMPLES = 2000
 
 
@@ -118,8 +112,8 @@ def dip(values: np.ndarray) -> float:
     unimodal one.
 
     The peak is enclosed from both sides: left of it a unimodal distribution function is convex,
-    right of it concave. Where the greatest convex minorant and the least concave majorant of what
-    is still open are farthest apart, the next, shorter interval begins and ends.
+    right of it concave. The next, shorter interval begins and ends where the greatest convex
+    minorant and the least concave majorant of the present one are farthest apart.
     """
     x, counts = np.unique(np.asarray(values, dtype=float), return_counts=True)
     n = len(values)
@@ -155,8 +149,8 @@ def dip(values: np.ndarray) -> float:
 def dip_p(values: np.ndarray) -> float:
     """Return how often (n,) values of a uniform distribution have so large a dip.
 
-    Of all distributions with a single peak the uniform one has the largest dips, so that this p is
-    too large for every other one, whether skewed or heavy-tailed, and never too small.
+    The uniform distribution has the largest dips of all distributions with a single peak, so that
+    this p is too large for every other distribution, skewed or heavy-tailed, and never too small.
     """
     reference = _uniform_dips(len(values))
     larger = len(reference) - np.searchsorted(reference, dip(values) - 1e-12)
@@ -171,16 +165,13 @@ def _uniform_dips(n: int) -> np.ndarray:
 
 def _hull(x: np.ndarray, y: np.ndarray, side: int) -> np.ndarray:
     """Return the rows of the corners of the lower (side 1) or upper (-1) hull of sorted points."""
-    corners: list[int] = []
-    for row in range(len(x)):
-        while len(corners) > 1:
-            a, b = corners[-2:]
-            turn = (y[b] - y[a]) * (x[row] - x[a]) - (y[row] - y[a]) * (x[b] - x[a])
-            if side * turn < 0:
-                break
-            corners.pop()
-        corners.append(row)
-    return np.array(corners)
+    if len(x) == 1:
+        return np.array([0])
+    steps = np.diff(x)
+    slopes = scipy.optimize.isotonic_regression(
+        np.diff(y) / steps, weights=steps, increasing=side > 0
+    )
+    return slopes.blocks
 
 
 STARTS, STARTS_OF_SAMPLE = 10, 3

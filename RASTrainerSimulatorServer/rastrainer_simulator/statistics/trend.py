@@ -1,11 +1,11 @@
 """Do times or errors fall from trial to trial? A test that five trials are enough for.
 
 A curve with a free rate and plateau has as many parameters as the published protocol has trials
-to spare, and no criterion can prefer it. Two things are known beforehand, and make a test out of
-five trials: practice does not make slower or worse, so the test is one-sided; and what it gains is
-most at first, so the trials are set against the logarithm of their number. The p-value is the share
-of all orders of the same values that would fall as steeply: exact for every distribution of values
-that do not depend on each other, and skewed or heavy-tailed ones, too. Where they fall, a power law
+to spare, and no criterion can prefer it. Two facts make a test out of five trials:
+practice does not make slower or worse, so the test is one-sided; and it gains most at first, so the
+trials are set against the logarithm of their number. The p-value is the share of all orders of the
+same values that would fall as steeply. It is exact for independent values of any distribution,
+skewed or heavy-tailed, too. Where they fall, a power law
 describes how.
 """
 
@@ -20,7 +20,7 @@ import numpy as np
 import scipy
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.statistics.intervals import ALPHA, mean
+from rastrainer_simulator.statistics.intervals import ALPHA, Estimate, mean
 from rastrainer_simulator.statistics.paired import holm
 
 MIN_TRIALS = 4
@@ -28,7 +28,7 @@ MIN_TRIALS = 4
 STEADY = 0.1
 """A fall by less than this share of the mean is called none; our own convention."""
 MAX_ORDERS = 9999
-"""Up to seven trials, all orders are used; beyond, this many random ones."""
+"""All orders of up to seven trials are used, and this many random orders of more trials."""
 
 
 class TrendVerdict(Enum):
@@ -44,16 +44,14 @@ class Trend:
     """How a trainee's values change.
 
     Attributes:
-        change: From the first to the last trial on the fitted line over ln(trial); in the unit.
-        interval: 90 % interval of it (Student's t): both ends are one-sided limits at 5 %.
+        change: From the first to the last trial on the fitted line over ln(trial), with its 90 %
+            interval (Student's t): both ends are one-sided limits at 5 %.
         verdict: Falls where p is at most .05 (6 of the 120 orders of five trials); steady where
             not, and the interval holds neither a fall nor a rise by a tenth of the mean; undecided
             where it may be either.
     """
 
-    trials: int
-    change: float
-    interval: tuple[float, float]
+    change: Estimate
     p: float
     verdict: TrendVerdict
 
@@ -70,20 +68,31 @@ def falling_trend(values: Sequence[float] | np.ndarray) -> Trend:
     residuals = y - y.mean() - change * (x - x.mean()) / x[-1]
     error = float(np.sqrt(residuals @ residuals / (len(y) - 2) * (weights @ weights)))
     reach = float(scipy.stats.t.ppf(1 - ALPHA, len(y) - 2)) * error
-    p = _permuted_p(y, weights)
+    # The share of the orders of y whose change is as far below 0.
+    p = float(
+        scipy.stats.permutation_test(
+            (y,),
+            lambda ordered, axis: (np.moveaxis(ordered, axis, -1) * weights).sum(axis=-1),
+            permutation_type="pairings",
+            alternative="less",
+            vectorized=True,
+            n_resamples=MAX_ORDERS,
+            random_state=np.random.default_rng(0),
+        ).pvalue
+    )
     interval = (change - reach, change + reach)
     verdict = TrendVerdict.UNDECIDED
     if p <= ALPHA + 1e-12:
         verdict = TrendVerdict.FALLS
     elif max(-interval[0], interval[1]) < STEADY * float(np.abs(y).mean()):
         verdict = TrendVerdict.STEADY
-    return Trend(len(y), change, interval, p, verdict)
+    return Trend(Estimate(change, interval), p, verdict)
 
 
 def change_weights(trials: int) -> np.ndarray:
-    """Return the (n,) float weights whose sum over the values of n trials is the change.
+    """Return the (n,) float weights that sum the values of n trials to their change.
 
-    It is that of the least-squares line over ln(trial), from the first trial to the last.
+    The change is from the first trial to the last on the least-squares line over ln(trial).
     """
     x = np.log(np.arange(1, trials + 1))
     offsets = x - x.mean()
@@ -91,30 +100,15 @@ def change_weights(trials: int) -> np.ndarray:
 
 
 def cohort_trend_p(rows: np.ndarray) -> float:
-    """Return the one-sided p that (m, n) values of m trainees fall over their n trials.
+    """Test by Page (1963) whether (m, n) values of m trainees fall over their n trials.
 
-    It is Page's test (1963), each trainee a block: only the ranks within trainees count, so that
-    slow and quick ones count alike.
+    Only the ranks within trainees count, so that slow and quick trainees count alike. Returns p.
     """
     values = np.asarray(rows, dtype=float)
     if values.ndim != 2 or values.shape[0] < 2 or values.shape[1] < 3:
         raise InputError("Page's test needs at least two trainees with three trials each.")
     falling = np.arange(values.shape[1], 0, -1)
     return float(scipy.stats.page_trend_test(values, predicted_ranks=falling).pvalue)
-
-
-def _permuted_p(y: np.ndarray, weights: np.ndarray) -> float:
-    """Return the share of the orders of y whose change is as far below 0."""
-    found = scipy.stats.permutation_test(
-        (y,),
-        lambda ordered, axis: (np.moveaxis(ordered, axis, -1) * weights).sum(axis=-1),
-        permutation_type="pairings",
-        alternative="less",
-        vectorized=True,
-        n_resamples=MAX_ORDERS,
-        random_state=np.random.default_rng(0),
-    )
-    return float(found.pvalue)
 
 
 @dataclass(frozen=True)
@@ -130,8 +124,7 @@ class CohortTrend:
 
     trainees: int
     means: tuple[float, ...]
-    change: float | None
-    interval: tuple[float, float] | None
+    change: Estimate | None
     p: float | None
     adjusted_p: float | None
     verdicts: Counter[TrendVerdict]
@@ -150,8 +143,8 @@ Series = Sequence[Sequence[float]]
 def cohort_trends(tested: Sequence[tuple[Series, int]]) -> list[CohortTrend | None]:
     """Return the trend of several trainees in each of some outcomes, with p adjusted (Holm).
 
-    There is none where no trainee has four trials. Of each outcome, `tested` has the values of all
-    trials of each trainee, in their order; and -1 where less is better, 1 where more is.
+    `tested` has, for each outcome, the values of all trials of each trainee, in their order; and -1
+    if less is better, 1 if more is. The trend is None if no trainee has four trials.
     """
     found = [_cohort_trend(*each) for each in tested]
     p_values = {
@@ -171,13 +164,12 @@ def _cohort_trend(series: Series, better: int) -> CohortTrend | None:
     rows = np.array([own[:common] for own in long])
     toward = -better
     verdicts = Counter(falling_trend(toward * own).verdict for own in long)
-    change = interval = p = None
+    change = p = None
     if len(rows) > 1:
-        changes = mean(rows @ change_weights(common))
-        change, interval = changes.value, changes.interval
+        change = mean(rows @ change_weights(common))
         p = cohort_trend_p(toward * rows)
     means = tuple(rows.mean(axis=0).tolist())
-    return CohortTrend(len(rows), means, change, interval, p, p, verdicts)
+    return CohortTrend(len(rows), means, change, p, p, verdicts)
 
 
 MIN_FIT_TRIALS = 5
@@ -188,8 +180,8 @@ RATES = np.geomspace(0.02, 4.0, 200)
 class LearningCurve:
     """The power law of practice y = a·n^−b + c over the trials n = 1, 2, …, fitted.
 
-    It describes (Newell and Rosenbloom 1981), in the unit of what was measured; whether there is
-    learning at all is for the test. The plateau of few trials is a guess: it lies beyond them.
+    It describes (Newell and Rosenbloom 1981), in the unit of the values; the test says whether
+    there is learning at all. The plateau of few trials is a guess: it lies beyond them.
 
     Attributes:
         gain: a, how much the first trial is above the plateau.
@@ -218,30 +210,13 @@ def fit_learning_curve(values: Sequence[float]) -> LearningCurve:
     if not np.all(np.isfinite(y) & (y >= 0)):
         raise InputError("A learning curve needs times or errors that are finite and not below 0.")
     trials = np.arange(1, len(y) + 1)
-    gains, plateaus, all_squares = _linear_fits(trials ** -RATES[:, None], y)
-    best = int(np.argmin(all_squares))
-    rate, gain = float(RATES[best]), float(gains[best])
-    plateau, squares = float(plateaus[best]), float(all_squares[best])
+    fits = []
+    for rate in RATES.tolist():
+        (gain, plateau), off = scipy.optimize.nnls(
+            np.column_stack([trials**-rate, np.ones(len(y))]), y
+        )
+        fits.append((off**2, gain, rate, plateau))
+    squares, gain, rate, plateau = min(fits, key=lambda fit: fit[0])
     total = float(((y - y.mean()) ** 2).sum())
-    return LearningCurve(
-        gain=gain,
-        rate=rate,
-        plateau=plateau,
-        r_squared=1 - squares / total if total > 0 else 0.0,
-    )
-
-
-def _linear_fits(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return gain, plateau, both at least 0, and sum of squares of y = gain·x + plateau.
-
-    `x` is (k, n), a row a fit; the results are (k,).
-    """
-    centered = x - x.mean(axis=1, keepdims=True)
-    gain = centered @ (y - y.mean()) / (centered**2).sum(axis=1)
-    gain = np.maximum(gain, 0.0)
-    plateau = y.mean() - gain * x.mean(axis=1)
-    without = plateau < 0
-    gain = np.where(without, x @ y / (x**2).sum(axis=1), gain)
-    plateau = np.where(without, 0.0, plateau)
-    squares = ((y - gain[:, None] * x - plateau[:, None]) ** 2).sum(axis=1)
-    return gain, plateau, squares
+    r_squared = float(1 - squares / total) if total > 0 else 0.0
+    return LearningCurve(float(gain), rate, float(plateau), r_squared)

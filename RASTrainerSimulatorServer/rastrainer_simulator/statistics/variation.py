@@ -5,14 +5,14 @@ the tasks, and on one level for each trainee in each mode (least squares). The s
 levels, less what chance adds to it, is parted into trainees and trainee × mode by the analysis of
 variance with random effects (Searle, Casella and McCulloch 1992). No estimate is biased: the
 coefficients are linear and the variances quadratic in the logarithms, with the parameters as their
-expected values. A variance may come out below 0 where it is about 0.
+expected values. The estimate of a variance of about 0 may be below 0.
 
 The intervals take the scatter of levels and trials as normal and all trainees as learning alike.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -94,13 +94,15 @@ def fit_variation(trials: Trials, values: np.ndarray) -> Variation | None:
         for at in (place, -1)
     )
     count = trainees * modes
-    levels = _Levels(fitted[:count].reshape(trainees, modes), inverse[:count, :count], chance)
+    between, both, modes_added = _compare_levels(
+        fitted[:count].reshape(trainees, modes), inverse[:count, :count], chance
+    )
     return Variation(
         learning=-learning,
         lapse=lapse if has_lapses else None,
-        modes=tuple(levels.of_mode(mode) for mode in range(1, modes)),
-        trainee_variance=levels.trainee_variance(),
-        interaction_variance=levels.interaction_variance(),
+        modes=modes_added,
+        trainee_variance=between,
+        interaction_variance=both,
         trial_variance=variance(chance),
         dof=dof,
         residuals=residuals,
@@ -120,62 +122,43 @@ def trade_off(times: Variation, errors: Variation) -> Estimate:
     return coefficient(-slope, float(np.sqrt(left @ left / dof / squares)), dof)
 
 
-class _Levels:
-    """The estimated levels of trainees in modes, and what their scatter says.
+def _compare_levels(
+    levels: np.ndarray, inverse: np.ndarray, chance: MeanSquare
+) -> tuple[Estimate, Estimate, tuple[Estimate, ...]]:
+    """Return the variances between trainees and trainees × modes, and what each mode adds.
 
-    Args:
-        levels: (trainees, modes) float.
-        inverse: What the variance between trials has to be multiplied by to get their covariance,
-            row by row.
+    `levels` are (trainees, modes) float, as estimated; their covariance, row by row, is `inverse`
+    times the variance between trials.
     """
+    flat, (trainees, modes) = levels.ravel(), levels.shape
 
-    def __init__(self, levels: np.ndarray, inverse: np.ndarray, chance: MeanSquare) -> None:
-        self._flat, self._inverse, self._chance = levels.ravel(), inverse, chance
-        self._trainees, self._modes = levels.shape
-        between = np.eye(self._trainees) - 1 / self._trainees
-        of_modes = np.full((self._modes, self._modes), 1 / self._modes)
-        # Of a mean over the modes, each square occurs that many times.
-        self._between = self._square(np.kron(between, of_modes), self._trainees - 1)
-        self._both = self._square(
-            np.kron(between, np.eye(self._modes) - of_modes),
-            (self._trainees - 1) * (self._modes - 1),
-        )
+    def square_of(form: np.ndarray, dof: int) -> tuple[MeanSquare, float]:
+        """Return a mean square of the levels, and how many variances between trials it has."""
+        value = max(float(flat @ form @ flat), 0.0) / dof
+        return MeanSquare(value, dof), float(np.sum(form * inverse)) / dof
 
-    def interaction_variance(self) -> Estimate:
-        """Return the variance between trainees × modes."""
-        square, share = self._both
-        return difference(square, self._scaled(share))
-
-    def trainee_variance(self) -> Estimate:
-        """Return the variance between trainees."""
-        (between, of_between), (both, of_both) = self._between, self._both
-        found = difference(between, both)
-        # Chance adds nearly the same to both, or exactly so where the design is balanced.
-        more = self._scaled(of_between - of_both).value
-        low, high = ((limit - more) / self._modes for limit in found.interval)
-        return Estimate((found.value - more) / self._modes, (low, high))
-
-    def of_mode(self, mode: int) -> Estimate:
-        """Return what a mode adds against the first.
-
-        Its variance is that of a mean difference over the trainees, who differ in it by the
-        interaction, and what the unknowns that all share add (Satterthwaite 1946).
-        """
-        contrast = np.zeros((self._trainees, self._modes))
-        contrast[:, mode], contrast[:, 0] = 1 / self._trainees, -1 / self._trainees
-        flat = contrast.ravel()
-        square, share = self._both
-        own = 2 / self._trainees * square.value
-        more = float(flat @ self._inverse @ flat) - 2 / self._trainees * share
-        shared = self._scaled(max(more, 0.0)).value
-        dof = float(square.dof)
+    apart, means = np.eye(trainees) - 1 / trainees, np.full((modes, modes), 1 / modes)
+    between, of_between = square_of(np.kron(apart, means), trainees - 1)
+    both, of_both = square_of(np.kron(apart, np.eye(modes) - means), (trainees - 1) * (modes - 1))
+    interaction = difference(both, replace(chance, value=of_both * chance.value))
+    found = difference(between, both)
+    # Chance adds nearly the same to both, or exactly so where the design is balanced; and each
+    # square occurs once for each mode in a mean over the modes.
+    more = (of_between - of_both) * chance.value
+    low, high = ((limit - more) / modes for limit in found.interval)
+    trainee = Estimate((found.value - more) / modes, (low, high))
+    added = []
+    for mode in range(1, modes):
+        contrast = np.zeros((trainees, modes))
+        contrast[:, mode], contrast[:, 0] = 1 / trainees, -1 / trainees
+        weights = contrast.ravel()
+        # The variance of a mean difference over the trainees, who differ in it by the interaction,
+        # and what the unknowns that all share add (Satterthwaite 1946).
+        own = 2 / trainees * both.value
+        extra = float(weights @ inverse @ weights) - 2 / trainees * of_both
+        shared = max(extra, 0.0) * chance.value
+        dof = float(both.dof)
         if shared:
-            dof = (own + shared) ** 2 / (own**2 / square.dof + shared**2 / self._chance.dof)
-        return coefficient(float(flat @ self._flat), float(np.sqrt(own + shared)), dof)
-
-    def _square(self, form: np.ndarray, dof: int) -> tuple[MeanSquare, float]:
-        square = max(float(self._flat @ form @ self._flat), 0.0) / dof
-        return MeanSquare(square, dof), float(np.sum(form * self._inverse)) / dof
-
-    def _scaled(self, factor: float) -> MeanSquare:
-        return MeanSquare(factor * self._chance.value, self._chance.dof)
+            dof = (own + shared) ** 2 / (own**2 / both.dof + shared**2 / chance.dof)
+        added.append(coefficient(float(weights @ flat), float(np.sqrt(own + shared)), dof))
+    return trainee, interaction, tuple(added)

@@ -1,1 +1,1 @@
-"""From the operator's input to the target of the tool's tip."""
+"""Turns the operator's input into the target of the tool's tip."""

@@ -82,7 +82,6 @@ class Moving:
         self._stalled = 0.0
 
     def displacement(self, dt: float, tip: Vector, velocity: Vector, acceleration: float) -> Vector:
-        """Return this tick's displacement (m) from the velocity of the last tick (m/s)."""
         remaining = subtract(self.goal, tip)
         braking_speed = math.sqrt(2.0 * acceleration * length(remaining))
         wanted = scale(unit(remaining), min(self._speed, braking_speed))
@@ -109,7 +108,7 @@ class Moving:
 
 
 VIA = 1e-3
-"""m: a waypoint this near is passed, whatever the direction of the tool there."""
+"""m: a waypoint this near is passed; the direction of the tool does not matter."""
 
 
 Waypoint = tuple[Vector, float, Vector]

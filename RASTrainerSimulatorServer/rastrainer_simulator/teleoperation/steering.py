@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
@@ -62,6 +61,12 @@ ROBOT_AXES = Axes(right=(0.0, -1.0, 0.0), forward=(1.0, 0.0, 0.0), up=WORLD_UP)
 """Seen from behind the robot's base: forward is World's x."""
 
 
+def axes_of(camera: Camera) -> Axes:
+    """Return right, forward and up as a scenario's camera sees them, leveled."""
+    direction = vector((camera.focal_point_mm - camera.position_mm).tolist())
+    return camera_axes(direction, vector(camera.view_up.tolist()))
+
+
 def camera_axes(view_direction: Vector, view_up: Vector) -> Axes:
     """Return a camera's axes, leveled: up is World's up and forward the horizontal view direction.
 
@@ -75,40 +80,13 @@ def camera_axes(view_direction: Vector, view_up: Vector) -> Axes:
     return Axes(right=cross(forward, WORLD_UP), forward=forward, up=WORLD_UP)
 
 
-class ChosenAxes:
-    """The axes of the chosen camera, and those that the sticks follow."""
-
-    def __init__(self, cameras: Mapping[str, Camera], camera: str, choice: AxesChoice) -> None:
-        self._choice = choice
-        self._axes_of_cameras = {
-            name: camera_axes(
-                tuple((view.focal_point_mm - view.position_mm).tolist()),
-                tuple(view.view_up.tolist()),
-            )
-            for name, view in cameras.items()
-        }
-        self.camera = camera
-
-    @property
-    def of_camera(self) -> Axes:
-        """Right, forward and up as the chosen camera sees them."""
-        return self._axes_of_cameras[self.camera]
-
-    @property
-    def of_sticks(self) -> Axes:
-        """Right, forward and up as the sticks mean them."""
-        return self.of_camera if self._choice is AxesChoice.CAMERA else ROBOT_AXES
-
-
 class ToolDirection(str, Enum):
     """The ways to choose the tool's direction.
 
-    FREE: the inverse kinematics alone, as in the paper: only the tip's position is followed.
-    CLEAR: the same, but near the head the tool leans no farther from the surface normal than
-        keeps its shaft off the skin; the paper's skull let the tool through.
-    HELD: the operator: it stays as it is until the second stick turns it.
-    NORMAL: near the head the skin: the tool comes down along the surface normal; else as HELD.
-    POSE: as HELD, and the tool does not roll about its axis either.
+    FREE: by the inverse kinematics alone, as in the paper. CLEAR: the same, but near the head the
+    tool leans no farther from the surface normal than keeps its shaft off the skin. HELD: it stays
+    as it is until the second stick turns it. NORMAL: as HELD, but near the head it comes down along
+    the surface normal. POSE: as HELD, and the tool does not roll about its axis either.
     """
 
     FREE = "free"
@@ -125,8 +103,7 @@ class SteeringSettings:
     Attributes:
         coarse_turn, fine_turn: fastest turn by the stick, without and with the trigger, rad/s.
         leaning_turn: fastest turn toward the surface normal, rad/s.
-        largest_lean: of CLEAR, between the tool and the normal at the surface.
-        near: clearance of the tip up to which the lean is limited to that.
+        largest_lean: of CLEAR, between the tool and the normal, up to the clearance `near`.
         far: clearance from which the lean is not limited.
         shaft_clearance: clearance of the shaft below which the tool turns away.
         from_above: least downward part of the direction toward which the tool leans, 0…1: coming
@@ -146,11 +123,7 @@ class SteeringSettings:
 
 @dataclass(frozen=True)
 class NearestSurface:
-    """The head as the tool sees it: clearances (m) and outward normals nearest to it.
-
-    `clearance` and `normal` are those of the tip, `shaft_clearance` and `shaft_normal` those of the
-    tool behind it.
-    """
+    """Clearances (m) of the tip and the shaft behind it, and the head's outward normals there."""
 
     clearance: float
     normal: Vector
@@ -163,24 +136,30 @@ class ToolSteering:
 
     def __init__(self, settings: SteeringSettings) -> None:
         self._settings = settings
-        self._held: Vector | None = None
-        # The tool's direction and x axis by which its roll is held.
-        self._frame: tuple[Vector, Vector] | None = None
+        self._has_to_hold = False
+        self.hold_direction(is_held=False)
+        self.reset()
 
-    @property
-    def is_steered(self) -> bool:
-        return self._settings.choice not in (ToolDirection.FREE, ToolDirection.CLEAR)
+    def hold_direction(self, is_held: bool) -> None:
+        """Have the operator hold and steer the tool's direction, or follow the settings."""
+        self._choice = ToolDirection.HELD if is_held else self._settings.choice
+        self.is_steered = self._choice not in (ToolDirection.FREE, ToolDirection.CLEAR)
+        if is_held is not self._has_to_hold:
+            self._has_to_hold = is_held
+            self.reset()
 
     def reset(self) -> None:
         """Forget the held direction: the next motion keeps the tool's direction."""
-        self._held = self._frame = None
+        self._held: Vector | None = None
+        # The tool's direction and x axis by which its roll is held.
+        self._frame: tuple[Vector, Vector] | None = None
 
     def across(self, wanted: Vector, direction: Vector, across: Vector) -> Vector | None:
         """Return the wanted x axis of the tool along `wanted`, None if its roll is free.
 
         `direction` and `across` are the tool's direction and x axis now.
         """
-        if self._settings.choice is not ToolDirection.POSE:
+        if self._choice is not ToolDirection.POSE:
             return None
         before, held = self._frame or (direction, across)
         self._frame = (wanted, parallel_transport(held, before, wanted))
@@ -218,14 +197,14 @@ class ToolSteering:
     def _leaned(self, dt: float, direction: Vector, surface: NearestSurface) -> Vector | None:
         """Return the direction turned toward the normal, None if it may stay."""
         settings = self._settings
-        if settings.choice not in (ToolDirection.CLEAR, ToolDirection.NORMAL):
+        if self._choice not in (ToolDirection.CLEAR, ToolDirection.NORMAL):
             return None
         most = settings.leaning_turn * dt
         if surface.shaft_clearance < min(settings.shaft_clearance, surface.clearance):
             return turned_toward(direction, scale(surface.shaft_normal, -1.0), most)
         x, y, z = surface.normal
         inward = unit((-x, -y, -max(z, settings.from_above)))
-        lean = settings.largest_lean if settings.choice is ToolDirection.CLEAR else 0.0
+        lean = settings.largest_lean if self._choice is ToolDirection.CLEAR else 0.0
         share = (surface.clearance - settings.near) / (settings.far - settings.near)
         limit = math.pi
         if share < 1.0:

@@ -1,9 +1,9 @@
-"""From the operator's sticks and commands to the target of the tool's tip after this tick."""
+"""Turns the operator's sticks and commands into the target of the tool's tip after this tick."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from rastrainer.json_checks import Setting
 from rastrainer_simulator.state import Motion, OperatorInput
@@ -12,7 +12,6 @@ from rastrainer_simulator.teleoperation.steering import (
     Axes,
     NearestSurface,
     SteeringSettings,
-    ToolDirection,
     ToolSteering,
 )
 from rastrainer_simulator.vectors import (
@@ -31,10 +30,8 @@ from rastrainer_simulator.vectors import (
 class StickResponse:
     """How a stick's deflection becomes a speed.
 
-    Attributes:
-        dead_zone: share of the stick's travel that counts as released, 0…1. The zone is round, so
-            that a diagonal deflection is not bent toward an axis.
-        exponent: of the response curve; 1 is linear, larger is gentler near the center.
+    The `dead_zone`, a share of the stick's travel, is round, so that a diagonal deflection is not
+    bent toward an axis. An `exponent` above 1 makes the response gentler near the center.
     """
 
     dead_zone: Setting = 0.12
@@ -83,13 +80,7 @@ class TeleoperationSettings:
 
 @dataclass(frozen=True)
 class Tip:
-    """The tool's tip in World.
-
-    Attributes:
-        position: m.
-        direction: unit vector from A7 to the tip.
-        across: the tip's x axis, a unit vector.
-    """
+    """The tool's tip in World, m, the unit vector from A7 to it, and its x axis."""
 
     position: Vector
     direction: Vector
@@ -98,14 +89,10 @@ class Tip:
 
 @dataclass(frozen=True)
 class MotionRequest:
-    """The operator's request for this tick.
+    """The operator's request for this tick: the tip's displacement, m, World.
 
-    Attributes:
-        motion: its source; NONE keeps the arm still.
-        displacement: of the tip, m, World.
-        direction: of the tool, unit vector; None if it is free.
-        across: the x axis of the tool's tip, unit vector; None if the tool may roll.
-        goal: end of the motion, m, World; None if no position is commanded.
+    `direction` is the tool's, None if it is free, `across` its tip's x axis, None if it may roll.
+    `goal` is the end of the motion, m, World, None if no position is commanded.
     """
 
     motion: Motion
@@ -119,25 +106,15 @@ class MotionRequest:
 class Teleoperation:
     """Turns sticks and commanded motions into the tip's displacement, tick by tick.
 
-    A request always starts from where the tip is, not from where it should have been: nothing
-    builds up while the tool is stopped by the head or by a joint's speed limit, and the arm stops
-    in the tick in which the stick is released.
+    A request always starts from where the tip is: nothing builds up while the head or a joint's
+    speed limit stops the tool, and the arm stops in the tick in which the stick is released.
     """
 
     def __init__(self, settings: TeleoperationSettings) -> None:
         self._settings = settings
-        self._as_set = ToolSteering(settings.steering)
-        self._held = ToolSteering(replace(settings.steering, choice=ToolDirection.HELD))
-        self._steering = self._as_set
+        self.steering = ToolSteering(settings.steering)
         self._velocity = ZERO
         self._running: CommandedMotion | None = None
-
-    def hold_direction(self, is_held: bool) -> None:
-        """Have the operator hold and steer the tool's direction, whatever is set."""
-        steering = self._held if is_held else self._as_set
-        if steering is not self._steering:
-            steering.reset()
-            self._steering = steering
 
     def start(self, motion: CommandedMotion) -> None:
         self._running = motion
@@ -147,7 +124,7 @@ class Teleoperation:
         was_running = self._running is not None
         self._running = None
         self._velocity = ZERO
-        self._steering.reset()
+        self.steering.reset()
         return was_running
 
     def step(
@@ -163,74 +140,59 @@ class Teleoperation:
         The sticks override a commanded motion. `surface` is the head near the tip, for a tool that
         comes down along the surface normal.
         """
-        response = self._settings.response
-        push = vector(response(operator_input.translation))
+        settings, steering, running = self._settings, self.steering, self._running
+        push = vector(settings.response(operator_input.translation))
         turn = STRAIGHT
-        if self._steering.is_steered:
-            sideways, ahead = response(operator_input.rotation)
+        if steering.is_steered:
+            sideways, ahead = settings.response(operator_input.rotation)
             turn = (sideways, ahead)
-        if push != ZERO or turn != STRAIGHT:
-            ended = MotionOutcome.OVERRIDDEN if self._running else None
-            self._running = None
-            settings = self._settings
-            fastest = settings.fine_speed if operator_input.fine else settings.coarse_speed
-            wanted = axes.to_world(scale(push, fastest))
-            if operator_input.fine and surface is not None:
-                wanted = self._slowed(wanted, surface)
-            faster = accelerated(self._velocity, wanted, settings.acceleration * dt)
-            self._velocity = ZERO if push == ZERO else faster
-            is_fine = operator_input.fine
-            direction = self._steering.steer(dt, turn, is_fine, axes, tip.direction, surface)
-            return self._toward(Motion.STICK, scale(self._velocity, dt), direction, tip, ended)
-        if self._running is None:
-            self._velocity = ZERO
-            return MotionRequest(Motion.NONE)
-        outcome = self._running.outcome(dt, tip.position, tip.direction)
-        if outcome is not None:
-            self._running = None
-            self._velocity = ZERO
-            return MotionRequest(Motion.NONE, ended=outcome)
-        return self._by_command(self._running, dt, tip, axes, surface)
-
-    def _slowed(self, wanted: Vector, surface: NearestSurface) -> Vector:
-        """Return the velocity of slow motion (m/s) near the skin; its direction is kept."""
-        settings, above = self._settings, surface.clearance
-        limit = _between(settings.skin_speed, settings.fine_speed, above, AT_SKIN_M)
-        landing = _between(settings.landing_speed, settings.fine_speed, above, LANDING_M)
-        inward = max(0.0, -dot(unit(wanted), surface.normal))
-        return shortened(wanted, min(limit, landing / max(inward, 1e-9)))
-
-    def _by_command(
-        self,
-        running: CommandedMotion,
-        dt: float,
-        tip: Tip,
-        axes: Axes,
-        surface: NearestSurface | None,
-    ) -> MotionRequest:
-        displacement = running.displacement(
-            dt, tip.position, self._velocity, self._settings.acceleration
-        )
-        self._velocity = scale(displacement, 1.0 / dt)
+        is_fine = operator_input.fine
         direction: Vector | None
-        if running.direction is not None:
-            direction = self._steering.turn_to(tip.direction, running.direction, dt)
+        if push != ZERO or turn != STRAIGHT:
+            self._running = None
+            motion, goal = Motion.STICK, None
+            ended = MotionOutcome.OVERRIDDEN if running else None
+            self._push(dt, push, is_fine, axes, surface)
+            displacement = scale(self._velocity, dt)
+            direction = steering.steer(dt, turn, is_fine, axes, tip.direction, surface)
         else:
-            direction = self._steering.steer(dt, STRAIGHT, False, axes, tip.direction, surface)
-        return self._toward(running.motion, displacement, direction, tip, goal=running.goal)
-
-    def _toward(
-        self,
-        motion: Motion,
-        displacement: Vector,
-        direction: Vector | None,
-        tip: Tip,
-        ended: MotionOutcome | None = None,
-        goal: Vector | None = None,
-    ) -> MotionRequest:
-        steering = self._steering
+            ended = running.outcome(dt, tip.position, tip.direction) if running else None
+            if running is None or ended is not None:
+                self._running = None
+                self._velocity = ZERO
+                return MotionRequest(Motion.NONE, ended=ended)
+            motion, goal = running.motion, running.goal
+            displacement = running.displacement(
+                dt, tip.position, self._velocity, settings.acceleration
+            )
+            self._velocity = scale(displacement, 1.0 / dt)
+            if running.direction is not None:
+                direction = steering.turn_to(tip.direction, running.direction, dt)
+            else:
+                direction = steering.steer(dt, STRAIGHT, False, axes, tip.direction, surface)
         across = steering.across(direction, tip.direction, tip.across) if direction else None
         return MotionRequest(motion, displacement, direction, across, ended, goal)
+
+    def _push(
+        self,
+        dt: float,
+        push: Vector,
+        is_fine: bool,
+        axes: Axes,
+        surface: NearestSurface | None,
+    ) -> None:
+        """Change the velocity by the stick's response; slow motion is limited near the skin."""
+        settings = self._settings
+        fastest = settings.fine_speed if is_fine else settings.coarse_speed
+        wanted = axes.to_world(scale(push, fastest))
+        if is_fine and surface is not None:
+            above = surface.clearance
+            limit = _between(settings.skin_speed, settings.fine_speed, above, AT_SKIN_M)
+            landing = _between(settings.landing_speed, settings.fine_speed, above, LANDING_M)
+            inward = max(0.0, -dot(unit(wanted), surface.normal))
+            wanted = shortened(wanted, min(limit, landing / max(inward, 1e-9)))
+        faster = accelerated(self._velocity, wanted, settings.acceleration * dt)
+        self._velocity = ZERO if push == ZERO else faster
 
 
 def _between(slowest: float, fastest: float, clearance: float, at: float) -> float:

@@ -23,7 +23,7 @@ NO_BREAK_SPACE = "\u00a0"
 
 
 def _french(text: str) -> str:
-    """Return a French text with its apostrophes, and no-break spaces beside signs of two parts."""
+    """Return a French text with its apostrophes, and no-break spaces next to signs of two parts."""
     text = re.sub(r" ([:;!?%»])", rf"{NARROW_SPACE}\1", text)
     return text.replace("« ", f"«{NARROW_SPACE}").replace("'", "’")
 
@@ -108,7 +108,7 @@ class Texts:
         return self._table["list separator"].join(words)
 
     def again(self, sentence: str) -> str:
-        """Return a sentence in this language; one that is not ours stays as it is."""
+        """Return a sentence in this language; an unknown sentence stays as it is."""
         return (
             self.say(sentence.key, **sentence.values)
             if isinstance(sentence, LocalizedText)
@@ -131,7 +131,7 @@ def pair_label(first: str, second: str) -> str:
 def input_label(
     texts: Texts, device: str, name: str, key_names: Mapping[str, str] = NO_NAMES
 ) -> str:
-    """Return the name of an input; of a key, what is written on it, or on an American keyboard."""
+    """Return the name of an input; of a key, its label, by default on an American keyboard."""
     if f"{device}.{name}" in texts:
         return texts.say(f"{device}.{name}")
     written = key_names.get(name, name.removeprefix("Key").removeprefix("Digit"))

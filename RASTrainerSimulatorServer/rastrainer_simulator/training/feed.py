@@ -25,7 +25,7 @@ class ProcedureSettings:
     """How a procedure is carried out.
 
     A touch may be `checkpoint_radius` (m) from its checkpoint, by the registration in use.
-    The speeds are the fastest feed, m/s; the fine ones while the trigger for fine speed is held.
+    The speeds are the fastest feed, m/s; the fine speeds while the trigger for fine speed is held.
     """
 
     self_alignment: bool = True
@@ -56,7 +56,7 @@ class FeedLayer(str, Enum):
 
 @dataclass(frozen=True)
 class HeadAhead:
-    """What lies ahead along the guide's axis: distances from its tip, m, None if it is missed.
+    """Surfaces ahead along the guide's axis: distances from its tip, m, None if missed.
 
     `outer` is where the axis enters the skull, `inner` where it leaves it. Only the simulator knows
     them; the trainee feels them.
@@ -67,7 +67,6 @@ class HeadAhead:
     inner: float | None = None
 
     def to_json(self) -> dict[str, float | None]:
-        """Return what the journal records, mm."""
         named = {"skinMm": self.skin, "outerMm": self.outer, "innerMm": self.inner}
         return {name: None if m is None else MM_PER_M * m for name, m in named.items()}
 
@@ -99,7 +98,6 @@ class Feed:
         return max(self.drilled, self.ahead.outer)
 
     def moved(self, phase: Phase, way: float) -> Feed:
-        """Return the feed after `way` m in a phase, as far as it goes."""
         if phase is Phase.DRILLING:
             depth = min(max(self.depth + way, 0.0), LONGEST_FEED_M)
             return replace(self, depth=depth, drilled=max(self.drilled, depth))
@@ -107,7 +105,6 @@ class Feed:
         return replace(self, depth=depth)
 
     def layer(self, phase: Phase) -> FeedLayer:
-        """Return what the drill has cut to, or what the instrument meets."""
         ahead = self.ahead
         if phase is Phase.DRILLING:
             if ahead.inner is not None and self.drilled >= ahead.inner:
@@ -142,7 +139,7 @@ class FeedDrive:
     """Turns the stick, or a commanded feed, into the distance of a tick."""
 
     def __init__(self, settings: ProcedureSettings, response: StickResponse) -> None:
-        """`response` is that of the sticks that move the arm."""
+        """`response` belongs to the sticks that move the arm."""
         self._settings = settings
         self._response = response
         self._velocity = 0.0

@@ -64,10 +64,6 @@ class Truth:
         """Return a point of World (mm) in the head (RAS mm)."""
         return self.head_to_world[:3, :3].T @ (point - self.head_to_world[:3, 3])
 
-    def measured(self, tip: np.ndarray, mesh: HeadMesh) -> np.ndarray:
-        """Return where a tip on the skin of the images (`mesh`, RAS) is measured; World, mm."""
-        return self.in_world(self.skin.measured(self.in_head(tip)[None], mesh)[0])
-
     def target_error_mm(self, world_to_head: np.ndarray) -> float:
         """Return the true TRE, mm: |WorldToHead · HeadToWorld(target) − target|."""
         return float(
@@ -99,7 +95,7 @@ class Truth:
 
 @dataclass(frozen=True, eq=False)
 class PlacedHead:
-    """A head in World, as the tip meets it; `fiducials` (World, m) are those of a trial's task."""
+    """A head in World, as the tip meets it; `fiducials` (World, m) belong to a trial's task."""
 
     truth: Truth
     fiducials: Mapping[str, Vector] = field(default_factory=dict)
@@ -124,8 +120,8 @@ class PlacedHead:
         """Return where a tip is measured that the skin has shifted with, World, m."""
         if self._mesh is None:
             return tip
-        measured = self.truth.measured(MM_PER_M * np.array(tip), self._mesh)
-        return in_meters(measured)
+        truth, place = self.truth, self.truth.in_head(MM_PER_M * np.array(tip))
+        return in_meters(truth.in_world(truth.skin.measured(place[None], self._mesh)[0]))
 
 
 RIGID_WITHIN = 1e-6

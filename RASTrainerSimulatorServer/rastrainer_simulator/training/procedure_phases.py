@@ -1,6 +1,6 @@
-"""The phases of a procedure: which command leads from one to the next, and what it records.
+"""The phases of a procedure, the commands that lead from one to the next, and their records.
 
-Nothing here knows where the head is. What the trainee sees and reads follows from their
+Nothing here knows where the head is. The trainee's picture and sentences follow from their
 registration; the true distances at the moment of LockGuide only decide whether the guide may be
 locked.
 """
@@ -19,7 +19,7 @@ from rastrainer_simulator.state import EventKind, OperatorCommand, TrainingState
 from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training.feed import NO_FEED, Feed, ProcedureSettings
 from rastrainer_simulator.training.head_pose import RegisteredPlan
-from rastrainer_simulator.training.replies import RefusedStep, TrialStep
+from rastrainer_simulator.training.replies import TrainingReply, TrialStep
 from rastrainer_simulator.training.rules import TouchMoment, TrainingSettings
 from rastrainer_simulator.trial_state import (
     CheckedPoint,
@@ -39,7 +39,7 @@ AT_EACH_STAGE: Mapping[Phase, str] = {
     Phase.DRILLING: "drill",
     Phase.INSERTING: "insert",
 }
-"""What the trainee reads when the trial continues there after a pause."""
+"""Instructions when the trial continues there after a pause."""
 
 
 @dataclass(frozen=True)
@@ -59,9 +59,25 @@ class ProcedureMoment:
         assert self.state.procedure is not None, "the phase has a procedure"
         return self.state.procedure
 
-    def entering(self, phase: Phase, **changes: Any) -> TrainingState:
-        entered = replace(self.procedure.entering(phase, self.elapsed), **changes)
+    @property
+    def trajectory(self) -> TrajectoryState:
+        assert self.procedure.present is not None, "the phase has a trajectory"
+        return self.procedure.present
+
+    def entering(
+        self, phase: Phase, present: TrajectoryState | None = None, **changes: Any
+    ) -> TrainingState:
+        """Return the state in another phase, with changes of the current trajectory."""
+        procedure = self.procedure
+        if present is not None:
+            procedure = procedure.with_present(present)
+        entered = replace(procedure.entering(phase, self.elapsed), **changes)
         return replace(self.state, phase=phase, procedure=entered)
+
+    def attempts(self) -> tuple[RegistrationAttempt, ...]:
+        now = self.procedure
+        attempt = RegistrationAttempt(self.state.touches, now.registration, now.checkpoints)
+        return (*now.attempts, attempt)
 
 
 class ProcedurePhases:
@@ -74,7 +90,7 @@ class ProcedurePhases:
         touches: TrainingSettings,
         settings: ProcedureSettings,
     ) -> None:
-        """`labels` are those of the task's fiducials; `touches` is what counts as a touch."""
+        """`labels` name the task's fiducials; `touches` are the rules of a touch."""
         self._procedure = procedure
         self._labels = tuple(labels)
         self._touches = touches
@@ -82,12 +98,11 @@ class ProcedurePhases:
 
     def step(
         self, command: OperatorCommand, state: TrainingState, now: TouchMoment, elapsed: float
-    ) -> TrialStep | RefusedStep:
+    ) -> TrialStep | TrainingReply:
         moment = ProcedureMoment(state, now, elapsed, command.arguments)
         return self.HANDLERS[command.name](self, moment)
 
     def resumed(self, state: TrainingState) -> TrialStep:
-        """Return the step by which a paused procedure continues in its stage."""
         procedure = state.procedure
         assert procedure is not None
         running = replace(state, phase=procedure.stage)
@@ -95,23 +110,24 @@ class ProcedurePhases:
             if procedure.registration is None:
                 return TrialStep(running, "verifying")
             return TrialStep(running, "verify", {"fre": procedure.registration.fre_mm})
-        name = _present(state).line.name
-        return TrialStep(running, AT_EACH_STAGE[procedure.stage], {"name": name})
+        assert procedure.present is not None, "the stage has a trajectory"
+        key, values = AT_EACH_STAGE[procedure.stage], {"name": procedure.present.line.name}
+        return TrialStep(running, key, values)
 
     def _verify(self, moment: ProcedureMoment) -> TrialStep:
         elapsed_s = moment.state.completed_s
         data = {"completionTimeS": elapsed_s}
         return TrialStep(moment.entering(Phase.VERIFYING), "verifying", data=data)
 
-    def _use_registration(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
+    def _use_registration(self, moment: ProcedureMoment) -> TrialStep | TrainingReply:
         """Show the plan by a registration from now on; a second one is refused unless equal."""
         registration = UsedRegistration.from_arguments(moment.arguments)
         known = moment.procedure.registration
         if known is not None and not known.agrees_with(registration):
-            return RefusedStep(say("already in use"))
+            return TrainingReply(False, say("already in use"))
         plan = RegisteredPlan.of(registration.matrix)
         if plan is None:
-            return RefusedStep(say("not rigid"))
+            return TrainingReply(False, say("not rigid"))
         used = known or registration
         procedure = replace(
             moment.procedure,
@@ -130,68 +146,58 @@ class ProcedurePhases:
         }
         return TrialStep(state, "verify", {"fre": used.fre_mm}, data)
 
-    def _check_point(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
+    def _check_point(self, moment: ProcedureMoment) -> TrialStep | TrainingReply:
         """Touch the nearest checkpoint; its error is by the trainee's own registration."""
-        procedure, now = moment.procedure, moment.now
-        name, error = self._nearest_checkpoint(procedure, now)
+        procedure, now, name, error = moment.procedure, moment.now, "", 0.0
+        checkpoints = self._procedure.checkpoints
+        plan = None
+        if procedure.registration is not None:
+            plan = RegisteredPlan.of(procedure.registration.matrix)
+        if plan is not None and checkpoints:
+            name, error = plan.nearest_checkpoint(checkpoints, now.tip)
         place = {
             "checkpoint": name,
             "positionMm": [MM_PER_M * value for value in now.tip],
             "clearanceMm": MM_PER_M * now.tip_clearance,
             "depthMm": MM_PER_M * now.depth,
         }
-        sentence = self._refused_check(procedure, name, error, now)
-        if sentence is not None:
-            return RefusedStep(sentence, {**place, "message": sentence})
-        checked = CheckedPoint(name, now.tip, error, now.sim_time, moment.elapsed)
-        checkpoints = (*procedure.checkpoints, checked)
-        state = replace(moment.state, procedure=replace(procedure, checkpoints=checkpoints))
-        error_mm = MM_PER_M * error
-        data = {**place, "errorMm": error_mm, "kept": len(checkpoints)}
-        said = {"name": name, "error": error_mm}
-        return TrialStep(state, "checked", said, data, kind=EventKind.CHECKPOINT)
-
-    def _nearest_checkpoint(self, procedure: ProcedureState, now: TouchMoment) -> tuple[str, float]:
-        """Return the checkpoint nearest to the tip by the registration in use, and how far, m."""
-        if procedure.registration is None or not self._procedure.checkpoints:
-            return "", 0.0
-        plan = RegisteredPlan.of(procedure.registration.matrix)
-        assert plan is not None, "what is in use is rigid"
-        return plan.nearest_checkpoint(self._procedure.checkpoints, now.tip)
-
-    def _refused_check(
-        self, procedure: ProcedureState, name: str, error: float, now: TouchMoment
-    ) -> str | None:
-        """Return why a touch of a checkpoint does not count, None where it does."""
+        before = sum(len(each.checkpoints) for each in procedure.attempts)
         radius = self._settings.checkpoint_radius
-        if procedure.registration is None:
-            return say("not in use yet")
-        if not name:
-            return say("no checkpoints")
-        done = sum(len(each.checkpoints) for each in procedure.attempts)
-        if done + len(procedure.checkpoints) >= MAX_TOUCHED_CHECKPOINTS:
-            return say("too many checkpoints", most=MAX_TOUCHED_CHECKPOINTS)
-        if error > radius:
-            away, within = MM_PER_M * error, MM_PER_M * radius
-            return say("too far from checkpoints", name=name, distance=away, radius=within)
         is_above = now.tip_clearance > self._touches.skin_tolerance
-        if self._touches.touch_rule is TouchRule.ON_SKIN and is_above:
-            return say("above a checkpoint", height=MM_PER_M * now.tip_clearance)
-        return None
+        sentence = ""
+        if procedure.registration is None:
+            sentence = say("not in use yet")
+        elif not name:
+            sentence = say("no checkpoints")
+        elif before + len(procedure.checkpoints) >= MAX_TOUCHED_CHECKPOINTS:
+            sentence = say("too many checkpoints", most=MAX_TOUCHED_CHECKPOINTS)
+        elif error > radius:
+            away, within = MM_PER_M * error, MM_PER_M * radius
+            sentence = say("too far from checkpoints", name=name, distance=away, radius=within)
+        elif self._touches.touch_rule is TouchRule.ON_SKIN and is_above:
+            sentence = say("above a checkpoint", height=MM_PER_M * now.tip_clearance)
+        if sentence:
+            return TrainingReply(False, sentence, place)
+        checked = CheckedPoint(name, now.tip, error, now.sim_time, moment.elapsed)
+        touched = (*procedure.checkpoints, checked)
+        state = replace(moment.state, procedure=replace(procedure, checkpoints=touched))
+        error_mm = MM_PER_M * error
+        data = {**place, "errorMm": error_mm, "kept": len(touched)}
+        values = {"name": name, "error": error_mm}
+        return TrialStep(state, "checked", values, data, kind=EventKind.CHECKPOINT)
 
-    def _accept(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
+    def _accept(self, moment: ProcedureMoment) -> TrialStep | TrainingReply:
         procedure = moment.procedure
         if procedure.registration is None:
-            return RefusedStep(say("not in use yet"))
-        attempts = (*procedure.attempts, _attempt(moment))
-        state = moment.entering(Phase.ALIGNING, attempts=attempts, trajectory=0)
+            return TrainingReply(False, say("not in use yet"))
+        state = moment.entering(Phase.ALIGNING, attempts=moment.attempts())
         return TrialStep(state, "align", {"name": procedure.trajectories[0].line.name})
 
-    def _register_again(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
-        """Touch all points again; what was touched stays in the record as an attempt."""
-        attempts = (*moment.procedure.attempts, _attempt(moment))
+    def _register_again(self, moment: ProcedureMoment) -> TrialStep | TrainingReply:
+        """Touch all points again; earlier touches stay in the record as an attempt."""
+        attempts = moment.attempts()
         if len(attempts) >= MAX_ATTEMPTS:
-            return RefusedStep(say("too many attempts", most=MAX_ATTEMPTS))
+            return TrainingReply(False, say("too many attempts", most=MAX_ATTEMPTS))
         state = moment.entering(
             Phase.RUNNING, registration=None, checkpoints=(), trajectories=(), attempts=attempts
         )
@@ -199,18 +205,18 @@ class ProcedurePhases:
         again = replace(state, touches=(), next_point=self._labels[0], trace=trace)
         return TrialStep(again, "register again", {"point": self._labels[0]})
 
-    def _lock(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
+    def _lock(self, moment: ProcedureMoment) -> TrialStep | TrainingReply:
         """Lock the guide where it is, if a drill in it would meet the head."""
         now, limit_mm = moment.now, STAND_OFF_LIMIT_MM
         ahead = now.feed.ahead
         if ahead.skin is None:
-            return RefusedStep(say("off the head"))
+            return TrainingReply(False, say("off the head"))
         distance_mm = MM_PER_M * ahead.skin
         if distance_mm > limit_mm:
-            return RefusedStep(say("too far to lock", distance=distance_mm, limit=limit_mm))
-        entered = moment.entering(Phase.DRILLING)
-        aligned = _present(entered)
-        guide = GuideAxis(now.tip, now.direction)
+            return TrainingReply(
+                False, say("too far to lock", distance=distance_mm, limit=limit_mm)
+            )
+        aligned, guide = moment.trajectory, GuideAxis(now.tip, now.direction)
         locked = replace(
             aligned,
             alignments=aligned.alignments + 1,
@@ -219,60 +225,46 @@ class ProcedurePhases:
             or GuideAlignment.of(guide, aligned.line).is_exact,
             drill_depth=0.0,
         )
+        place = [MM_PER_M * value for value in now.tip]
         return TrialStep(
-            _with_current(entered, locked),
+            moment.entering(Phase.DRILLING, locked),
             "drill",
             {"name": locked.line.name},
-            {
-                "positionMm": [MM_PER_M * value for value in now.tip],
-                "direction": list(now.direction),
-            },
+            {"positionMm": place, "direction": list(now.direction)},
             {"ahead": ahead.to_json()},
             feed=Feed(ahead=ahead),
         )
 
-    def _retract(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
-        """Remove the drill and align again: only before it has cut bone."""
+    def _retract(self, moment: ProcedureMoment) -> TrialStep | TrainingReply:
         if moment.now.feed.has_cut_bone:
-            return RefusedStep(say("bone is cut"))
-        state = moment.entering(Phase.ALIGNING)
-        return TrialStep(state, "realign", {"name": _present(state).line.name}, feed=NO_FEED)
+            return TrainingReply(False, say("bone is cut"))
+        values = {"name": moment.trajectory.line.name}
+        return TrialStep(moment.entering(Phase.ALIGNING), "realign", values, feed=NO_FEED)
 
-    def _start_insertion(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
-        """Exchange the drill for the instrument, which begins at the guide's tip."""
+    def _start_insertion(self, moment: ProcedureMoment) -> TrialStep | TrainingReply:
         feed = moment.now.feed
         if feed.drilled <= 0.0:
-            return RefusedStep(say("nothing drilled"))
-        entered = moment.entering(Phase.INSERTING)
-        drilled = replace(_present(entered), drill_depth=feed.drilled)
-        return TrialStep(
-            _with_current(entered, drilled),
-            "insert",
-            {"name": drilled.line.name},
-            feed=replace(feed, depth=0.0),
-        )
+            return TrainingReply(False, say("nothing drilled"))
+        drilled = replace(moment.trajectory, drill_depth=feed.drilled)
+        entered, values = moment.entering(Phase.INSERTING, drilled), {"name": drilled.line.name}
+        return TrialStep(entered, "insert", values, feed=replace(feed, depth=0.0))
 
-    def _release(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
+    def _release(self, moment: ProcedureMoment) -> TrialStep | TrainingReply:
         """Leave the instrument where it is; the next line follows, or the end."""
-        depth = moment.now.feed.depth
+        depth, procedure = moment.now.feed.depth, moment.procedure
         if depth <= 0.0:
-            return RefusedStep(say("still in the guide"))
-        procedure = moment.procedure
+            return TrainingReply(False, say("still in the guide"))
+        placed = replace(moment.trajectory, instrument_depth=depth)
         following = procedure.trajectory + 1
-        is_last = following == len(procedure.trajectories)
-        entered = moment.entering(Phase.REGISTERED if is_last else Phase.ALIGNING)
-        placed = replace(_present(entered), instrument_depth=depth)
-        state = _with_current(entered, placed)
-        assert state.procedure is not None
-        if is_last:
-            ended = replace(state.procedure, ended_s=moment.elapsed)
-            return TrialStep(replace(state, procedure=ended), "procedure done", feed=NO_FEED)
-        onward = replace(state, procedure=replace(state.procedure, trajectory=following))
-        name = procedure.trajectories[following].line.name
-        return TrialStep(onward, "align next", {"name": name}, feed=NO_FEED)
+        if following == len(procedure.trajectories):
+            ended = moment.entering(Phase.REGISTERED, placed, ended_s=moment.elapsed)
+            return TrialStep(ended, "procedure done", feed=NO_FEED)
+        onward = moment.entering(Phase.ALIGNING, placed, trajectory=following)
+        values = {"name": procedure.trajectories[following].line.name}
+        return TrialStep(onward, "align next", values, feed=NO_FEED)
 
     HANDLERS: ClassVar[
-        Mapping[str, Callable[[ProcedurePhases, ProcedureMoment], TrialStep | RefusedStep]]
+        Mapping[str, Callable[[ProcedurePhases, ProcedureMoment], TrialStep | TrainingReply]]
     ] = {
         CommandName.REGISTER: _verify,
         CommandName.CAPTURE: _check_point,
@@ -284,19 +276,3 @@ class ProcedurePhases:
         CommandName.START_INSERTION: _start_insertion,
         CommandName.RELEASE_INSTRUMENT: _release,
     }
-
-
-def _attempt(moment: ProcedureMoment) -> RegistrationAttempt:
-    procedure = moment.procedure
-    return RegistrationAttempt(moment.state.touches, procedure.registration, procedure.checkpoints)
-
-
-def _present(state: TrainingState) -> TrajectoryState:
-    """Return the current trajectory, also of a state that has just left its phases."""
-    assert state.procedure is not None
-    return state.procedure.trajectories[state.procedure.trajectory]
-
-
-def _with_current(state: TrainingState, trajectory: TrajectoryState) -> TrainingState:
-    assert state.procedure is not None
-    return replace(state, procedure=state.procedure.with_present(trajectory))

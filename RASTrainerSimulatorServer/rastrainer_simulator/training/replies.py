@@ -20,7 +20,10 @@ from rastrainer_simulator.vectors import in_millimeters
 
 @dataclass(frozen=True)
 class TrainingReply:
-    """The answer to a command; `feed` is the new feed in the guide, None if it stays."""
+    """The answer to a command; `feed` is the new feed in the guide, None if it stays.
+
+    `data` of a refused touch describes the touch.
+    """
 
     ok: bool
     message: str = ""
@@ -39,8 +42,8 @@ class TrialStep:
         data: goes into the answer and the event, ready for JSON.
         recorded: goes into the event alone: clients never learn it.
         answered: goes into the answer alone.
-        kind: of the event; another than that of a phase is followed by one if the phase changes.
-        feed: what is in the guide from now on; None as before.
+        kind: of the event; an event of the phase follows any other if the phase changes.
+        feed: the new feed in the guide; None if it stays.
     """
 
     state: TrainingState
@@ -51,14 +54,6 @@ class TrialStep:
     answered: Mapping[str, Any] = field(default_factory=dict)
     kind: EventKind = EventKind.PHASE
     feed: Feed | None = None
-
-
-@dataclass(frozen=True)
-class RefusedStep:
-    """Why a command is refused; `data` describes a touch that does not count."""
-
-    sentence: str
-    data: Mapping[str, Any] | None = None
 
 
 def summary(state: TrainingState) -> dict[str, Any]:
@@ -108,7 +103,6 @@ def revealed(truth: Truth, state: TrainingState, matrix: tuple[float, ...]) -> d
 
 
 def trial_data(state: TrainingState, truth: Truth) -> dict[str, Any]:
-    """Return the answer to GetTrial of the present trial; the truth once it is revealed."""
     data = {**summary(state), **given(state)}
     if state.registration is not None:
         data.update(revealed(truth, state, state.registration.matrix))

@@ -88,7 +88,11 @@ def _trace_key(command: str, state: TrainingState, key: str | None) -> str | Non
     """Return a refusal's key where the trial has a trace, or the command needs one; else `key`."""
     trace, is_running = state.trace, state.phase is Phase.RUNNING
     if command in (CommandName.TRACE, TRACED) and key is None:
-        return _why_not_traced(state)
+        if trace is None:
+            return "nothing is traced"
+        if state.next_point is not None:
+            return "landmarks first"
+        return "trace is full" if trace.is_full else None
     if trace is None or state.next_point is not None:
         return key
     if command == CommandName.REGISTER and is_running:
@@ -98,17 +102,9 @@ def _trace_key(command: str, state: TrainingState, key: str | None) -> str | Non
     return _OF_A_TRACE.get(key or "", key)
 
 
-def _why_not_traced(state: TrainingState) -> str | None:
-    if state.trace is None:
-        return "nothing is traced"
-    if state.next_point is not None:
-        return "landmarks first"
-    return "trace is full" if state.trace.is_full else None
-
-
 @dataclass(frozen=True)
 class TrainingSettings:
-    """What counts as a touch.
+    """The rules of a touch.
 
     Attributes:
         acceptance_radius: the longest distance of the tip to the fiducial, m.
@@ -123,7 +119,6 @@ class TrainingSettings:
     landmark_radius: Setting = 0.020
 
     def radius(self, method: RegistrationMethod) -> float:
-        """Return the longest distance of the tip to a point that a method has touched, m."""
         is_marked = method is RegistrationMethod.FIDUCIALS
         return self.acceptance_radius if is_marked else self.landmark_radius
 
@@ -136,7 +131,7 @@ class TouchMoment:
         tip_clearance: signed distance of the tip to the skin, m; below 0 within the head.
         depth: how far the tip is pressed in, m; see `SimulationState.depth`.
         direction: of the tool, a unit vector from A7 to the tip, World; ZERO where it has no part.
-        feed: how far what is in the guide is beyond its tip; of LockGuide, what lies ahead of it.
+        feed: how far the instrument is beyond the guide's tip; for LockGuide, with the way ahead.
     """
 
     sim_time: float
@@ -176,7 +171,6 @@ UNMARKED_STEP_MM = 10
 
 
 def _too_far(point: str, away_mm: float, radius_mm: float, method: RegistrationMethod) -> str:
-    """Return the refusal of a touch that is farther from its point than touches count."""
     step = 1 if method is RegistrationMethod.FIDUCIALS else UNMARKED_STEP_MM
     away = step * max(round(away_mm / step), math.floor(radius_mm / step) + 1)
     most = max(TOLD_MM, TOLD_RADII * radius_mm)

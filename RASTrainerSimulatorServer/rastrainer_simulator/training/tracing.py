@@ -11,37 +11,21 @@ from typing import Any
 
 from rastrainer.protocol import MIN_TRACE_POINTS, TRACE_SPACING_MM, Phase
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.state import Event, EventKind, TrainingState
+from rastrainer_simulator.state import EventKind, TrainingState
 from rastrainer_simulator.training.replies import TrialStep
 from rastrainer_simulator.training.rules import PRESSED_MM, TouchMoment, TrainingSettings
-from rastrainer_simulator.trial_state import TracedPoint, TraceState
+from rastrainer_simulator.trial_state import TraceState
 from rastrainer_simulator.vectors import Vector, distance
 
 
 def takes_point(trace: TraceState | None, now: TouchMoment, settings: TrainingSettings) -> bool:
-    """Return whether the tip leaves a point: on the skin, whatever the rule, and not pressed in."""
+    """Return whether the tip leaves a point: on the skin, by any rule, and not pressed in."""
     if trace is None or not trace.is_on or now.tip_clearance > settings.skin_tolerance:
         return False
     if MM_PER_M * now.depth > PRESSED_MM:
         return False
     last = trace.points[-1:]
     return not last or MM_PER_M * distance(now.tip, last[0].seen) >= TRACE_SPACING_MM
-
-
-def with_point(
-    state: TrainingState, now: TouchMoment, measured: Vector, elapsed: float
-) -> TrainingState:
-    """Return a trial's state with a point at the tip; `elapsed` is the trial's time, s."""
-    assert state.trace is not None
-    tip = None if measured == now.tip else now.tip
-    point = TracedPoint(measured, now.sim_time, elapsed, tip)
-    return replace(state, trace=state.trace.with_point(point))
-
-
-def point_event(state: TrainingState, now: TouchMoment) -> Event:
-    assert state.trace is not None
-    data = {**tip_data(now, state.trace.points[-1].position), "kept": len(state.trace.points)}
-    return Event(EventKind.TRACE, now.sim_time, data)
 
 
 def tip_data(now: TouchMoment, measured: Vector) -> dict[str, Any]:
@@ -53,36 +37,17 @@ def tip_data(now: TouchMoment, measured: Vector) -> dict[str, Any]:
 
 
 def stroke_data(trace: TraceState) -> dict[str, Any]:
-    """Return the data of a trace where a stroke begins, ends or is undone."""
+    """Return the data of a trace when a stroke begins, ends or is undone."""
     return {"on": trace.is_on, "kept": len(trace.points), "strokes": len(trace.strokes)}
 
 
-def stroke(state: TrainingState, **others: bool) -> TrialStep:
-    assert state.trace is not None
-    data = {**stroke_data(state.trace), **others}
-    return TrialStep(state, instruction(state), counts(state.trace), data, kind=EventKind.STROKE)
-
-
-def begun(state: TrainingState) -> TrainingState:
-    assert state.trace is not None
-    return replace(state, phase=Phase.RUNNING, trace=state.trace.begun())
-
-
-def ended(state: TrainingState) -> TrainingState:
-    """Return the state of a trial in which no stroke is being drawn; what was drawn is kept."""
-    if state.trace is None:
-        return state
-    return _with_rest(state, state.trace.ended())
-
-
-def undone(state: TrainingState) -> TrainingState:
-    assert state.trace is not None
-    return _with_rest(state, state.trace.undone())
-
-
-def _with_rest(state: TrainingState, trace: TraceState) -> TrainingState:
-    may_register = state.next_point is None and trace.is_enough
-    return replace(state, phase=Phase.COMPLETE if may_register else Phase.RUNNING, trace=trace)
+def stroke(state: TrainingState, trace: TraceState, **others: bool) -> TrialStep:
+    """Return the step by which a stroke begins, has ended or is undone, as its trace says."""
+    may_register = state.next_point is None and trace.is_enough and not trace.is_on
+    phase = Phase.COMPLETE if may_register else Phase.RUNNING
+    changed = replace(state, phase=phase, trace=trace)
+    data = {**stroke_data(trace), **others}
+    return TrialStep(changed, instruction(changed), counts(trace), data, kind=EventKind.STROKE)
 
 
 def instruction(state: TrainingState) -> str:

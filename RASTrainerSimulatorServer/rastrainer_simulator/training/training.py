@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
-from rastrainer.protocol import PROCEDURE_PHASES, Phase
+from rastrainer.head.trial_head import SkinShift
+from rastrainer.json_records import record_from_json
+from rastrainer.protocol import PROCEDURE_PHASES, TRACED_METHODS, Phase
+from rastrainer.scenario.scenario import method_of, task_by_method
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import Event, EventKind, OperatorCommand, TrainingState
 from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training import tracing
-from rastrainer_simulator.training.feed import ProcedureSettings, recorded_feed
+from rastrainer_simulator.training.feed import Feed, ProcedureSettings, recorded_feed
 from rastrainer_simulator.training.head_pose import PlacedHead, Truth
 from rastrainer_simulator.training.procedure_phases import ProcedurePhases
 from rastrainer_simulator.training.replies import (
-    RefusedStep,
     TrainingReply,
     TrialStep,
     summary,
@@ -35,14 +37,15 @@ from rastrainer_simulator.training.rules import (
     refused_touch,
 )
 from rastrainer_simulator.training.trial_start import (
-    KeptStates,
+    DRAWN_SEED,
     TrialClock,
-    TrialStarter,
     interrupted,
     paused,
     resumed,
+    trial_id,
+    trial_seed,
 )
-from rastrainer_simulator.trial_state import TouchState
+from rastrainer_simulator.trial_state import ProcedureState, TouchState, TracedPoint, TraceState
 from rastrainer_simulator.vectors import Vector
 
 if TYPE_CHECKING:
@@ -52,12 +55,15 @@ if TYPE_CHECKING:
 REFUSAL_S = 5.0
 """For so long a refused touch's sentence takes the place of the instruction."""
 
+Outcome = TrialStep | TrainingReply
+
 
 class Training:
     """The state machine of a trial.
 
     `state` is what everyone may know, `truth` where the head really is. Time and the tip's position
-    come with every command: the trial has no clock.
+    come with every command: the trial has no clock. Each trial of a session has its own ID and
+    seed, which is as secret as the head's pose.
     """
 
     def __init__(
@@ -68,21 +74,21 @@ class Training:
         procedure: ProcedureSettings | None = None,
     ) -> None:
         self._scenario = scenario
+        self._seed = seed
+        self._number = 0
         self._settings = settings or TrainingSettings()
-        self._starter = TrialStarter(
-            scenario, seed, self._settings, procedure or ProcedureSettings()
-        )
+        self._procedure_settings = procedure or ProcedureSettings()
         self._phases: ProcedurePhases | None = None
         self._clock = TrialClock(0.0)
         self._task: Task | None = None
         self._head = PlacedHead.nominal(scenario)
         self.trial_seed = 0
         self.state = TrainingState(instruction=say("idle"))
-        self._kept = KeptStates()
-        self._kept.begin(self.state)
+        # Every state of the present trial by its revision, and the feed at which it was left.
+        self._kept: dict[int, tuple[TrainingState, Feed | None]] = {0: (self.state, None)}
         # Until when (simulated s) a refusal is shown, and the instruction that it stands for.
         self._refused_over: tuple[float, str] | None = None
-        self._handlers: dict[str, Callable[[OperatorCommand, TouchMoment], TrainingReply]] = {
+        self._handlers: dict[str, Callable[[OperatorCommand, TouchMoment], Outcome]] = {
             **dict.fromkeys(ProcedurePhases.HANDLERS, self._in_procedure),
             CommandName.START_TASK: self._start,
             CommandName.CAPTURE: self._capture,
@@ -93,29 +99,33 @@ class Training:
             CommandName.ABORT: self._abort,
             CommandName.PAUSE: self._pause,
             CommandName.RESUME: self._resume,
-            CommandName.SUBMIT_REGISTRATION: self._take_registration,
-            CommandName.TRIAL_SCORED: self._scored,
-            CommandName.GET_TRIAL: self._get_trial,
+            CommandName.SUBMIT_REGISTRATION: lambda command, _now: take_registration(
+                command.arguments, self.state, self.truth
+            ),
+            CommandName.TRIAL_SCORED: lambda command, _now: take_score(
+                command.arguments, self.state, self.truth
+            ),
+            CommandName.GET_TRIAL: lambda _command, _now: TrainingReply(
+                True, data=trial_data(self.state, self.truth)
+            ),
             RECORDING_FAILED: self._recording_failed,
             INTERRUPTED: self._interrupted,
         }
 
     def restart_from(self, revision: int) -> None:
         """Continue the revisions of another simulation, before the first trial."""
-        self.state = replace(self.state, revision=revision)
-        self._kept.begin(self.state)
+        self._forget(replace(self.state, revision=revision))
 
     def resume_trial(
         self, revision: int, steps: Iterable[tuple[OperatorCommand, TouchMoment]]
     ) -> None:
         """Bring the trial of a journal to where it was when the server ended.
 
-        `revision` is that before the trial, `steps` what was carried out since. A trial whose time
+        `revision` is the last before the trial, `steps` the commands since then. A trial whose time
         was running is paused from the last step on.
         """
-        self._leave()
-        self.state = TrainingState(revision=revision)
-        self._kept.begin(self.state)
+        self._head = PlacedHead.nominal(self._scenario)
+        self._forget(TrainingState(revision=revision))
         for command, moment in steps:
             self.handle(command, moment)
 
@@ -137,9 +147,15 @@ class Training:
         if sentence is not None:
             return TrainingReply(False, sentence)
         left = self.state.revision
-        reply = self._handlers[command.name](command, now)
-        if self.state.revision != left:
-            self._kept.leave(left, now.feed)
+        outcome = self._handlers[command.name](command, now)
+        if isinstance(outcome, TrialStep):
+            reply = self._taken(outcome, now)
+        elif outcome.ok or not outcome.data:
+            reply = outcome
+        else:
+            reply = self._refused(outcome, now)
+        if self.state.revision != left and left in self._kept:
+            self._kept[left] = self._kept[left][0], now.feed
         return reply
 
     def note_self_alignment(self) -> None:
@@ -167,53 +183,82 @@ class Training:
         return len(self._task.labels) if self._task else 0
 
     def elapsed(self, sim_time: float) -> float:
-        """Return the trial's time in s, pauses excluded."""
         return self._clock.time_of(self.state, sim_time)
 
-    def _start(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
+    def _start(self, command: OperatorCommand, now: TouchMoment) -> Outcome:
+        arguments, scenario, revision = command.arguments, self._scenario, self.state.revision
+        procedure, number = arguments.get("procedure") or "", self._number
+        seed = arguments.get("seed")
+        if seed is None:
+            seed = arguments.get(DRAWN_SEED, trial_seed(self._seed, number))
         try:
-            started = self._starter.start(command.arguments, self.state.revision)
+            method = method_of(arguments.get("method"))
+            chosen = arguments.get("skin")
+            skin = record_from_json(SkinShift, chosen) if chosen else scenario.skin
+            task = task_by_method(scenario, arguments["task"], method)
+            plan = scenario.procedure(procedure) if procedure else None
+            self._head = PlacedHead.of_trial(scenario, task, seed, skin)
         except InputError as error:
             return TrainingReply(False, str(error))
-        self.trial_seed, self._task, self._phases = started.seed, started.task, started.phases
-        self._head, self._clock = started.head, TrialClock(now.sim_time)
-        self._kept.begin(TrainingState(revision=self.state.revision))
-        event = self._enter(started.state, "start", now)
-        return TrainingReply(True, data=summary(self.state), events=(event,))
+        self.trial_seed, self._number, self._task = seed, number + 1, task
+        self._clock = TrialClock(now.sim_time)
+        self._phases = None
+        if plan is not None:
+            settings = self._settings, self._procedure_settings
+            self._phases = ProcedurePhases(plan, task.labels, *settings)
+        self._forget(TrainingState(revision=revision))
+        started = TrainingState(
+            phase=Phase.RUNNING,
+            trainee=arguments["trainee"],
+            task=task.name,
+            mode=arguments["mode"],
+            trial_id=arguments.get("trialId") or trial_id(self._seed, number),
+            next_point=task.labels[0],
+            revision=revision,
+            procedure=ProcedureState(procedure) if procedure else None,
+            method=method,
+            trace=TraceState() if method in TRACED_METHODS else None,
+        )
+        return TrialStep(started, "start")
 
-    def _in_procedure(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
+    def _in_procedure(self, command: OperatorCommand, now: TouchMoment) -> Outcome:
         assert self._phases is not None, "the phase has a procedure"
         elapsed = self._clock.elapsed(now.sim_time)
-        step = self._phases.step(command, self.state, now, elapsed)
-        if isinstance(step, TrialStep):
-            return self._taken(step, now)
-        return self._refused(step, now)
+        return self._phases.step(command, self.state, now, elapsed)
 
     def _taken(self, step: TrialStep, now: TouchMoment) -> TrainingReply:
-        """Adopt the state of a step; a step without a change of phase may lead to one."""
+        """Adopt the state of a step, with its instruction: it must not be lost."""
         answer = {**step.data, **step.answered}
-        if step.kind is EventKind.PHASE:
-            event = self._enter(step.state, step.key, now, **step.values)
-            event = replace(event, data={**event.data, **step.data, **step.recorded})
-            answer = {**summary(self.state), **answer}
-            return TrainingReply(True, data=answer, events=(event,), feed=step.feed)
-        events = [Event(step.kind, now.sim_time, step.data)]
-        if step.state.phase is self.state.phase:
-            self._keep(step.state, step.key, **step.values)
-        else:
-            events.append(self._enter(step.state, step.key, now, **step.values))
+        is_phase = step.kind is EventKind.PHASE
+        events = [] if is_phase else [Event(step.kind, now.sim_time, step.data)]
+        has_entered = is_phase or step.state.phase is not self.state.phase
+        words = {
+            "trainee": step.state.trainee,
+            "point": step.state.next_point,
+            "count": self._count,
+            **step.values,
+        }
+        revision, instruction = step.state.revision + 1, say(step.key, **words)
+        self._refused_over = None
+        self.state = replace(step.state, revision=revision, instruction=instruction)
+        self._kept[revision] = self.state, None
+        if has_entered:
+            data = {**summary(self.state), "instruction": instruction, **recorded_feed(now.feed)}
+            if is_phase:
+                data.update({**step.data, **step.recorded})
+                answer = {**summary(self.state), **answer}
+            events.append(Event(EventKind.PHASE, now.sim_time, data))
         return TrainingReply(True, data=answer, events=tuple(events), feed=step.feed)
 
-    def _refused(self, step: RefusedStep, now: TouchMoment) -> TrainingReply:
-        if step.data is None:
-            return TrainingReply(False, step.sentence)
+    def _refused(self, reply: TrainingReply, now: TouchMoment) -> TrainingReply:
+        """Show why a touch does not count, in place of the instruction."""
         task = self.state.instruction if self._refused_over is None else self._refused_over[1]
         self._refused_over = now.sim_time + REFUSAL_S, task
-        self.state = replace(self.state, instruction=step.sentence)
-        event = Event(EventKind.REJECTED, now.sim_time, step.data)
-        return TrainingReply(False, step.sentence, events=(event,))
+        self.state = replace(self.state, instruction=reply.message)
+        event = Event(EventKind.REJECTED, now.sim_time, {**reply.data, "message": reply.message})
+        return TrainingReply(False, reply.message, events=(event,))
 
-    def _capture(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
+    def _capture(self, command: OperatorCommand, now: TouchMoment) -> Outcome:
         if self.state.phase is Phase.VERIFYING:
             return self._in_procedure(command, now)
         state = self.state
@@ -229,46 +274,46 @@ class Training:
         }
         if sentence is not None:
             self.state = replace(state, rejected=state.rejected + 1)
-            return self._refused(RefusedStep(sentence, {**place, "message": sentence}), now)
+            return TrainingReply(False, sentence, place)
         touch = TouchState(label, measured, now.sim_time, self._clock.elapsed(now.sim_time))
         touches = (*state.touches, touch)
         data = {**place, "kept": len(touches)}
         following = task.labels[len(touches)] if len(touches) < len(task.labels) else None
         touched = replace(state, touches=touches, next_point=following)
-        answered: Mapping[str, object] = {"nextPoint": following}
-        key = "touched"
-        values: Mapping[str, object] = {"label": label}
+        step = TrialStep(touched, "touched", {"label": label}, data, kind=EventKind.TOUCH)
+        if following is None and state.trace is None:
+            return replace(step, state=replace(touched, phase=Phase.COMPLETE), key="complete")
         if following is None and state.trace is not None:
             key, values = tracing.instruction(touched), tracing.counts(state.trace)
-        elif following is None:
-            touched = replace(touched, phase=Phase.COMPLETE)
-            key, values, answered = "complete", {}, {}
-        step = TrialStep(touched, key, values, data, answered=answered, kind=EventKind.TOUCH)
-        return self._taken(step, now)
+            step = replace(step, key=key, values=values)
+        return replace(step, answered={"nextPoint": following})
 
-    def _trace(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
-        """Begin or end a stroke; a repeated command changes nothing."""
+    def _trace(self, command: OperatorCommand, _now: TouchMoment) -> Outcome:
         trace, on = self.state.trace, command.arguments["on"]
         assert trace is not None, "the method has a trace"
         if on == trace.is_on:
             return TrainingReply(True, data=tracing.stroke_data(trace))
-        state = tracing.begun(self.state) if on else tracing.ended(self.state)
-        return self._taken(tracing.stroke(state), now)
+        return tracing.stroke(self.state, trace.begun() if on else trace.ended())
 
-    def _traced(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
+    def _traced(self, _command: OperatorCommand, now: TouchMoment) -> Outcome:
         """Add a point to the stroke, which ends with the last point that a trial accepts."""
+        assert self.state.trace is not None, "a stroke is being drawn"
+        measured = self._head.measured(now.tip)
+        tip = None if measured == now.tip else now.tip
         elapsed = self._clock.elapsed(now.sim_time)
-        self.state = tracing.with_point(self.state, now, self._head.measured(now.tip), elapsed)
-        event, trace = tracing.point_event(self.state, now), self.state.trace
-        if trace is None or not trace.is_full:
+        trace = self.state.trace.with_point(TracedPoint(measured, now.sim_time, elapsed, tip))
+        self.state = replace(self.state, trace=trace)
+        data = {**tracing.tip_data(now, measured), "kept": len(trace.points)}
+        event = Event(EventKind.TRACE, now.sim_time, data)
+        if not trace.is_full:
             return TrainingReply(True, events=(event,))
-        over = self._taken(tracing.stroke(tracing.ended(self.state)), now)
+        over = self._taken(tracing.stroke(self.state, trace.ended()), now)
         return replace(over, events=(event, *over.events))
 
-    def _undo(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
+    def _undo(self, _command: OperatorCommand, _now: TouchMoment) -> Outcome:
         state = self.state
         if state.trace is not None and state.trace.strokes:
-            return self._taken(tracing.stroke(tracing.undone(state), undone=True), now)
+            return tracing.stroke(state, state.trace.undone(), undone=True)
         if not state.touches:
             return TrainingReply(False, say("nothing to undo", point=state.next_point))
         label = state.touches[-1].label
@@ -280,99 +325,57 @@ class Training:
             next_point=label,
             undone=state.undone + 1,
         )
-        step = TrialStep(undone, "undone", {"label": label}, data, kind=EventKind.UNDO)
-        return self._taken(step, now)
+        return TrialStep(undone, "undone", {"label": label}, data, kind=EventKind.UNDO)
 
-    def _register(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
+    def _register(self, command: OperatorCommand, now: TouchMoment) -> Outcome:
         if self._phases is not None:
             return self._in_procedure(command, now)
         registered = replace(self.state, phase=Phase.REGISTERED)
         answered = {"completionTimeS": self.state.completed_s}
-        return self._taken(TrialStep(registered, "registered", answered=answered), now)
+        return TrialStep(registered, "registered", answered=answered)
 
-    def _abort(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
+    def _abort(self, _command: OperatorCommand, _now: TouchMoment) -> Outcome:
+        """The head is put where the scenario has it."""
         aborted = self.state
-        self._leave()
+        self._head = PlacedHead.nominal(self._scenario)
+        self._kept = {}
         idle = TrainingState(revision=aborted.revision)
-        self._kept.begin()
-        event = self._enter(idle, "aborted", now, trainee=aborted.trainee)
-        return TrainingReply(True, data={"trialId": aborted.trial_id}, events=(event,))
+        values = {"trainee": aborted.trainee}
+        return TrialStep(idle, "aborted", values, answered={"trialId": aborted.trial_id})
 
-    def _pause(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
+    def _pause(self, _command: OperatorCommand, now: TouchMoment) -> Outcome:
         self._clock.pause(now.sim_time)
-        return self._entered(TrialStep(paused(self.state), "paused"), now)
+        return TrialStep(paused(self.state), "paused")
 
-    def _resume(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
+    def _resume(self, _command: OperatorCommand, now: TouchMoment) -> Outcome:
         self._clock.resume(now.sim_time)
         procedure = self.state.procedure
         if procedure is not None and procedure.stage in PROCEDURE_PHASES:
             assert self._phases is not None
-            return self._taken(self._phases.resumed(self.state), now)
-        return self._entered(resumed(self.state), now)
+            return self._phases.resumed(self.state)
+        return resumed(self.state)
 
-    def _take_registration(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
-        taken = take_registration(command.arguments, self.state, self.truth)
-        return self._taken(taken, now) if isinstance(taken, TrialStep) else taken
-
-    def _scored(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
-        scored = take_score(command.arguments, self.state, self.truth)
-        if not isinstance(scored, TrialStep):
-            return scored
-        return replace(self._entered(scored, now), data=scored.answered)
-
-    def _get_trial(self, _command: OperatorCommand, _now: TouchMoment) -> TrainingReply:
-        return TrainingReply(True, data=trial_data(self.state, self.truth))
-
-    def _recording_failed(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
+    def _recording_failed(self, command: OperatorCommand, now: TouchMoment) -> Outcome:
         """Go back to the last revision that is on the disk, and pause."""
-        found = self._kept.find(command.arguments["revision"])
-        if found is None:
+        kept, feed = self._kept.get(command.arguments["revision"], (None, None))
+        if kept is None:
             return TrainingReply(True)
-        kept, feed = found[0], found[1] or now.feed
-        sentence = say("not recorded", reason=command.arguments["reason"])
         if kept.is_running:
             self._clock.pause(now.sim_time)
             kept = paused(kept)
         if kept.phase is Phase.IDLE:
-            self._leave()
+            self._head = PlacedHead.nominal(self._scenario)
         back = replace(kept, revision=self.state.revision)
-        then = replace(now, feed=feed)
-        event = self._enter(back, "not recorded", then, reason=command.arguments["reason"])
-        return TrainingReply(True, message=sentence, events=(event,), feed=feed)
+        values, then = {"reason": command.arguments["reason"]}, replace(now, feed=feed or now.feed)
+        reply = self._taken(TrialStep(back, "not recorded", values, feed=then.feed), then)
+        return replace(reply, message=self.state.instruction)
 
-    def _interrupted(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
+    def _interrupted(self, _command: OperatorCommand, now: TouchMoment) -> Outcome:
         """Pause a trial that runs; one whose points are all touched has no time to stop."""
         if self.state.phase is not Phase.COMPLETE:
             self._clock.pause(now.sim_time)
-        return self._entered(interrupted(self.state), now)
+        return interrupted(self.state)
 
-    def _entered(self, step: TrialStep, now: TouchMoment) -> TrainingReply:
-        """Enter another phase, with nothing more to answer than that."""
-        return TrainingReply(True, events=(self._enter(step.state, step.key, now, **step.values),))
-
-    def _enter(self, state: TrainingState, key: str, now: TouchMoment, **values: object) -> Event:
-        self._keep(state, key, **values)
-        data = {
-            **summary(self.state),
-            "instruction": self.state.instruction,
-            **recorded_feed(now.feed),
-        }
-        return Event(EventKind.PHASE, now.sim_time, data)
-
-    def _keep(self, state: TrainingState, key: str, **values: object) -> None:
-        """Adopt a state that must not be lost, with its instruction."""
-        words = {
-            "trainee": state.trainee,
-            "point": state.next_point,
-            "count": self._count,
-            **values,
-        }
-        revision = state.revision + 1
-        instruction = say(key, **words)
-        self._refused_over = None
-        self.state = replace(state, revision=revision, instruction=instruction)
-        self._kept.keep(self.state)
-
-    def _leave(self) -> None:
-        """Between trials the head is where it nominally is."""
-        self._head = PlacedHead.nominal(self._scenario)
+    def _forget(self, state: TrainingState) -> None:
+        """Go on from a state without the states before it."""
+        self.state, self._kept = state, {state.revision: (state, None)}

@@ -1,4 +1,4 @@
-"""Which parts of the arm lie before what the trainee must see: views draw them translucent."""
+"""Finds the parts of the arm that cover the trainee's target: views draw them translucent."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.vectors import Vector, vector
 
 COVERS_M, FLICKER_M = 0.005, 0.01
-"""A body that comes so near to a line of sight covers what is seen along it: a point is a disk.
+"""A body covers the places seen along a line of sight that it comes so near to: a point is a disk.
 It does so until it is so much farther away, so that it does not flicker."""
 SLENDER_M = 0.005
 SLENDER_COVERS_M, SLENDER_FLICKER_M = 0.0, 0.003
 """Radius up to which a part of the tool is slender, and the margins of such a part."""
 MARKER_M = 0.009
-"""So near the tip, the tool is what has to be seen."""
+"""The tool itself has to be seen so near the tip."""
 
 
 class ArmCover:
@@ -32,7 +32,7 @@ class ArmCover:
     def __init__(self, setup: SimulationSetup) -> None:
         self.setup = setup
         links = {link.name: link for link in setup.robot.links}
-        first = {link.joint: link for link in reversed(setup.robot.links)}
+        first = setup.robot.moving_links
         self._arm = ArmCapsules(setup.shape)
         self._tip = setup.robot.tip.name
         self._fixed = {
@@ -67,22 +67,15 @@ class ArmCover:
             known = self._covering.get(name, frozenset())
             if eye is None or not len(places):
                 self._covering[name] = frozenset()
-            else:
-                self._covering[name] = self._before(eye, places, ends, known)
+                continue
+            lines = np.array(places)
+            eyes_of_lines = np.broadcast_to(eye, lines.shape)
+            off = sight_clearances(eyes_of_lines, lines, ends, self._arm.radii).min(axis=0)
+            off -= self._margins
+            near, nearer = (set(self._nodes[off < more].tolist()) for more in (self._flicker, 0.0))
+            # A node that is known to be there is so until it has left by a margin.
+            self._covering[name] = known & near | nearer
         return {name: tuple(sorted(self._covering[name])) for name in eyes}
-
-    def _before(
-        self, eye: Vector, places: Sequence[Vector], ends: np.ndarray, known: frozenset[str]
-    ) -> frozenset[str]:
-        """Return the nodes before any of some places, the axes' ends (n, 2, 3) being given.
-
-        One that is `known` to be there is so until it has left by a margin.
-        """
-        lines = np.array(places)
-        eyes = np.broadcast_to(eye, lines.shape)
-        off = sight_clearances(eyes, lines, ends, self._arm.radii).min(axis=0) - self._margins
-        near, nearer = (set(self._nodes[off < more].tolist()) for more in (self._flicker, 0.0))
-        return known & near | nearer
 
 
 def places_to_see(

@@ -39,14 +39,14 @@ if TYPE_CHECKING:
     from rastrainer_simulator.scene.skin_marks import Placement
 
 WIDEST_DEG = 60.0
-"""Between the skin's normal and the line to the eye."""
+"""Angle between the skin's normal and the line to the eye."""
 LEAST_OFF_TOOL_DEG = 20.0
-"""Between the tool and that line: seen more end-on, its own holder hides the tip."""
+"""Angle between the tool and that line: seen more end-on, its own holder hides the tip."""
 LIKED_DEG = 30.0
-"""Between normal and line where place and depth are both judged well."""
+"""Angle between normal and line at which place and depth are both judged well."""
 LIKED_ELEVATION_DEG = 25.0
 AWAY_M = (0.5, 0.38, 0.28)
-"""From the eye to the fiducial, the best first."""
+"""Distances from the eye to the fiducial, the best first."""
 ELEVATIONS_DEG = tuple(range(-10, 81, 10))
 AZIMUTHS_DEG = tuple(range(0, 360, 10))
 MARGIN_M = 0.02
@@ -54,7 +54,7 @@ MARGIN_M = 0.02
 
 BESIDE_M = 0.22
 BESIDE_DEG = (82.0, 75.0, 65.0)
-"""Between the normal and the line along the skin, the best first."""
+"""Angles between the normal and the line along the skin, the best first."""
 LEVEL_DEG = 10.0
 STEEPEST_DEG = 45.0
 """How far that line may rise or fall: the picture stays upright, and never looks into the neck."""
@@ -70,10 +70,7 @@ IN_PICTURE_M = 0.15
 
 @dataclass(frozen=True)
 class HeldTool:
-    """A posture of the arm: where its tool is, and what it leaves visible; World, m.
-
-    `direction` is the tool's, a unit vector to its tip.
-    """
+    """The tool in one posture of the arm, and the lines of sight past that; World, m."""
 
     tip: Vector
     direction: Vector
@@ -99,12 +96,10 @@ class ViewedPoint:
 
 @dataclass(frozen=True)
 class PointViews:
-    """What is known of the views of a fiducial before the arm's posture is.
+    """The views of a fiducial in any posture of the arm.
 
-    Attributes:
-        eyes: (k, 3) float, from where head and table leave fiducial and number visible, the best
-            first; World, m.
-        planned: the posture in which it is to be touched; None where the robot cannot.
+    From the `eyes` (k, 3), World, m, the best first, head and table leave fiducial and number
+    visible. `planned` is the posture in which it is to be touched, None if the robot cannot.
     """
 
     point: ViewedPoint
@@ -114,12 +109,10 @@ class PointViews:
 
 @dataclass(frozen=True)
 class BestView:
-    """A viewpoint for a touch: World, m.
+    """A viewpoint for a touch: an eye that sees fiducial, number and tip as well as possible.
 
-    Attributes:
-        eye: from where fiducial, number and tip are seen as well as possible.
-        beside: an eye that looks along the skin; None where something is always in between.
-        is_whole: whether nothing of these is hidden from `eye`.
+    `is_whole` is whether it sees all of them. The eye `beside` looks along the skin; None if
+    something is always in between. World, m.
     """
 
     eye: Vector
@@ -129,10 +122,10 @@ class BestView:
 
 
 def best_view(views: PointViews, postures: Sequence[HeldTool]) -> BestView | None:
-    """Return the best view of a fiducial; None where the head always hides it.
+    """Return the best view of a fiducial; None if the head always hides it.
 
-    What the first of the postures hides counts most. Of equal views the first one is taken that
-    also keeps a margin to the links.
+    The first of the postures counts most. The first of equal views is taken that also keeps a
+    margin to the links.
     """
     point, eyes = views.point, views.eyes
     if not len(eyes):
@@ -182,8 +175,7 @@ def _hidden(point: ViewedPoint, held: HeldTool, eyes: np.ndarray) -> tuple[np.nd
 def _eyes(point: ViewedPoint, front: Vector) -> list[Vector]:
     """Return the positions from which a touch may be viewed, the best first.
 
-    `front` is the direction from the head to the usual camera: of equal views the one nearer to it
-    is taken.
+    `front` is the direction from the head to the usual camera: views nearer to it are better.
     """
     ranked: list[tuple[float, Vector]] = []
     for elevation, azimuth in product(ELEVATIONS_DEG, AZIMUTHS_DEG):
@@ -202,7 +194,7 @@ def _eyes(point: ViewedPoint, front: Vector) -> list[Vector]:
 def _beside(point: ViewedPoint, postures: Sequence[HeldTool], eye: Vector) -> Vector | None:
     """Return an eye that looks along the skin, level and across the best view's line if possible.
 
-    None where the head is always in between.
+    None if the head is always in between.
     """
     sight, target = postures[0].sight, point.marks[0]
     places = [each for each in _along_skin(point, eye) if sight.is_past_head(each, target)]
@@ -246,7 +238,6 @@ class TouchViews:
     """Looks for the views of a task's fiducials; with its own collision shapes, for one thread."""
 
     def __init__(self, setup: SimulationSetup, head: HeadMesh | None = None) -> None:
-        """Use what a simulation is made from; the head is read if it is not given."""
         self._scenario: Scenario = setup.scenario
         self._head = head or read_head_mesh(setup.scenario.head)
         self._collision = head_collision(setup.shape, self._head, setup.scenario)
@@ -278,7 +269,7 @@ class TouchViews:
         self._views = {}
 
     def views(self, label: str) -> PointViews:
-        """Return what is known of the views of a fiducial of the task that was begun."""
+        """Return the views of a fiducial of the present task in any posture of the arm."""
         if label not in self._views:
             point = self._points[label]
             planned = self._planner.touch(np.array(point.fiducial), np.array(point.normal))
@@ -303,8 +294,8 @@ class TouchViews:
     def of(self, task: Task, head_to_world: np.ndarray) -> Iterator[tuple[str, BestView | None]]:
         """Yield each fiducial's label and best view during its touch, as planned.
 
-        A fiducial that the robot cannot touch, or that no view shows with its number and the tip,
-        has None. HeadToWorld is (4, 4) float, mm.
+        None if the robot cannot touch it, or no view shows it with its number and the tip.
+        HeadToWorld is (4, 4) float, mm.
         """
         self.begin(task, head_to_world)
         for label in task.labels:

@@ -29,18 +29,15 @@ from rastrainer_simulator.vectors import (
 LOWEST_DEG, HIGHEST_DEG = -15.0, 85.0
 """How far below and above its focal point a turned camera may stand, seen from there."""
 NEAREST_M, FARTHEST_M = 0.2, 2.6
-"""From a turned camera to its focal point: never in the head, never behind a wall."""
+"""Distances of a turned camera from its focal point: never in the head, never behind a wall."""
 UP: Vector = (0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True)
 class CameraPose:
-    """Where a camera stands: World, m.
+    """Where a camera stands, World, m; the focal point is in the middle of its picture.
 
-    Attributes:
-        focal_point: what is in the middle of the picture.
-        view_up: unit vector.
-        view_angle_deg: the picture's height as an angle.
+    `view_up` is a unit vector, `view_angle_deg` the picture's height as an angle.
     """
 
     position: RecordVector
@@ -51,13 +48,10 @@ class CameraPose:
 
 @dataclass(frozen=True)
 class Orbit:
-    """By how much a view differs from a camera of the scenario.
+    """The difference of a view from a camera of the scenario.
 
-    Attributes:
-        azimuth_deg: turn about World's vertical, counterclockwise from above.
-        elevation_deg: how much higher the camera stands, as an angle.
-        zoom: its distance, as a share of the scenario camera's.
-        shift: of the focal point, World, m.
+    It is turned about World's vertical, counterclockwise from above, stands higher by an angle, its
+    distance is a share (`zoom`) of the other's, and its focal point is shifted (World, m).
     """
 
     azimuth_deg: float = 0.0
@@ -163,16 +157,8 @@ SHORTEST_S = 0.5
 """How fast the view moves to another position by itself, and how long it takes at least."""
 
 
-@dataclass(frozen=True)
-class ViewMotion:
-    """What is held to move the view, −1…1 each: around to the right, higher, nearer."""
-
-    around: float = 0.0
-    higher: float = 0.0
-    nearer: float = 0.0
-
-
-STILL = ViewMotion()
+STILL: Vector = (0.0, 0.0, 0.0)
+"""Nothing is held to move the view around to the right, higher or nearer, −1…1 each."""
 
 
 @dataclass
@@ -188,11 +174,10 @@ class _Travel:
 
 @dataclass(frozen=True)
 class Pictures:
-    """What the views draw: the main picture's camera, and that of the inset.
+    """The cameras of the views: the main picture's and the inset's.
 
-    The inset looks along the skin at the next touch, or across the line of a procedure; it is None
-    where there is neither. `yaw_deg` is where the operator's eyes look,
-    degrees from World's x, in a headset; else None.
+    The inset looks along the skin at the next touch, or across the line of a procedure, if any.
+    `yaw_deg` is where the operator's eyes look in a headset, degrees from World's x; else None.
     """
 
     main: CameraPose
@@ -201,13 +186,9 @@ class Pictures:
 
 
 class ViewControl:
-    """One view of the scene, which all windows and pages draw.
+    """One view of the scene, which all windows and pages draw: an orbit from a scenario's camera.
 
-    Attributes:
-        camera: the scenario's camera that it starts from.
-        orbit: how it differs from that.
-        is_automatic: whether the last move was automatic.
-        travel: the move to another position that is under way.
+    `travel` is a move under way; `is_automatic` is whether the last move was automatic.
     """
 
     def __init__(self) -> None:
@@ -254,15 +235,15 @@ class ViewControl:
         if self.orbit != goal:
             self.travel = _Travel(self.orbit, goal, seconds, is_automatic)
 
-    def advance(self, dt: float, camera: Camera, motion: ViewMotion, is_arm_still: bool) -> None:
-        """Advance by `dt` seconds: by what is held, else along the move.
+    def advance(self, dt: float, camera: Camera, motion: Vector, is_arm_still: bool) -> None:
+        """Advance by `dt` seconds with the held buttons, else along the move.
 
         An automatic move waits while the arm is driven.
         """
         if motion != STILL:
-            zoom = ZOOM_PER_S ** (-motion.nearer * dt)
-            around, higher = motion.around * TURN_DEG_S * dt, motion.higher * RISE_DEG_S * dt
-            self.turn(camera, around, higher, zoom)
+            around, higher, nearer = motion
+            zoom = ZOOM_PER_S ** (-nearer * dt)
+            self.turn(camera, around * TURN_DEG_S * dt, higher * RISE_DEG_S * dt, zoom)
             return
         travel = self.travel
         if travel is None or (travel.is_automatic and not is_arm_still):
@@ -281,10 +262,9 @@ SIDEWAYS = 0.2
 
 
 class Aim(NamedTuple):
-    """Where entry and target of a planned line are beside the guide's axis: right and up, m.
+    """Offsets of a planned line's entry and target from the guide's axis: right and up, m.
 
-    Right is that of the main picture, or of the eyes in a headset: a guide that is moved to the
-    right goes to the right here. Up is across both.
+    Right is the right of the main picture, or of the eyes in a headset. Up is across both.
     """
 
     entry: tuple[float, float]

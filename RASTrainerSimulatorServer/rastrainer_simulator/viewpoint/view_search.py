@@ -1,4 +1,4 @@
-"""The search for the best views of a trial, beside the control loop."""
+"""The search for the best views of a trial, while the control loop runs."""
 
 from __future__ import annotations
 
@@ -28,7 +28,8 @@ class _ViewedTrial:
 class BestViews:
     """Finds the views of one trial's touches, in a thread.
 
-    What belongs to the head and the task is kept for the next trial, for it makes ticks late.
+    Results for the head and the task are kept for the next trial, as computing them makes ticks
+    late.
     """
 
     def __init__(self) -> None:

@@ -113,7 +113,7 @@ export interface Fact {
   readonly tone: Tone;
 }
 
-/** What can be done with an item. */
+/** The kind of an item. */
 export type ItemKind = "button" | "choice" | "text" | "axis";
 
 /** One line of a menu. */
@@ -176,7 +176,7 @@ export interface DepthRuler {
   readonly names: readonly string[];
 }
 
-/** Everything beside the scene. */
+/** Everything except the scene. */
 export interface Screen {
   readonly menu: Menu | null;
   readonly instruction: ScreenMessage;

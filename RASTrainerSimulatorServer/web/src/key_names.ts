@@ -1,4 +1,4 @@
-/** What is written on the keys of this keyboard, by their places. */
+/** The labels of this keyboard's keys, by their places. */
 
 interface LayoutKeyboard {
   getLayoutMap(): Promise<ReadonlyMap<string, string>>;
@@ -27,7 +27,7 @@ export function keyNames(): Readonly<Record<string, string>> {
   return Object.fromEntries(names);
 }
 
-/** Return what is written on the key that has a letter or digit on an American keyboard. */
+/** Return the label of the key that has a letter or digit on an American keyboard. */
 export function nameOf(american: string): string {
   const name = names.get(/[0-9]/.test(american) ? `Digit${american}` : `Key${american}`) ?? american;
   const capital = name.toUpperCase();

@@ -99,16 +99,6 @@ def same_trajectory(values):
     lines.append(dict(lines[0]))
 
 
-def many_lines(values):
-    line = values["procedures"][0]["trajectories"][0]
-    values["procedures"][0]["trajectories"] = [{**line, "name": f"{n}"} for n in range(21)]
-
-
-def many_structures(values):
-    one = values["procedures"][0]["noGo"][0]
-    values["procedures"][0]["noGo"] = [{**one, "name": f"{n}"} for n in range(11)]
-
-
 def many_files(values):
     one = values["procedures"][0]
     values["procedures"] = [
@@ -121,30 +111,20 @@ def many_files(values):
     ]
 
 
-LINE = (0, "trajectories", 0)
-
-
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
         (lambda values: values.pop("skull"), "skull must be given, because .* needs a skull"),
-        (set_in(0, "name", "Not Good"), r"procedures\[0\].name must be lower-case"),
-        (set_in(0, "kind", "heart"), "kind must be one of biopsy, dbs, seeg"),
-        (set_in(0, "title", ""), "title must be printable text"),
-        (set_in(0, "trajectories", []), "trajectories must be a list of 1 to 20 objects"),
-        (many_lines, "trajectories must be a list of 1 to 20 objects"),
-        (many_structures, "noGo must be a list of at most 10 objects"),
         (many_files, "at most 30 files of no-go meshes"),
         (same_name, "procedures must be a list in which each name occurs once"),
         (same_trajectory, "trajectories must be a list in which each name occurs once"),
-        (set_in(*LINE, "entryRas", [0, 0, 1e9]), "entryRas must be a list of 3 numbers within"),
-        (set_in(*LINE, "entryRas", [0.0, 0.0, 21.0]), "at least 10 mm from targetRas"),
-        (set_in(*LINE, "diameterMm", 0.0), "diameterMm must be a number from 0.5 to 10"),
-        (set_in(*LINE, "safetyMm", -1.0), "safetyMm must be a number from 0 to 20"),
+        (
+            set_in(0, "trajectories", 0, "entryRas", [0.0, 0.0, 21.0]),
+            "at least 10 mm from targetRas",
+        ),
         (set_in(0, "noGo", 0, "file", "../vessel.ply"), "inside the scenario's folder"),
         (set_in(0, "noGo", 0, "file", "vessel.ply"), "must be no-go/NAME.ply"),
         (set_in(0, "noGo", 0, "file", "no-go/Vessel 1.ply"), "must be no-go/NAME.ply"),
-        (set_in(0, "checkpoints", 0, "positionRas", None), "positionRas must be a list of 3"),
     ],
 )
 def test_an_invalid_procedure_is_refused_in_one_sentence(folder, change, sentence):

@@ -16,11 +16,11 @@ _MADE = re.compile(rb"\d{4}-\d\d-\d\d \d\d:\d\d UTC")
 
 def rows_of(place: StudyPlace) -> dict[str, list[tuple]]:
     """Return all rows by table, in the order of storing."""
-    with Study.open_for_reading(place) as study, study.database.reading() as connection:
+    with Study.open_for_reading(place) as study:
         return {
-            table.name: connection.execute(
+            table.name: study.database.rows(
                 f"SELECT {', '.join(table.columns)} FROM {table.name} ORDER BY {table.order}"
-            ).fetchall()
+            )
             for table in TABLES.values()
         }
 

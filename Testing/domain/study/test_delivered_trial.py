@@ -92,8 +92,7 @@ def test_a_delivered_trial_is_checked_once_and_stored_with_its_unknown_keys(stud
     delivered = exact_touches(1) | {"ofALaterVersion": 1}
     taken = store_delivered(delivered, study, lambda record: analyze_trial(record, SCENARIO))
     assert checks == [delivered]
-    with study.database.reading() as connection:
-        ((text,),) = connection.execute("SELECT record_json FROM trials").fetchall()
+    ((text,),) = study.database.rows("SELECT record_json FROM trials")
     assert json.loads(text) == delivered
     assert study.trial(taken.record.trial_id).record == taken.record
 

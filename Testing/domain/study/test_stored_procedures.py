@@ -59,9 +59,7 @@ def test_the_outcome_is_deleted_with_its_trainee(study):
     study.add_trial(trial, score=gentle_score(110.0, 0.5))
     study.add_results(trial.trial_id, procedure=DBS)
     study.delete_trainee(trial.trainee)
-    with study.database.reading() as connection:
-        count = connection.execute("SELECT count(*) FROM procedure_outcomes").fetchone()[0]
-    assert count == 0
+    assert study.database.row("SELECT count(*) FROM results") == (0,)
 
 
 def test_only_a_trial_with_the_procedure_counts_for_a_step_that_asks_for_it(study):

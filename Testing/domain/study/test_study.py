@@ -3,7 +3,6 @@
 import csv
 import json
 import uuid
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,6 +18,7 @@ from rastrainer.study.database.study import DeletedTrialError, Study
 from rastrainer.study.database.values import StoredRegistration
 from rastrainer.study.tidy_csv import write_history
 from rastrainer.study.trainee_data import export_trainee
+from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.record import TrialRecord
 from Testing.domain.trial.trial_records import gentle_score, make_record
 
@@ -73,21 +73,6 @@ def test_a_trial_with_an_invalid_pseudonym_is_refused(study, name):
     assert study.trainees() == ()
 
 
-def test_a_trial_is_checked_before_anything_is_computed_from_it(study):
-    trial = record_from_json(TrialRecord, record())
-    assert study.check_trial(trial)
-    assert study.trainees() == ()
-    study.add_trial(trial)
-    assert not study.check_trial(trial)
-    with pytest.raises(InputError, match="Another trial is stored under the UUID"):
-        study.check_trial(replace(trial, task="task-2"))
-    with pytest.raises(InputError, match="A pseudonym must be"):
-        study.check_trial(record_from_json(TrialRecord, record(8, trainee="T-001 ")))
-    study.delete_trainee("T-001")
-    with pytest.raises(DeletedTrialError):
-        study.check_trial(trial)
-
-
 def test_only_changed_trials_are_read_again(study, study_place, monkeypatch):
     read, find = [], study.trial
 
@@ -105,7 +90,7 @@ def test_only_changed_trials_are_read_again(study, study_place, monkeypatch):
     study.history("T-001")
     assert read == []
     with Study.open(study_place) as other:
-        other.set_truth(trials[1], 1.5, [float(n) for n in range(16)])
+        other.add_results(trials[1], truth=RevealedTruth(tuple([float(n) for n in range(16)]), 1.5))
         other.add_results(trials[0], score=gentle_score(50.0, 0.2))
     stored = {trial.record.trial_id: trial for trial in study.history("T-001")}
     assert sorted(read) == trials
@@ -201,9 +186,8 @@ def test_the_latest_results_count_and_earlier_ones_remain(study, results):
     assert stored.registrations["rigid"].expected_tre_mm is None
     assert stored.registrations["affine"].fre_mm == registrations[2].fre_mm
     assert stored.score == better
-    with study.database.reading() as connection:
-        assert connection.execute("SELECT count(*) FROM registrations").fetchone() == (4,)
-        assert connection.execute("SELECT count(*) FROM scores").fetchone() == (2,)
+    query = "SELECT count(*) FROM results GROUP BY kind = 'score' ORDER BY 1"
+    assert study.database.rows(query) == [(2,), (4,)]
 
 
 def test_the_truth_is_stored_once(study):
@@ -211,15 +195,13 @@ def test_the_truth_is_stored_once(study):
     study.add_trial(first)
     study.add_trial(second)
     matrix = tuple(map(float, np.eye(4).ravel()))
-    study.set_truth(first["trialId"], 0.75, matrix)
-    study.set_truth(first["trialId"], 9.0, matrix)
+    study.add_results(first["trialId"], truth=RevealedTruth(matrix, 0.75))
+    study.add_results(first["trialId"], truth=RevealedTruth(matrix, 9.0))
     stored = study.trial(first["trialId"])
     assert (stored.true_tre_mm, stored.truth.head_to_world) == (0.75, matrix)
     assert [r.trial_id for r in study.unrevealed()] == [second["trialId"]]
-    with pytest.raises(InputError, match="reveals must be a number"):
-        study.set_truth(second["trialId"], float("nan"), matrix)
-    with pytest.raises(InputError, match="reveals must be a list of 16"):
-        study.set_truth(second["trialId"], 1.0, matrix[:3])
+    with pytest.raises(InputError, match="finite"):
+        study.add_results(second["trialId"], truth=RevealedTruth(matrix, float("nan")))
 
 
 def test_the_history_is_in_the_order_of_starting(study):
@@ -239,14 +221,15 @@ def test_the_latest_registration_of_a_trial_counts(study, results):
 
 def test_deleting_a_trainee_leaves_no_row_of_theirs(study, results):
     study.add_trial(record(1, trainee="Vanishing Heron"), *results)
-    study.set_truth(record(1)["trialId"], 0.5, np.eye(4).ravel().tolist())
+    study.add_results(
+        record(1)["trialId"], truth=RevealedTruth(tuple(np.eye(4).ravel().tolist()), 0.5)
+    )
     study.add_trial(record(2, trainee="staying"), *results)
     assert study.delete_trainee("Vanishing Heron") == 1
-    with study.database.reading() as connection:
-        for table in TABLES.values():
-            rows = str(connection.execute(f"SELECT * FROM {table.name}").fetchall())
-            assert "Vanishing Heron" not in rows
-            assert record(1)["trialId"] not in rows
+    for table in TABLES.values():
+        rows = str(study.database.rows(f"SELECT * FROM {table.name}"))
+        assert "Vanishing Heron" not in rows
+        assert record(1)["trialId"] not in rows
     assert len(study.history("staying")) == 1
     assert study.trial(record(2)["trialId"]).score == results[2]
 
@@ -289,7 +272,9 @@ def test_outcomes_are_those_of_one_task_and_mode_with_the_latest_score(study, re
     study.add_trial(record(2, trainee="b", completionTimeS=90.0))
     study.add_trial(record(3, mode="hmd"))
     study.add_trial(record(4, task="task-2"))
-    study.set_truth(record(1)["trialId"], 0.5, np.eye(4).ravel().tolist())
+    study.add_results(
+        record(1)["trialId"], truth=RevealedTruth(tuple(np.eye(4).ravel().tolist()), 0.5)
+    )
     better = gentle_score(50.0, 0.2)
     study.add_results(record(1)["trialId"], score=better)
     first, second = study.outcomes("task-1", "desktop")
@@ -299,7 +284,7 @@ def test_outcomes_are_those_of_one_task_and_mode_with_the_latest_score(study, re
     assert first.method == second.method == "fiducials"
 
 
-def test_past_trials_are_the_scored_ones_in_order_of_starting(study, results):
+def test_attempts_are_the_scored_ones_in_order_of_starting(study, results):
     score = results[2]
     for number, day in ((1, 19), (2, 17), (3, 18)):
         record = make_record(
@@ -308,7 +293,7 @@ def test_past_trials_are_the_scored_ones_in_order_of_starting(study, results):
             startedUtc=f"2026-05-{day}T09:30:00Z",
         )
         study.add_trial(record, *(results if number != 3 else ()))
-    first, second = study.past_trials("T-001")
+    first, second = study.attempts("T-001")
     assert (first.trial_id[-1], second.trial_id[-1]) == ("2", "1")
     assert (first.score, first.acceptable) == (score.score, score.acceptable)
     assert first.method is RegistrationMethod.FIDUCIALS
@@ -316,7 +301,7 @@ def test_past_trials_are_the_scored_ones_in_order_of_starting(study, results):
     assert (first.task, first.mode) == (stored.task, stored.mode)
     assert first.completion_time_s == stored.completion_time_s
     with pytest.raises(InputError):
-        study.past_trials("nobody")
+        study.attempts("nobody")
 
 
 def test_motion_metrics_are_stored_once_and_finite(study):
@@ -333,13 +318,15 @@ def test_everything_about_one_trainee_is_exported_and_nothing_about_others(
 ):
     first = record(1, trainee="a", motion={"path_mm": 2500.5})
     study.add_trial(first, *results)
-    study.set_truth(record(1)["trialId"], 0.5, np.eye(4).ravel().tolist())
+    study.add_results(
+        record(1)["trialId"], truth=RevealedTruth(tuple(np.eye(4).ravel().tolist()), 0.5)
+    )
     study.add_trial(record(2, trainee="b"))
     assert export_trainee(study, "a", tmp_path / "a.json") == 1
     text = (tmp_path / "a.json").read_text()
     (trial,) = json.loads(text)["trials"]
     assert record_from_json(TrialRecord, trial["record"]) == record_from_json(TrialRecord, first)
-    assert (trial["true_tre_mm"], trial["motion"]) == (0.5, {"path_mm": 2500.5})
+    assert (trial["truth"]["trueTreMm"], trial["record"]["motion"]) == (0.5, {"path_mm": 2500.5})
     assert record(2)["trialId"] not in text
 
 

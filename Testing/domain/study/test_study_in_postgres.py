@@ -26,8 +26,9 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.ratings import FORMS, RatingStore
+from rastrainer.trial.analysis import RevealedTruth
 from rastrainer_simulator.cli.main import main
-from rastrainer_simulator.cli.study_management import copy_study
+from rastrainer_simulator.cli.study_management import copy_rows
 from Testing.domain.study.played_study import STUDIES, study_with_trials
 from Testing.domain.study.study_content import rows_of, written_files
 from Testing.domain.study.writers import stored_numbers, writer
@@ -120,7 +121,7 @@ def test_a_change_whose_answer_was_lost_is_stored_once_when_it_is_retried(place)
         changes = {
             "enroll": lambda: progress.enroll("A"),
             "trial": lambda: study.add_trial(make_record()),
-            "truth": lambda: study.set_truth(trial, 0.5, matrix),
+            "truth": lambda: study.add_results(trial, truth=RevealedTruth(tuple(matrix), 0.5)),
             "aborted": lambda: study.add_aborted(make_aborted()),
             "assign": lambda: ratings.assign("R1", [trial], 1, random.Random(1)),
             "mark": lambda: ratings.give(mark_id, "R1", trial, form, domain, 4),
@@ -128,20 +129,15 @@ def test_a_change_whose_answer_was_lost_is_stored_once_when_it_is_retried(place)
         for change in changes.values():
             with LostAnswer(study), pytest.raises(StudyUnreachableError):
                 change()
-            with study.database.reading() as connection:
-                before = counts_of(connection)
+            before = counts_of(study.database)
             change()
-            with study.database.reading() as connection:
-                assert counts_of(connection) == before
+            assert counts_of(study.database) == before
         assert len(study.history("T-001")) == 1
         assert ratings.marks("R1", trial) == {domain: 4}
 
 
-def counts_of(connection):
-    return [
-        connection.execute(f"SELECT count(*) FROM {table.name}").fetchone()
-        for table in TABLES.values()
-    ]
+def counts_of(database):
+    return [database.row(f"SELECT count(*) FROM {table.name}") for table in TABLES.values()]
 
 
 def test_a_connection_is_reestablished_after_an_outage_of_the_server(own_server):
@@ -177,15 +173,15 @@ def test_a_slow_reader_is_not_cut_off_but_a_slow_holder_of_the_lock_is(place, mo
     hasty = postgres_connecting._SESSION.replace("'20s'", "'10ms'")
     monkeypatch.setattr(postgres_connecting, "_SESSION", hasty)
     with Study.open(place) as study:
-        with study.database.reading() as connection:
+        with study.database.reading():
             # As a copy that writes a large table elsewhere before it reads the next.
             time.sleep(1.0)
-            assert connection.execute("SELECT count(*) FROM trials").fetchone() == (0,)
+            assert study.database.row("SELECT count(*) FROM trials") == (0,)
 
         def change_slowly():
-            with study.database.writing() as connection:
+            with study.database.writing():
                 time.sleep(1.0)
-                connection.execute("DELETE FROM trials")
+                study.database.change("DELETE FROM trials")
 
         with pytest.raises(StudyBusyError, match="waited too long"):
             change_slowly()
@@ -231,7 +227,7 @@ from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.ratings import FORMS
 from rastrainer.study.ratings import RatingStore
 study = Study.open(sys.argv[1])
-with study.database.writing() as connection:
+with study.database.writing():
     print("locked", flush=True)
     os.kill(os.getpid(), signal.SIGSTOP)
 """
@@ -250,11 +246,11 @@ def test_a_seat_that_hangs_during_a_change_does_not_block_others_forever(place):
 def test_a_reader_sees_one_consistent_state_and_a_writer_the_latest(place):
     with Study.open(place) as seat, Study.open(place) as other:
         seat.create_trainee("a")
-        with other.database.reading() as connection:
+        with other.database.reading():
             query = "SELECT count(*) FROM trainees"
-            assert connection.execute(query).fetchone() == (1,)
+            assert other.database.row(query) == (1,)
             seat.create_trainee("b")
-            assert connection.execute(query).fetchone() == (1,)
+            assert other.database.row(query) == (1,)
         assert len(other.trainees()) == 2
 
 
@@ -337,8 +333,8 @@ def test_a_study_whose_tables_somebody_has_changed_is_refused(sql, words, place,
         "UPDATE trials SET record_json = 'x'",
         """UPDATE trials SET record_json = replace(record_json, '{', '{"a": NaN, ')""",
         "UPDATE trials SET completion_time_s = 'NaN'",
-        "UPDATE scores SET score = 'Infinity'",
-        "UPDATE scores SET score_json = '{}'",
+        "UPDATE results SET value = 'Infinity'",
+        "UPDATE results SET result_json = '{}'",
     ],
 )
 def test_a_foreign_value_is_reported(sql, place, postgres_server, tmp_path, capsys):
@@ -346,7 +342,7 @@ def test_a_foreign_value_is_reported(sql, place, postgres_server, tmp_path, caps
     postgres_server.execute(sql, place.database)
     received = []
     with Study.open(place) as study:
-        for ask in (study.past_trials, study.history):
+        for ask in (study.attempts, study.history):
             try:
                 ask("A")
             except InputError as error:
@@ -416,7 +412,7 @@ def test_a_copy_that_is_interrupted_leaves_nothing(place, tmp_path, monkeypatch)
     with Study.open_for_reading(file) as source, Study.open(place) as target:
         monkeypatch.setattr(type(target.database), "continue_numbers", lambda _self: 1 / 0)
         with pytest.raises(ZeroDivisionError):
-            copy_study(source, target)
+            copy_rows(source, target)
         assert target.trainees() == ()
 
 
@@ -496,14 +492,13 @@ def test_numbers_are_read_back_bit_for_bit(place):
     with Study.open(place) as study:
         study.add_trial(make_record())
         trial = make_record()["trialId"]
-        with study.database.writing() as connection:
-            connection.executemany(
-                "INSERT INTO scores (trial_id, score, version, score_json, stored_utc) "
-                "VALUES (?, ?, '3', '{}', '')",
-                [(trial, value) for value in values],
-            )
-        with study.database.reading() as connection:
-            found = [row[0] for row in connection.execute("SELECT score FROM scores ORDER BY id")]
+        with study.database.writing():
+            for value in values:
+                study.database.insert(
+                    "results", trial_id=trial, kind="score", value=value, result_json="{}"
+                )
+        rows = study.database.rows("SELECT value FROM results ORDER BY id")
+        found = [value for (value,) in rows]
     assert json.dumps(found) == json.dumps(values)
 
 

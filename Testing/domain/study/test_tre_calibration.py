@@ -6,14 +6,13 @@ from scipy import stats
 
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.study.study_data import StudyData, TrialRow
-from rastrainer.study.tre_calibration import CalibrationPoint, TreCalibration, proportion
-from rastrainer_simulator.report.calibration import calibration
+from rastrainer.study.tre_calibration import (
+    calibration_of,
+    proportion,
+)
+from rastrainer_simulator.report.target_errors import calibration
 
 KNOWN = {"expected_tre_mm": 0.5, "tre_low_mm": 0.1, "tre_high_mm": 1.0}
-
-
-def point(true_mm, mode="desktop", expected_mm=0.5, **more):
-    return CalibrationPoint("T-001", mode, "task-1", expected_mm, (0.1, 1.0), true_mm, **more)
 
 
 def row(number, mode="desktop", **values):
@@ -26,7 +25,9 @@ def report(*rows):
 
 
 def test_trials_are_ordered_by_expected_error_and_judged_by_their_interval():
-    found = TreCalibration.of([point(2.0, expected_mm=0.9), point(0.3), point(0.05)])
+    trials = [{"true_tre_mm": 2.0, "expected_tre_mm": 0.9}, {"true_tre_mm": 0.3}]
+    trials += [{"true_tre_mm": 0.05}]
+    found = calibration_of(row(1, **KNOWN | errors) for errors in trials)
     assert [one.expected_mm for one in found.points] == [0.5, 0.5, 0.9]
     assert [one.is_inside for one in found.points] == [False, True, False]
     assert found.above == 1
@@ -45,7 +46,8 @@ def test_the_interval_of_a_proportion_is_wilsons(count, total):
 
 
 def test_a_chart_of_few_trials_is_drawn_with_a_note():
-    sentences = TreCalibration.of([point(0.3), point(0.4)], without_truth=3).sentences()
+    known = [row(1, **KNOWN, true_tre_mm=error) for error in (0.3, 0.4)]
+    sentences = calibration_of([*known, *[row(1, **KNOWN)] * 3]).sentences()
     assert "2 of 2 true errors" in sentences[0]
     assert sentences[1:] == [
         "2 trials can say nothing about a share.",

@@ -18,7 +18,7 @@ from rastrainer.trial.analysis import RevealedTruth, analyze_trial, score_argume
 from rastrainer.trial.record import TouchedPoint, TrialRecord
 from rastrainer.trial.touch_registration import unshifted_tre_mm
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.report.method_comparison import shifted_skin
+from rastrainer_simulator.report.target_errors import shifted_skin
 from Testing.simulator.report.test_report import words_of
 
 SKIN = SkinShift(4.0, 7, 0.5)
@@ -109,7 +109,9 @@ def test_a_study_stores_the_skin_shift_and_shows_it_in_tables_and_report(scenari
             record, analysis.fits.values(), analysis.target_errors, delivered=record_to_json(record)
         )
         study.add_results(record.trial_id, score=analysis.score)
-        study.set_truth(record.trial_id, truth.true_tre_mm, truth.head_to_world)
+        study.add_results(
+            record.trial_id, truth=RevealedTruth(tuple(truth.head_to_world), truth.true_tre_mm)
+        )
         (stored,) = study.history("P01")
     again = analyze_trial(stored.record, scenario).scored_as(stored.score, scenario, stored.truth)
     assert again.feedback.skin == analysis.feedback.skin

@@ -17,7 +17,8 @@ from rastrainer.trial.score_reference import score_reference
 from rastrainer.trial.scoring import ScoreMeasures, score_trial
 from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.report.report import methods_note, with_one_method
+from rastrainer_simulator.report.conclusions import left_out_methods
+from rastrainer_simulator.report.report import with_one_method
 from Testing.simulator.landmarked import LANDMARKS, OVER_THE_FACE, on_skin, with_landmarks
 
 SURFACE = RegistrationMethod.SURFACE
@@ -135,7 +136,7 @@ def test_a_report_compares_trials_of_one_method_and_names_the_others():
     ]
     data = StudyData("A study", tuple(rows))
     assert [row.number for row in with_one_method(data).trials] == [1]
-    assert "leaves out 1 trial by landmarks and 2 trials by surface" in methods_note(data)
-    assert methods_note(with_one_method(data)) == ""
+    assert left_out_methods(data) == {"landmarks": 1, "surface": 2}
+    assert left_out_methods(with_one_method(data)) == {}
     assert [row.number for row in with_one_method(replace(data, trials=rows[1:])).trials] == [2, 3]
     assert trials_csv(rows).splitlines()[2].split(",")[8] == "surface"

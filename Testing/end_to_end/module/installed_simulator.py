@@ -1,4 +1,4 @@
-"""What starts the simulator of this checkout from Slicer: a package to set it up, or a program."""
+"""Starts the simulator of this checkout from Slicer, from a package or as a program."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ class Player:
 
     @property
     def is_done(self) -> bool:
-        """Whether what was started is over; its errors are raised here."""
+        """Whether the started work is over; its errors are raised here."""
         if self._error is not None:
             raise self._error
         return self._thread is None or not self._thread.is_alive()

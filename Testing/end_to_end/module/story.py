@@ -20,7 +20,7 @@ FAST = ("--speed", "10", "--no-views", "--no-gamepad")
 
 
 class Story:
-    """The steps of a session, in their order; each presses buttons and waits for what they do."""
+    """The steps of a session, in order; each presses buttons and waits for their effect."""
 
     def __init__(self, host: Host, folder: Path, options: Sequence[str] = FAST) -> None:
         self.host = host

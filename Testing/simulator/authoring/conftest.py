@@ -1,4 +1,4 @@
-"""What the tests of making scenarios share."""
+"""Fixtures for the tests of making scenarios."""
 
 import pytest
 

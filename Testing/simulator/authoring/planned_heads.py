@@ -27,7 +27,7 @@ SEED = 1
 def setup_of(name: str, folder: Path) -> SimulationSetup:
     """Return the setup of a head by its name, which is written into a folder inside `folder`.
 
-    `colin27` is the one that comes with RASTrainer.
+    `colin27` comes with RASTrainer.
     """
     if name not in HEADS:
         return load_setup()

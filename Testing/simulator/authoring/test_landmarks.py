@@ -23,7 +23,7 @@ LARGEST_MM, USUAL_MM = 4.0, 2.0
 
 
 def other_head(seed):
-    """Return how another head differs from that of Colin27: size, shape, and where it lies."""
+    """Return how another head differs from Colin27's: size, shape and position."""
     random = np.random.default_rng(seed)
     scales, angles = random.uniform(0.86, 1.12, 3), np.radians(random.uniform(-8, 8, 3))
     shift, waves = random.uniform(-20, 20, 3), random.normal(0.0, 0.02, (6, 3))

@@ -1,4 +1,4 @@
-"""A hundred sets of tasks on three heads: what is promised of each holds for every seed."""
+"""A hundred sets of tasks on three heads: each keeps its promises with every seed."""
 
 from itertools import pairwise
 

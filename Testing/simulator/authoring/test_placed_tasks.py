@@ -39,7 +39,7 @@ def on_skin(planning):
 
 
 def read(planning, folder, points, labels=LABELS, count=1):
-    """Return the tasks of files with these points, what is wrong, and the warnings."""
+    """Return the tasks of files with these points, their errors, and the warnings."""
     path, warnings = folder / "mine.mrk.json", []
     write_markups(path, PointList(labels, points))
     files = (path,) * count

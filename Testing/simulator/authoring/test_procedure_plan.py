@@ -1,4 +1,4 @@
-"""The procedures of the default head can be carried out; infeasible ones are reported."""
+"""The procedures of the default head can be carried out; infeasible plans are reported."""
 
 import json
 import shutil
@@ -84,7 +84,7 @@ def test_every_structure_of_the_default_head_is_called_schematic_and_kept_clear_
 
 
 def test_a_line_on_which_the_robot_cannot_hold_the_guide_is_named(copy, capsys):
-    """From the right, between the robot's base and the head, there is no room for the arm."""
+    """The arm has no room on the right, between the robot's base and the head."""
     head = read_head_mesh(SCENARIO.head)
     near = np.abs(head.vertices[:, 1:] - STN[1:]).max(axis=1) < 3.0
     entry = head.vertices[near][head.vertices[near][:, 0].argmax()].round(2)

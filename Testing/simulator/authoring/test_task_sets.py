@@ -1,4 +1,4 @@
-"""Sets of tasks for an unknown head: what is proposed, and what is refused."""
+"""Sets of tasks for an unknown head: proposals and refusals."""
 
 from dataclasses import replace
 from itertools import pairwise

@@ -8,8 +8,9 @@ import stat
 import aiohttp
 import pytest
 
+from rastrainer.errors import InputError
 from rastrainer.json_records import record_from_json, record_to_json
-from rastrainer_simulator.board.seats import SEATS_FILE
+from rastrainer_simulator.board.seats import SEATS_FILE, checked_address, read_seats
 from rastrainer_simulator.net.views.access_control import BOARDS_FILE
 from rastrainer_simulator.presentation.messages import Seat, SeatNews
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
@@ -28,21 +29,13 @@ def link_is(link: str):
     return lambda tiles: [tile["link"] for tile in tiles] == [link]
 
 
-def test_no_request_is_answered_without_the_boards_key(board, simulator):
-    seat = board.add(simulator)
-    for path in ("/tiles", "/paired", f"/seat/{seat}/", f"/seat/{seat}/role"):
-        assert board.ask(path, key="x" * 40)[0] == 401
-    assert board.ask("/seats", "POST", key="x" * 40, name="Door")[0] == 401
-    assert board.ask(f"/seat/{seat}", "DELETE", key="x" * 40)[0] == 401
-
-
 def test_a_seats_fingerprint_is_shown_before_anything_is_sent_to_it(board, simulator):
     values = {"name": "Door", "address": simulator.address, "code": "no code"}
     assert board.ask("/seats", "POST", **values) == (200, {"fingerprint": simulator.fingerprint})
     assert board.tiles_until(lambda _tiles: True) == []
 
 
-def test_a_seats_state_is_shown_and_updated(board, simulator):
+def test_a_seats_state_is_shown_and_updated_for_each_teacher(board, simulator):
     simulator.served.presenter.reported_seat = AT_WORK
     seat = board.add(simulator)
     (tile,) = board.tiles_until(is_watching)
@@ -52,6 +45,7 @@ def test_a_seats_state_is_shown_and_updated(board, simulator):
     assert (shown["score"], shown["holder"], shown["phase"]) == (71.5, "gamepad", "idle")
     simulator.served.presenter.reported_seat = Seat("P08")
     board.tiles_until(lambda tiles: is_watching(tiles) and tiles[0]["seat"]["trainee"] == "P08")
+    assert board.tiles_until(is_watching) == board.tiles_until(is_watching, board.paired())
 
 
 @pytest.fixture
@@ -123,39 +117,42 @@ def test_a_removed_seat_is_forgotten_with_its_key(board, simulator):
     assert board.ask(f"/seat/{seat}/role")[0] == 404
 
 
-@pytest.mark.parametrize(
-    ("changes", "sentence"),
-    [
-        ({"address": "http://192.0.2.7:18945"}, "Only a simulator on this computer is watched"),
-        ({"address": "ftp://127.0.0.1:1"}, "is not the address of a simulator"),
-        ({"address": "https://127.0.0.1"}, "is not the address of a simulator"),
-        ({"address": "https://me:secret@127.0.0.1:1"}, "is not the address of a simulator"),
-        ({"address": "https://127.0.0.1:99999"}, "is not the address of a simulator"),
-        ({"address": "https://[127.0.0.1:1"}, "is not the address of a simulator"),
-        ({"address": "192.0.2.7"}, "or http://127.0.0.1:18945 on this computer."),
-        ({"address": "127.0.0.1:1", "fingerprint": ""}, "does not answer at http://127.0.0.1:1"),
-        ({"address": "localhost:1", "fingerprint": ""}, "does not answer at http://localhost:1"),
-        ({"address": "https://127.0.0.1:1"}, "does not answer at https://127.0.0.1:1"),
-        ({"fingerprint": "12:34"}, "32 pairs of hexadecimal digits"),
-        ({"name": ""}, "name must be printable text of 1 to 40 characters"),
-        ({"name": "a\nb"}, "name must be printable text"),
-        ({"code": "1"}, "This is not the pairing code that the simulator shows."),
-        ({"code": None}, "code must be printable text"),
-    ],
-)
-def test_a_problem_with_a_new_seat_is_reported_and_nothing_is_added(
-    board, simulator, changes, sentence
-):
+def test_a_problem_with_a_new_seat_is_reported_and_nothing_is_added(board, simulator):
     values = {
         "name": "Door",
         "address": simulator.address,
         "fingerprint": simulator.fingerprint,
         "code": simulator.served.code,
     }
-    status, answer = board.ask("/seats", "POST", **{**values, **changes})
-    assert status in (400, 409)
-    assert sentence in answer
+    for changes, sentence in (
+        ({"address": "http://192.0.2.7:18945"}, "Only a simulator on this computer is watched"),
+        ({"address": "127.0.0.1:1", "fingerprint": ""}, "does not answer at http://127.0.0.1:1"),
+        ({"address": "localhost:1", "fingerprint": ""}, "does not answer at http://localhost:1"),
+        ({"address": "https://127.0.0.1:1"}, "does not answer at https://127.0.0.1:1"),
+        ({"fingerprint": "12:34"}, "32 pairs of hexadecimal digits"),
+        ({"name": ""}, "name must be printable text of 1 to 40 characters"),
+        ({"code": "1"}, "This is not the pairing code that the simulator shows."),
+    ):
+        status, answer = board.ask("/seats", "POST", **{**values, **changes})
+        assert status in (400, 409)
+        assert sentence in answer
     assert board.tiles_until(lambda _tiles: True) == []
+
+
+@pytest.mark.parametrize(
+    "address",
+    [
+        "ftp://127.0.0.1:1",
+        "https://127.0.0.1",
+        "https://me:secret@127.0.0.1:1",
+        "https://127.0.0.1:99999",
+        "https://[127.0.0.1:1",
+        "192.0.2.7",
+    ],
+)
+def test_an_address_that_is_none_of_a_simulator_is_refused(address):
+    with pytest.raises(InputError, match="is not the address of a simulator"):
+        checked_address(address)
 
 
 def test_an_order_needs_the_pin_once_and_is_carried_out(board, simulator):
@@ -174,8 +171,15 @@ def test_an_order_needs_the_pin_once_and_is_carried_out(board, simulator):
     assert board.ask(path, "POST", order="pause") == (409, "Nothing is running.")
 
 
-def test_a_spectator_of_the_board_can_neither_give_orders_nor_change_it(board, simulator):
+def test_only_a_paired_teacher_gives_orders_or_changes_the_board(board, simulator):
     seat = board.add(simulator)
+    for path in ("/tiles", "/paired", f"/seat/{seat}/", f"/seat/{seat}/role"):
+        assert board.ask(path, key="x" * 40)[0] == 401
+    assert board.ask("/seats", "POST", key="x" * 40, name="Door")[0] == 401
+    assert board.ask(f"/seat/{seat}", "DELETE", key="x" * 40)[0] == 401
+    headers = {"Authorization": f"Bearer {board.key}", "Origin": "https://elsewhere.example"}
+    for path, method in (("/seats", "POST"), (f"/seat/{seat}", "DELETE"), ("/tiles", "GET")):
+        assert request(board.url, path, method, headers=headers)[0] == 403
     key = board.paired("spectator")
     assert len(board.tiles_until(is_watching, key)) == 1
     assert board.ask(f"/seat/{seat}/role", key=key) == (200, {"role": "spectator"})
@@ -183,13 +187,6 @@ def test_a_spectator_of_the_board_can_neither_give_orders_nor_change_it(board, s
         assert board.ask(path, method, key=key, order="pause", pin=PIN)[0] == 403
     assert board.ask("/seats", "POST", key=key, name="Door")[0] == 403
     assert simulator.served.presenter.calls == []
-
-
-def test_no_page_from_another_origin_reaches_the_board(board, simulator):
-    seat = board.add(simulator)
-    headers = {"Authorization": f"Bearer {board.key}", "Origin": "https://elsewhere.example"}
-    for path, method in (("/seats", "POST"), (f"/seat/{seat}", "DELETE"), ("/tiles", "GET")):
-        assert request(board.url, path, method, headers=headers)[0] == 403
 
 
 def live(board, seat, first):
@@ -218,7 +215,7 @@ def live(board, seat, first):
     return board.thread.run(read())
 
 
-def test_a_seat_is_watched_live_and_nothing_its_page_sends_reaches_it(board, simulator):
+def test_a_seat_is_seen_and_heard_live_and_no_input_of_its_page_reaches_it(board, simulator):
     seat = board.add(simulator)
     kinds = live(board, seat, SPECTATOR)
     assert {"welcome", "screen", "state"} <= set(kinds)
@@ -226,10 +223,6 @@ def test_a_seat_is_watched_live_and_nothing_its_page_sends_reaches_it(board, sim
     refused = "This stream is only for watching: the first message must be a spectator's hello."
     assert live(board, seat, HELLO) == refused
     assert simulator.served.presenter.calls == []
-
-
-def test_sounds_come_from_the_seat_and_other_paths_are_not_found(board, simulator):
-    seat = board.add(simulator)
     headers = {"Authorization": f"Bearer {board.key}"}
     status, found, content = request(board.url, f"/seat/{seat}/sounds/touch.wav", headers=headers)
     assert (status, found["Content-Type"], content[:4]) == (200, "audio/wav", b"RIFF")
@@ -313,17 +306,7 @@ def test_a_seat_with_too_many_warnings_shows_the_first_and_an_incomplete_one_is_
     "content",
     ["[]", '{"seats": [{}]}', '{"seats": 7}', "{", '{"seats": [{"id": "../../x"}]}', ""],
 )
-def test_a_damaged_list_of_seats_is_named_and_left_as_it_is(open_board, tmp_path, content):
-    path = tmp_path / "teacher" / SEATS_FILE
-    path.parent.mkdir()
-    path.write_text(content, encoding="utf-8")
+def test_a_damaged_list_of_seats_is_named(tmp_path, content):
+    (tmp_path / SEATS_FILE).write_text(content, encoding="utf-8")
     with pytest.raises(ValueError, match=SEATS_FILE):
-        open_board()
-    assert path.read_text(encoding="utf-8") == content
-
-
-def test_two_teachers_see_the_same(board, simulator):
-    simulator.served.presenter.reported_seat = AT_WORK
-    board.add(simulator)
-    other = board.paired()
-    assert board.tiles_until(is_watching) == board.tiles_until(is_watching, other)
+        read_seats(tmp_path)

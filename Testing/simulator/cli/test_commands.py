@@ -14,24 +14,32 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from rastrainer import transforms
+from rastrainer import protocol, transforms
 from rastrainer.errors import InputError
 from rastrainer.files.point_files import write_markups
 from rastrainer.files.point_list import PointList
+from rastrainer.protocol import Mode, RegistrationMethod
+from rastrainer.registration.fits import KINDS, RIGID
 from rastrainer.registration.registration import register
+from rastrainer.scenario.library import USER_LIBRARY
+from rastrainer.scenario.scenario import UNKNOWN_LICENSE
+from rastrainer.study.database.database import EXAMPLE
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import StudyProtocol
-from rastrainer_simulator.cli.main import _parser, main
+from rastrainer.study.ratings import FORMS
+from rastrainer_simulator.cli.export import FORMATS
+from rastrainer_simulator.cli.main import command_parser, main, read_commands, run_command
 from rastrainer_simulator.cli.replays import _summary
+from rastrainer_simulator.export.grades import PLATFORMS, RULES
+from rastrainer_simulator.export.xapi import HOME_PAGE
+from rastrainer_simulator.ops.instructor_pin import PIN_WORDS
 from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record, make_traced
 
 STUDY = Path(__file__).parents[3] / "assets" / "studies" / "published.csv"
 
 
 def run(*words):
-    words = [str(word) for word in words]
-    arguments = _parser(words).parse_args(words)
-    return arguments.run(arguments)
+    return run_command([str(word) for word in words])
 
 
 @pytest.fixture
@@ -178,7 +186,7 @@ def options_of(parser, name="rastrainer"):
 
 def test_the_help_of_every_command_has_the_default_of_every_option_once():
     checked = 0
-    for command, text, options in options_of(_parser([])):
+    for command, text, options in options_of(command_parser()):
         whole = " ".join(text.split())
         for option in options:
             assert option.help, (command, option.option_strings)
@@ -191,6 +199,36 @@ def test_the_help_of_every_command_has_the_default_of_every_option_once():
                 )
                 assert "default: " in said
     assert checked > 40
+
+
+def test_the_documentation_lists_every_command_as_its_help_does():
+    page = (Path(__file__).parents[3] / "docs/how-to/use-the-command-line.md").read_text("utf-8")
+    rows = [f"| `{name}` | {command.help} |" for name, command in read_commands().items()]
+    assert "\n".join(rows) in page
+
+
+def test_values_in_the_list_of_commands_are_those_of_the_product():
+    lines = {name: command.arguments for name, command in read_commands().items()}
+
+    def has(command, start):
+        assert any(line.startswith(start) for line in lines[command]), (command, start)
+
+    has("register", f"--type {{{','.join(KINDS)}}} = {RIGID}  ")
+    has("export", f"--format {{{','.join(FORMATS)}}} *  ")
+    has("export", f"--home-page URL = {HOME_PAGE}  ")
+    has("export", f"--grades {{{','.join(PLATFORMS)}}}  ")
+    has("export", f"--rule {{{','.join(RULES)}}} = ")
+    has("export", f"--mode {{{','.join(each.value for each in Mode)}}}  ")
+    has("export", f"--method {{{','.join(each.value for each in RegistrationMethod)}}} = ")
+    has("rate", f"--form {{{','.join(FORMS)}}} *  ")
+    has("simulator", f"--host HOST = {protocol.DEFAULT_HOST}  ")
+    has("simulator", f"--port PORT(0..65535) = {protocol.DEFAULT_PORT}  ")
+    has("doctor", f"--port PORT(0..65535) = {protocol.DEFAULT_PORT}  ")
+    has("doctor", f"--view-port PORT(0..65535) = {protocol.DEFAULT_VIEW_PORT}  ")
+    has("scenario list", f"--library DIR = ~/{USER_LIBRARY}  ")
+    has("scenario build", f"--license LICENSE = {UNKNOWN_LICENSE}  ")
+    has("report", f"STUDY  a study's file, or its address in PostgreSQL, such as {EXAMPLE}")
+    assert f"Asks for a PIN of {PIN_WORDS}" in read_commands()["instructor-pin"].description
 
 
 def test_what_is_measured_of_a_replayed_trial_stands_apart_from_its_name():
@@ -306,7 +344,7 @@ def words(study, *more, novices=NOVICES, experts=EXPERTS):
 
 def means(path, names):
     with Study.open(path) as study:
-        return [sum(t.score for t in study.past_trials(name)[-3:]) / 3 for name in names]
+        return [sum(t.score for t in study.attempts(name)[-3:]) / 3 for name in names]
 
 
 def test_the_pass_mark_lies_between_the_groups_last_trials_without_trial_runs(study, capsys):
@@ -316,7 +354,7 @@ def test_the_pass_mark_lies_between_the_groups_last_trials_without_trial_runs(st
     assert max(means(study, NOVICES)) < mark < min(means(study, EXPERTS))
     assert "here it is 0 % and 0 %" in output
     with Study.open(study) as opened:
-        assert [trial.task for trial in opened.past_trials("N0")] == ["task-1"] * 4
+        assert [trial.task for trial in opened.attempts("N0")] == ["task-1"] * 4
 
 
 def test_trials_by_two_methods_give_no_pass_mark(study, capsys):

@@ -14,6 +14,7 @@ from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.database.study import Study
+from rastrainer.trial.analysis import RevealedTruth
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.virtual.method_trials import MethodStudy
 from Testing.domain.trial.trial_records import make_record
@@ -105,7 +106,7 @@ def test_a_study_is_registered_by_every_method_that_its_trials_allow(
     record = make_record(points=points, method="landmarks-surface", trace=drawn)
     with Study.open(tmp_path / "study.db") as study:
         study.add_trial(record)
-        study.set_truth(record["trialId"], 1.0, pose.ravel().tolist())
+        study.add_results(record["trialId"], truth=RevealedTruth(tuple(pose.ravel().tolist()), 1.0))
     words = ["compare-methods", str(tmp_path / "study.db"), "--scenario", str(landmarked)]
     assert main([*words, "--json"]) == 0
     methods = json.loads(capsys.readouterr().out)["methods"]

@@ -1,4 +1,4 @@
-"""`rastrainer doctor` finds what is missing and says what to do."""
+"""`rastrainer doctor` finds missing parts and suggests remedies."""
 
 import json
 import socket
@@ -98,7 +98,7 @@ def test_a_gamepad_is_named_and_a_missing_one_is_a_warning():
 
 @pytest.fixture
 def no_slicer(tmp_path, monkeypatch):
-    """Return the only folder in which Slicer is looked for, where there is none."""
+    """Return the only folder that is searched for Slicer, which is not there."""
     monkeypatch.setenv("PATH", "")
     monkeypatch.delenv("SLICER_HOME", raising=False)
     monkeypatch.setenv("HOME", str(tmp_path / "home"))

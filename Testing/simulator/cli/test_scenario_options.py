@@ -8,13 +8,13 @@ import pytest
 from rastrainer.head.trial_head import Perturbation
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli.main import _parser, main
-from rastrainer_simulator.cli.scenario_options import options_of
+from rastrainer_simulator.cli.main import command_parser, main
+from rastrainer_simulator.cli.scenario import options_of
 
 
 def wished(*words):
     given = ["scenario", "tasks", "draft", *words]
-    return options_of(_parser(given).parse_args(given), "the volume")
+    return options_of(command_parser().parse_args(given), "the volume")
 
 
 def test_omitted_options_have_their_defaults(tmp_path):

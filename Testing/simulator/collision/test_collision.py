@@ -3,7 +3,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.collision.clearance import FAR, SHAFT_NEAR
-from rastrainer_simulator.collision.collision import Collision, Surroundings
+from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.robot_shape import ArmCapsules
 from Testing.simulator.collision.brute_force import (
     segment_to_segments,
@@ -43,7 +43,7 @@ def collision(head, head_to_world):
 
 
 def placed(head, head_to_world, **surroundings):
-    found = Collision(SHAPE, *head, Surroundings(**surroundings))
+    found = Collision(SHAPE, *head, **surroundings)
     found.set_head_pose(head_to_world)
     return found
 
@@ -68,7 +68,7 @@ def wander(count, seed, step=0.02):
     """Joint angles of a random walk from home."""
     random, q = np.random.default_rng(seed), np.array(ROBOT.home)
     for _ in range(count):
-        q = np.clip(q + random.normal(size=7) * step, ROBOT.lower, ROBOT.upper)
+        q = np.clip(q + random.normal(size=7) * step, *ROBOT.limits)
         yield q
 
 
@@ -268,8 +268,7 @@ def test_above_the_head_the_tip_is_the_nearest_part(head, collision):
     [
         (np.diag([1.0, 1.0, 2.0, 1.0]), "should be rigid"),
         (np.diag([1.0, 1.0, -1.0, 1.0]), "should be rigid"),
-        (np.full((4, 4), np.nan), "finite numbers"),
-        (np.eye(3), "4 × 4 matrix"),
+        (np.full((4, 4), np.nan), "should be rigid"),
         (np.ones((4, 4)), "should be rigid"),
     ],
 )

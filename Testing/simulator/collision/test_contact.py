@@ -8,7 +8,7 @@ import pytest
 from rastrainer import transforms
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.collision.collision import Collision, Surroundings
+from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.contact import REST
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from Testing.simulator.collision.brute_force import vtk_distance
@@ -32,7 +32,7 @@ DOWN = np.array([0.0, 0.0, -1.0])
 
 
 def collision_with(surface, center):
-    found = Collision(SHAPE, *surface, Surroundings(stand_radius=0.0))
+    found = Collision(SHAPE, *surface, stand_radius=0.0)
     found.set_head_pose(at(surface[0], center))
     return found
 

@@ -1,5 +1,4 @@
-import re
-import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,7 +16,7 @@ from rastrainer_simulator.collision.robot_shape import (
     surface_points,
 )
 from rastrainer_simulator.robot.meshes import load_meshes
-from rastrainer_simulator.robot.model import load_robot
+from rastrainer_simulator.robot.model import FOLDER, load_robot, read_prepared, robot_model
 from Testing.simulator.collision.heads_and_arms import KINEMATICS, ROBOT, SHAPE, ball
 
 MESHES = load_meshes(ROBOT, "collision")
@@ -122,31 +121,23 @@ def test_the_same_robot_always_gets_the_same_capsules():
             assert a.radius == b.radius
 
 
-def test_a_robot_without_meshes_is_a_rod_from_the_tip_to_the_wrist(tmp_path):
-    text = asset_path("robots", "iiwa7", "iiwa7.urdf").read_text(encoding="utf-8")
-    bare = tmp_path / "bare.urdf"
-    bare.write_text(re.sub(r"(?s)<(visual|collision)>.*?</\1>", "", text), encoding="utf-8")
-    robot = load_robot(bare)
+def test_a_robot_without_meshes_is_a_rod_from_the_tip_to_the_wrist():
+    robot = replace(ROBOT, meshes=())
     shape = robot_shape(robot)
     (rod,) = shape.tool.capsules
     assert shape.links == ()
     np.testing.assert_allclose(rod.start, [0.0, 0.0, -SHAFT_START], atol=1e-9)
-    np.testing.assert_allclose(rod.end, [0.0, 0.0, -robot.geometry.tool], atol=1e-9)
+    np.testing.assert_allclose(rod.end, [0.0, 0.0, -robot.arm.tool], atol=1e-9)
     vertices, triangles = ball(0.05, 3)
     found = Collision(shape, vertices, triangles).check(KINEMATICS.links(robot.home))
     assert (found.links_m, found.self_m) == (FAR, FAR)
     assert found.shaft_m == pytest.approx(found.tip_m, abs=0.02)
 
 
-def test_the_flange_is_the_tool_if_it_carries_none(tmp_path):
-    text = asset_path("robots", "iiwa7", "iiwa7.urdf").read_text(encoding="utf-8")
-    folder = tmp_path / "arm"
-    shutil.copytree(asset_path("robots", "iiwa7"), folder)
-    toolless = re.sub(r'(?s)<link name="iiwa_link_tool">.*?</link>', "", text)
-    toolless = re.sub(r'(?s)<joint name="iiwa_joint_tool(_tip)?".*?</joint>', "", toolless)
-    tip = re.search(r'(?s)<link name="iiwa_tool_tip_ee"( />|>.*?</link>)', toolless).group(0)
-    (folder / "iiwa7.urdf").write_text(toolless.replace(tip, ""), encoding="utf-8")
-    robot = load_robot(folder / "iiwa7.urdf")
+def test_the_flange_is_the_tool_if_it_carries_none():
+    model = read_prepared()["model"]
+    toolless = {**model, "links": model["links"][:8], "tip": "iiwa_link_7"}
+    robot = robot_model(toolless, asset_path(*FOLDER))
     assert robot.tip.name == "iiwa_link_7"
     shape = robot_shape(robot)
     assert shape.tool.name == "iiwa_link_7"

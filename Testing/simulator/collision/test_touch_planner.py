@@ -44,8 +44,8 @@ def test_in_a_touch_only_the_tip_is_at_the_skin_and_the_tool_leans_as_stated(
     touch = planner.touch(position, normal)
     kinematics = make_kinematics(robot)
     assert np.allclose(kinematics.tip(touch.q)[:3, 3], position, atol=1e-8)
-    assert (np.array(touch.q) >= robot.lower).all()
-    assert (np.array(touch.q) <= robot.upper).all()
+    assert np.all(np.array(touch.q) >= robot.limits[0])
+    assert np.all(np.array(touch.q) <= robot.limits[1])
     leaning = np.degrees(np.arccos(min(-touch.direction @ normal, 1.0)))
     assert leaning == pytest.approx(touch.leaning_deg, abs=1e-3)
     found = collision.check(kinematics.links(touch.q))
@@ -68,15 +68,14 @@ def test_the_likely_direction_is_tried_first_and_no_other_is_missed(planner):
     for normal in map(np.array, OUTWARD.values()):
         outward = normal / np.linalg.norm(normal)
         place = CENTER + RADIUS * outward
-        found = planner.working_direction(place, outward)
-        leaning, direction = list(tool_directions(outward))[found]
         touch = planner.touch(place, outward)
+        leaning, direction = list(tool_directions(outward))[touch.number]
         assert touch.leaning_deg == leaning
         assert np.array_equal(touch.direction, direction)
-        assert planner.working_direction(place, outward, likely=24) is not None
-        assert planner.working_direction(place, outward, likely=found) == found
+        assert planner.touch(place, outward, likely=24) is not None
+        assert planner.touch(place, outward, likely=touch.number).number == touch.number
     below = CENTER - [0, 0, RADIUS]
-    assert planner.working_direction(below, np.array([0.0, 0.0, -1.0]), likely=7) is None
+    assert planner.touch(below, np.array([0.0, 0.0, -1.0]), likely=7) is None
 
 
 def test_a_place_is_touchable_only_if_it_is_touchable_in_every_pose(planner, collision):

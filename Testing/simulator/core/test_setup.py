@@ -12,19 +12,8 @@ import pytest
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.collision.robot_shape import robot_shape
-from rastrainer_simulator.core.setup import PREPARED_NAME, load_setup, read_prepared
+from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.robot.model import DEFAULT_URDF, load_robot
-
-URDF = asset_path(*DEFAULT_URDF)
-
-
-@pytest.fixture
-def copied(tmp_path):
-    """Copy the robot's folder and return the path of its URDF."""
-    folder = tmp_path / "iiwa7"
-    shutil.copytree(URDF.parent, folder, ignore=shutil.ignore_patterns("visual"))
-    return folder / URDF.name
 
 
 def same(one, other) -> bool:
@@ -37,10 +26,9 @@ def same(one, other) -> bool:
     return bool(np.array_equal(one, other)) and type(one) is type(other)
 
 
-def test_the_prepared_robot_matches_its_files_to_the_last_bit():
-    setup, robot = load_setup(), load_robot()
-    assert same(setup.robot, robot)
-    assert same(setup.shape, robot_shape(robot))
+def test_the_prepared_shape_is_that_of_the_meshes_to_the_last_bit():
+    setup = load_setup()
+    assert same(setup.shape, robot_shape(setup.robot))
 
 
 def test_a_simulator_starts_without_the_packages_that_read_meshes():
@@ -59,25 +47,6 @@ def test_a_simulator_starts_without_what_only_reports_need():
     )
     found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
     assert found.stdout.strip() == "[]", found.stderr
-
-
-@pytest.mark.parametrize("changed", ["iiwa7.urdf", "meshes/collision/link_3.stl"])
-def test_the_prepared_robot_is_not_used_once_a_file_has_changed(copied, changed):
-    assert read_prepared(copied) is not None
-    path = copied.parent / changed
-    path.write_bytes(path.read_bytes() + b"\n")
-    assert read_prepared(copied) is None
-
-
-@pytest.mark.parametrize("text", ["", "[]", "{}", "nonsense", None])
-def test_a_robot_is_read_from_its_files_if_no_usable_prepared_one_exists(copied, text):
-    prepared = copied.parent / PREPARED_NAME
-    if text is None:
-        prepared.unlink()
-    else:
-        prepared.write_text(text)
-    setup = load_setup(urdf_path=copied)
-    assert same(setup.shape, load_setup().shape)
 
 
 def missing(path):

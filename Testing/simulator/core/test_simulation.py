@@ -156,7 +156,7 @@ def test_the_start_pose_is_clear_of_the_head_for_every_seed(idle):
 
 def test_the_tip_goes_where_the_stick_points_and_no_joint_is_ever_too_fast(trial, setup):
     limits = np.array(setup.robot.velocity) * DT * (1 + 1e-9)
-    lower, upper = setup.robot.lower, setup.robot.upper
+    lower, upper = setup.robot.limits
     for operator_input in random_inputs(4, 600):
         before = np.array(trial.state.q)
         trial.step(operator_input)

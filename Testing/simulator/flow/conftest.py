@@ -100,7 +100,7 @@ def put_back(simulation):
     start = {"task": "task-1", "trainee": "nobody", "mode": "desktop", "seed": 3}
     commands = (OperatorCommand("Abort"), OperatorCommand("StartTask", start))
     simulation.step(0.004, OperatorInput(commands=(*commands, OperatorCommand("Abort"))))
-    simulation._training._starter._number = 0
+    simulation._training._number = 0
     simulation.restart_from(StartingPoint())
 
 

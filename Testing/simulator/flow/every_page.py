@@ -28,8 +28,7 @@ from rastrainer_simulator.flow.pages import (
     trainee_id,
     trial_review,
 )
-from rastrainer_simulator.flow.pages.session_page import SessionPage, ShownPage
-from rastrainer_simulator.flow.pages.trainee_id import QuestionnairePage
+from rastrainer_simulator.flow.pages.session_page import PageKind, SessionPage
 from rastrainer_simulator.flow.pages.trial_review import MOST_TRIALS
 from rastrainer_simulator.flow.session.open_pages import OpenPages
 from rastrainer_simulator.flow.session.preferences import InstructorLock
@@ -207,7 +206,7 @@ class _Desk:
     undo = load = leave = None
 
     def __init__(self, texts):
-        self.texts = texts
+        self.say = partial(texts.say, number=5, count=20)
 
 
 def _screens_of_raters(texts, language: str) -> dict[str, Screen]:
@@ -232,7 +231,7 @@ def names_of_pages() -> set[str]:
     names = (each.name for each in iter_modules(pages.__path__, f"{pages.__name__}."))
     modules = (trial_screen, procedure_screen, *map(import_module, names))
     found = [value for module in modules for value in vars(module).values()]
-    kinds = {v.args[0] for v in found if isinstance(v, partial) and v.func is ShownPage}
+    kinds = {value.name for value in found if isinstance(value, PageKind)}
     classes = [v for v in found if isinstance(v, type) and issubclass(v, SessionPage) and v.name]
     return kinds | {each.name for each in classes}
 
@@ -261,20 +260,20 @@ def _pages(session) -> Iterator[SessionPage]:
     for simple in (start.start_page, start.quit_page, start.settings_page):
         yield simple(session)
     yield start.PinPage(session)
-    yield introduction.IntroductionPage(session)
+    yield introduction.introduction_page(session)
     yield controls.controls_page(session)
     yield controls.PadTestPage(session)
-    yield controls.BindingsPage(session)
+    yield controls.bindings_page(session, device=keys)
     yield controls.ListenPage(session, keys, touch)
     yield controls.conflict_page(session, keys, touch, "KeyC")
     with_curriculum(session)
     yield experiment.ExperimentPage(session)
-    yield experiment.AssignmentsPage(session)
-    yield trainee_id.KeyboardPage(session, lambda *_: None)
+    yield experiment.assignments_page(session)
+    yield trainee_id.keyboard_page(session, lambda *_: None)
     yield trainee_id.clicked_id_page(session, lambda *_: None)
     yield trainee_id.character_page(session, lambda *_: None, trainee_id.ROWS[0])
-    yield experiment.ScenarioPage(session)
-    yield QuestionnairePage(session, QUESTIONNAIRE)
+    yield experiment.scenario_page(session, session.services.list_scenarios())
+    yield trainee_id.questionnaire_page(session, QUESTIONNAIRE)
     for over_a_trial in (
         trial_screen.trial_page,
         trial_screen.PreparingPage,
@@ -292,8 +291,8 @@ def _pages(session) -> Iterator[SessionPage]:
     session.state = replace(session.state, training=AT_PROCEDURE)
     yield procedure_screen.procedure_page(session)
     session.state = replace(session.state, training=PROCEDURE_SCORED)
-    yield procedure.ProcedureErrorsPage(session)
-    yield procedure.ProcedureLinesPage(session)
+    yield procedure.procedure_errors_page(session)
+    yield trial_review.ErrorsPage(session, has_lines=True)
     session.state = replace(session.state, training=SCORED)
     yield introduction.tutorial_page(session)
     yield introduction.tutorial_done_page(session, LEARNED)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from unicodedata import east_asian_width
 
 import pytest
@@ -21,7 +20,7 @@ def screens_in(presenter: FlowPresenter, language: str) -> dict[str, Screen]:
     """Return a screen of each page in a language, or each in the one where it is longest."""
     if language != LONGEST:
         session = presenter._session
-        session.prefer(replace(session.preferences, language=language))
+        session.prefer(language=language)
         return every_screen(presenter)
     spoken = [screens_in(presenter, tag) for tag in LANGUAGES]
     return {name: max((screens[name] for screens in spoken), key=letters) for name in spoken[0]}

@@ -6,7 +6,6 @@ import pytest
 
 from rastrainer.protocol import Phase
 from rastrainer_simulator.flow import operated_views
-from rastrainer_simulator.presentation.messages import Frames
 from Testing.simulator.flow.trainee import Keys
 
 VIEW = 1
@@ -60,7 +59,7 @@ def test_the_trainee_may_begin_without_the_picture_or_leave(waiting):
 
 
 def test_a_trial_whose_view_leaves_while_it_waits_stays_paused(waiting):
-    waiting.presenter.on_frames(VIEW, Frames(0, 0, 60.0))
+    waiting.presenter.on_frames(VIEW, 0, 0, 60.0)
     waiting.presenter.on_silence(VIEW)
     waiting.step(100)
     # A view that loads may be too busy to say anything.

@@ -13,7 +13,6 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.presentation.feedback_event import (
-    FEEDBACK_EFFECTS,
     FeedbackEvent,
     feedback_event,
     touch_feedback,
@@ -85,16 +84,15 @@ def test_touch_undo_proximity_contact_and_finish_give_sound_and_vibration_exactl
     assert counted["proximity-in"] == counted["proximity-out"] >= 1
     assert counted["on-skin"] >= counted["contact-out"] >= 1
     assert counted["contact"] >= 1
-    strengths = [FEEDBACK_EFFECTS[each].rumble for each in expected]
+    strengths = [each.rumble for each in expected]
     assert [low for low, _ in felt if low > 0.0] == pytest.approx(strengths, abs=1e-4)
     numbers = [feedback.number for feedback in pilot.watcher.feedbacks]
     assert numbers == list(range(1, len(numbers) + 1))
 
 
 def test_every_named_sound_ships_with_rastrainer():
-    sounds = {effect.sound for effect in FEEDBACK_EFFECTS.values()} - {""}
+    sounds = {each.sound for each in FeedbackEvent} - {""}
     assert sounds == {path.stem for path in asset_path("sounds").glob("*.wav")}
-    assert set(FEEDBACK_EFFECTS) == set(FeedbackEvent)
 
 
 def test_muted_sounds_have_zero_volume(trainee):
@@ -128,9 +126,7 @@ def test_each_event_maps_to_its_feedback(kind, data, meant):
 def test_reaching_the_skin_where_a_touch_counts_plays_a_soft_tone_and_no_alarm():
     reached = Event(EventKind.PROXIMITY, 0.0, {"from": "proximity", "to": "contact"})
     assert feedback_event(reached, TouchStage.ON_SKIN) is FeedbackEvent.ON_SKIN
-    soft, alarm = (
-        FEEDBACK_EFFECTS[event] for event in (FeedbackEvent.ON_SKIN, FeedbackEvent.CONTACT)
-    )
+    soft, alarm = FeedbackEvent.ON_SKIN, FeedbackEvent.CONTACT
     assert soft.sound != alarm.sound
     assert soft.rumble < 0.5 * alarm.rumble
 

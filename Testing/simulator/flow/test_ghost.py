@@ -50,7 +50,7 @@ class GhostPlace(Place):
 
     def prefer(self, **changes):
         session = self.presenter._session
-        session.prefer(replace(session.preferences, **changes))
+        session.prefer(**changes)
 
     def start_and_load(self, task="task-1", trainee="P07"):
         """Begin a task, and let no time of it pass while the ghost is being loaded."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -62,7 +60,7 @@ def test_a_previously_used_id_is_one_click_away(clicking, outside):
 
 def test_the_arm_is_driven_and_touches_are_made_and_undone_by_clicks_and_dragged_sticks(clicking):
     session = clicking.presenter._session
-    session.prefer(replace(session.preferences, order="any"))
+    session.prefer(order="any")
     session.trainee = "P07"
     go_to_experiment(clicking)
     clicking.hands.click("trial-run")
@@ -183,7 +181,7 @@ def test_the_tutorial_and_a_scored_trial_are_done_with_the_mouse_alone(newcomer,
 
 @pytest.mark.parametrize("newcomer", ["page"], indirect=True)
 def test_an_optional_tutorial_is_skipped_and_a_trial_scored_with_the_mouse_alone(newcomer, outside):
-    newcomer.presenter._session.prefer(Preferences(tutorial="optional"))
+    newcomer.presenter._session.prefer(tutorial="optional")
     enter_id(newcomer)
     newcomer.choose("tutorial")
     newcomer.until_menu(None)

@@ -1,6 +1,5 @@
 """The menu in which a trainee chooses a head, with its pictures."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -75,7 +74,7 @@ def test_a_refused_head_changes_nothing_and_the_reason_is_shown(at_heads, heads)
 
 def test_why_a_head_could_not_be_loaded_is_said_in_the_trainees_language(at_heads, heads):
     session = at_heads.presenter._session
-    session.prefer(replace(session.preferences, language="de"))
+    session.prefer(language="de")
     at_heads.choose("head mine")
     at_heads.step()
     heads.loads[0][1].set_result(Answer(0, False, FAILED))
@@ -93,7 +92,7 @@ def test_the_menu_goes_back_by_itself_once_the_head_is_loaded(at_heads, heads):
 
 def test_nothing_begins_in_the_menus_while_a_client_loads_a_head(at_heads):
     session = at_heads.presenter._session
-    session.prefer(replace(session.preferences, tutorial="required"))
+    session.prefer(tutorial="required")
     at_heads.tap("back")
     at_heads.until_menu("experiment")
     begun = at_heads.loop.begin_replacement()
@@ -113,7 +112,7 @@ def test_a_trial_refused_while_a_head_is_being_loaded_says_so_in_the_trainees_la
     at_heads,
 ):
     session = at_heads.presenter._session
-    session.prefer(replace(session.preferences, language="de"))
+    session.prefer(language="de")
     begun = at_heads.loop.begin_replacement()
     at_heads.until(begun.done)
     start_task(session, "trial-run")

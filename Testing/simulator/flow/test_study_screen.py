@@ -160,7 +160,7 @@ def test_a_questionnaire_is_answered_line_by_line_and_submitted_only_when_comple
     (answers,) = tuple(guide.answers.values())
     assert answers == StepAnswers("P07", 5, "sus", (2,) * 9 + (3,))
     assert form.menu.paragraphs == (
-        "Your answers to SUS are on their way to 3D Slicer, which will say what comes next.",
+        "Your answers to SUS are on their way to 3D Slicer, which will announce the next step.",
     )
 
 
@@ -175,7 +175,7 @@ def test_the_performance_line_says_that_its_ends_differ_from_the_others(
     menu, guide, language, performance, effort
 ):
     session = menu.presenter._session
-    session.prefer(replace(session.preferences, language=language))
+    session.prefer(language=language)
     tell(menu, guide, replace(SUS, questionnaire="nasa-tlx"))
     menu.choose("answer")
     menu.until_menu("questionnaire")
@@ -223,7 +223,7 @@ def test_a_requested_trial_is_not_started_twice_before_slicer_sends_the_next_ste
     guide.note_registered("P07", "task-2", "desktop")
     menu.step(20)
     assert enabled(menu) == []
-    assert menu.menu.paragraphs == ("Task 2 is done. 3D Slicer will say what comes next.",)
+    assert menu.menu.paragraphs == ("Task 2 is done. 3D Slicer will announce the next step.",)
 
 
 def test_the_oldest_steps_are_forgotten_beyond_the_limit():

@@ -41,7 +41,7 @@ def traced(trainee):
 
 def prefer(trainee, guidance):
     session = trainee.presenter._session
-    session.prefer(replace(session.preferences, guidance=guidance))
+    session.prefer(guidance=guidance)
 
 
 def landmarks_touched(trainee, task="task-1"):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -85,7 +83,7 @@ def test_tasks_wait_for_the_previous_one_unless_the_instructor_disables_that(tra
     assert not trainee.item("order").is_enabled
     assert "preferences.json" in trainee.item("order").help
     session = trainee.presenter._session
-    session.prefer(replace(session.preferences, order="any"))
+    session.prefer(order="any")
     trainee.tap("back")
     trainee.until_menu("start")
     trainee.choose("train")
@@ -228,7 +226,7 @@ def test_guidance_fades_from_task_to_task_unless_the_setting_says_otherwise(
     trainee, outside, choice, task, guidance
 ):
     session = trainee.presenter._session
-    session.prefer(replace(session.preferences, guidance=choice))
+    session.prefer(guidance=choice)
     trainee.start(task)
     screen = trainee.presenter.screen
     assert any("mm" in fact for fact in screen.status) is (guidance == "words")

@@ -37,7 +37,7 @@ def session_of(trainee):
 def go_to_experiment(trainee, rule="required"):
     """Go from the start menu to that of the tasks, as P07."""
     session = session_of(trainee)
-    session.prefer(replace(session.preferences, tutorial=rule))
+    session.prefer(tutorial=rule)
     session.trainee = "P07"
     trainee.choose("train")
     for menu, item in (("introduction", "skip"), ("controls", "next")):
@@ -186,7 +186,7 @@ def test_a_tip_beside_the_center_is_not_praised_but_led_there(learner):
     assert status(learner)[1] == "Step 10 of 14"
     said = learner.presenter.screen.instruction
     assert said.text in [
-        f"On the skin, {mm} mm beside point 1: move the tip to its center." for mm in (4, 5, 6)
+        f"On the skin, {mm} mm from point 1: move the tip to its center." for mm in (4, 5, 6)
     ]
     assert said.tone == "warning"
     learner.tap("touch")
@@ -335,7 +335,7 @@ def test_slicer_opens_the_tutorial_before_the_trial_run(trainee):
     session = session_of(trainee)
     presenter = trainee.presenter
     assert presenter.start_tutorial("P07", "desktop").data == {"isNeeded": False}
-    session.prefer(replace(session.preferences, tutorial="required"))
+    session.prefer(tutorial="required")
     assert presenter.start_tutorial("P07", "desktop").data == {"isNeeded": True}
     trainee.until_menu(None)
     assert status(trainee)[0] == "Tutorial"

@@ -180,15 +180,15 @@ def test_only_the_operators_view_can_turn_the_view(by_hand):
 def test_in_a_study_the_view_follows_only_where_that_is_configured(trainee):
     session, presenter = trainee.presenter._session, trainee.presenter
     trainee.start("task-1")
-    assert presenter._follows
+    assert presenter._follows()
     session.services.assigned.take_step(
         StudyStep(trainee="P07", kind=StepKind.TRIAL.value, task="task-1")
     )
-    assert not presenter._follows
+    assert not presenter._follows()
     session.preferences = session.preferences.__class__(view="always")
-    assert presenter._follows
+    assert presenter._follows()
     session.preferences = session.preferences.__class__(view="never")
-    assert not presenter._follows
+    assert not presenter._follows()
 
 
 def test_the_journal_records_how_the_view_was_turned_and_whether_it_follows(by_hand, outside):

@@ -16,7 +16,7 @@ from Testing.domain.procedure.made_up_procedure import made_up_meshes, made_up_p
 from Testing.domain.procedure.procedure_records import recorded
 
 SHIFT_MM = np.array([0.3, 0.4, 0.0])
-"""By which a registration moves the whole plan: 0.5 mm."""
+"""A registration moves the whole plan by 0.5 mm."""
 TOO_DEEP_MM = 1.2
 
 
@@ -43,7 +43,7 @@ def carried_out(
 
 
 def outcome(kind: ProcedureKind, number: int = 0, by_robot: bool = False) -> ProcedureOutcome:
-    """Return the outcome of what was carried out so."""
+    """Return the outcome of `carried_out`."""
     procedure, done = carried_out(kind, number, by_robot)
     analysis = analyze_procedure(done, procedure, made_up_meshes(), np.eye(4))
     return ProcedureOutcome(

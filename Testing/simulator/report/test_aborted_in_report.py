@@ -138,7 +138,7 @@ def test_the_report_names_the_trials_that_never_arrived(path):
         for number in (3, 4, 7, 9):
             record = make_aborted(950 + number, 2, trainee="A") | {"number": number}
             study.add_aborted(record | {"series": series})
-        # What a deleted trainee leaves is no gap.
+        # A deleted trainee leaves no gap.
         deleted = make_aborted(970, 2, trainee="D") | {"number": 8, "series": series}
         study.add_aborted(deleted)
         study.delete_trainee("D")

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from rastrainer.study.study_data import StudyData, TrialRow
-from rastrainer_simulator.report.method_comparison import (
+from rastrainer_simulator.report.report import report_html
+from rastrainer_simulator.report.target_errors import (
     TITLES,
     as_conditions,
     compare_methods,
     method_comparison,
 )
-from rastrainer_simulator.report.report import report_html
 from rastrainer_simulator.statistics.intervals import mean
 from rastrainer_simulator.statistics.paired import compare_paired
 from Testing.error_rates.compared_methods import decisions, drawn_errors, study_of
@@ -89,13 +89,13 @@ def test_the_differences_are_those_of_the_shared_analysis_corrected_over_the_pai
     )
     expected = compare_paired(first, second, order)
     pair = pair_of(data, "fiducials", "landmarks", "true_tre_mm")
-    assert pair.result.mean_difference == pytest.approx(expected.mean_difference)
+    assert pair.result.difference.value == pytest.approx(expected.difference.value)
     assert pair.result.p == pytest.approx(expected.p)
     assert expected.p < pair.adjusted_p < 0.001
     assert pair_of(data, "fiducials", "surface", "true_tre_mm").adjusted_p > 0.05
     assert pair_of(data, "fiducials", "surface", "rmse_mm").adjusted_p is None
     words = words_of(method_comparison(data))
-    assert f"(fiducials and landmarks) was {expected.mean_difference:.2f} mm higher" in words
+    assert f"(fiducials and landmarks) was {expected.difference.value:.2f} mm higher" in words
     assert "higher with landmarks than with fiducials" in words
     assert "correction for testing several pairs of methods" in words
     assert "(fiducials and trace): no difference is shown" in words

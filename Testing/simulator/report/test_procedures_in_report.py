@@ -45,7 +45,7 @@ def test_what_the_robot_aligned_is_not_counted_as_done_by_hand(words):
 
 
 def comparison(words):
-    """What the hands of each trainee caused, compared with the registration."""
+    """The sentence that compares each trainee's hands with the registration."""
     return re.search(r"registration minus hands, .*?\]", words)[0]
 
 

@@ -121,7 +121,7 @@ def test_the_paired_tests_on_subject_means_are_those_of_the_shared_analysis(publ
     }
     rmse = results["rmse_mm"]
     assert len(rmse.trainees) == 4
-    assert rmse.result.mean_difference == pytest.approx(0.147, abs=6e-4)
+    assert rmse.result.difference.value == pytest.approx(0.147, abs=6e-4)
     assert rmse.result.p == pytest.approx(0.005, abs=5e-4)
     assert rmse.adjusted_p == pytest.approx(2 * rmse.result.p)
     assert rmse.result.ranks.p == 0.125

@@ -40,7 +40,7 @@ FIRST_CELLS = {
     "trainee",
     "what",
 }
-"""Of the tables that a report can have."""
+"""First cells of all tables that a report can have."""
 
 
 def with_intervals(data):

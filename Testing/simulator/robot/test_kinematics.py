@@ -12,7 +12,7 @@ from rastrainer_simulator.robot.model import load_robot
 
 @pytest.fixture(scope="module")
 def postures(robot):
-    return np.random.default_rng(20).uniform(robot.lower, robot.upper, (10_000, 7))
+    return np.random.default_rng(20).uniform(*robot.limits, (10_000, 7))
 
 
 @pytest.mark.parametrize("count", [2_000, pytest.param(10_000, marks=pytest.mark.soak)])
@@ -65,7 +65,7 @@ URDF = asset_path("robots", "iiwa7", "iiwa7.urdf")
 def test_the_tool_is_where_the_simulators_kinematics_place_it():
     robot = load_robot()
     kinematics, chain = make_kinematics(robot, "numpy"), readArmChain(URDF)
-    postures = np.random.default_rng(5).uniform(robot.lower, robot.upper, (200, 7))
+    postures = np.random.default_rng(5).uniform(*robot.limits, (200, 7))
     assert chain.axes.any(axis=1).sum() == 7
     for q, pose in zip(postures, chain.toolToWorld(postures), strict=True):
         expected = kinematics.tip(q)

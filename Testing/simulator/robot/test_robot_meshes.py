@@ -247,10 +247,3 @@ def test_a_mesh_in_millimeters_or_without_numbers_is_refused(tmp_path, visuals, 
     mesh.export(tmp_path / "link_3.stl")
     with pytest.raises(InputError, match="in meters"):
         load_meshes(load_robot(mesh_folder=tmp_path))
-
-
-def test_a_mesh_named_in_the_urdf_but_missing_is_named(tmp_path):
-    urdf = tmp_path / "iiwa7.urdf"
-    urdf.write_bytes((ROBOT / "iiwa7.urdf").read_bytes())
-    with pytest.raises(InputError, match=r"mesh of iiwa_link_0 cannot be used: There is no"):
-        load_meshes(load_robot(urdf))

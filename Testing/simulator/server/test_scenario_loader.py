@@ -102,13 +102,13 @@ def test_scenario_in_the_library_is_loaded_by_its_name(make, library, may_be_any
 
 def test_scenarios_are_listed_with_their_pictures_and_problems(make, library):
     loader = make(Loop(), may_be_anywhere=False)
-    assert loader.picture("ball") is None
+    assert loader.pictures.get("ball") is None
     listed = {entry.name: entry for entry in loader.listed().result(60)}
     assert set(listed) == {"ball", "broken", "colin27"}
     assert "scenario.json" in listed["broken"].problem
-    assert loader.picture("ball") == library / "ball" / "preview.png"
-    assert loader.picture("colin27") == asset_path("scenarios", "colin27", "preview.png")
-    assert loader.picture("broken") is loader.picture("../ball") is None
+    assert loader.pictures.get("ball") == library / "ball" / "preview.png"
+    assert loader.pictures.get("colin27") == asset_path("scenarios", "colin27", "preview.png")
+    assert loader.pictures.get("broken") is loader.pictures.get("../ball") is None
 
 
 def test_any_folder_may_be_loaded_by_its_path_on_one_computer(make, tmp_path):

@@ -59,7 +59,7 @@ def test_the_intervals_are_quantiles_of_the_variances_that_the_ratings_allow(rat
 
 
 def sums_of_squares(ratings):
-    """Of objects, raters and rest."""
+    """The standard deviations of objects, raters and rest."""
     mean = ratings.mean()
     objects, raters = ratings.mean(axis=1) - mean, ratings.mean(axis=0) - mean
     rest = ratings - mean - objects[:, None] - raters

@@ -62,7 +62,7 @@ def test_the_same_seed_gives_the_same_groups():
 
 
 def test_the_dip_is_hartigans():
-    """The first value is that of the package diptest 0.12, which is Hartigans' own program."""
+    """The package diptest 0.12, which is Hartigans' own program, gives the first value."""
     peaks = [1, 2, 2.5, 3, 10, 11, 11.2, 12.5, 13]
     assert dip(np.array(peaks)) == pytest.approx(0.1728395061728395, abs=1e-12)
     assert dip(np.arange(10.0)) == pytest.approx(1 / 20)
@@ -95,6 +95,6 @@ def test_k_means_is_as_good_as_scipys():
 def test_silhouettes_are_rousseeuws():
     points = np.array([[0.0], [1.0], [5.0], [6.0], [20.0]])
     labels = np.array([0, 0, 1, 1, 2])
-    # By hand: (b − a)/max(a, b), and 0 for a cluster of one.
+    # Computed by hand: (b − a)/max(a, b), and 0 for a cluster of one.
     expected = [(5.5 - 1) / 5.5, (4.5 - 1) / 4.5, (4.5 - 1) / 4.5, (5.5 - 1) / 5.5, 0.0]
     np.testing.assert_allclose(silhouettes(points, labels), expected)

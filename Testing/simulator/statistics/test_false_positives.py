@@ -23,7 +23,7 @@ def studies(request):
 
 @pytest.fixture
 def off(studies):
-    """By how much the share of a test with 5 % false positives is off in 1 of 1000 runs at most."""
+    """Most by which the share of false positives of a 5 % test is off in all but 1 of 1000 runs."""
     return 3 * np.sqrt(0.05 * 0.95 / studies)
 
 
@@ -47,7 +47,7 @@ def test_two_equal_modes_differ_in_5_percent_of_studies_by_each_outcome_and_by_a
         adjusted.append(min(one.adjusted_p for one in found))
     for rejected in np.mean(np.array(p_values) < 0.05, axis=0):
         assert rejected == pytest.approx(0.05, abs=off)
-    # Holm holds the level for all together, whatever depends on what.
+    # Holm holds the level for all tests together, dependent or not.
     assert np.mean(np.array(adjusted) < 0.05) <= 0.05 + off
 
 

@@ -36,7 +36,7 @@ def test_the_interval_of_the_noncentrality_puts_t_at_its_tails(t, dof):
 def test_darwins_maize_gives_fishers_t():
     comparison = compare_paired(np.zeros(15), DARWIN)
     assert comparison.t == pytest.approx(2.148, abs=5e-4)
-    assert comparison.mean_difference * 8 == pytest.approx(20.933, abs=5e-4)
+    assert comparison.difference.value * 8 == pytest.approx(20.933, abs=5e-4)
 
 
 @pytest.mark.parametrize("values", SAMPLES, ids=len)
@@ -47,7 +47,9 @@ def test_the_paired_t_test_agrees_with_scipy(values):
     assert comparison.t == pytest.approx(expected.statistic, rel=1e-9)
     assert comparison.p == pytest.approx(expected.pvalue, rel=1e-9)
     interval = expected.confidence_interval(0.95)
-    np.testing.assert_allclose(comparison.interval, [interval.low, interval.high], rtol=1e-9)
+    np.testing.assert_allclose(
+        comparison.difference.interval, [interval.low, interval.high], rtol=1e-9
+    )
 
 
 @pytest.mark.parametrize("values", SAMPLES, ids=len)
@@ -76,7 +78,7 @@ def test_hedges_factor_is_the_tabulated_one():
 
 def test_two_subjects_have_no_effect_size_but_a_test():
     comparison = compare_paired(np.zeros(2), np.array([1.0, 2.0]))
-    assert (comparison.hedges_gz, comparison.gz_interval) == (None, None)
+    assert comparison.effect is None
     assert comparison.p == pytest.approx(scipy.stats.ttest_1samp([1.0, 2.0], 0.0).pvalue)
     assert small_sample_factor(1) is None
 
@@ -84,8 +86,8 @@ def test_two_subjects_have_no_effect_size_but_a_test():
 def test_the_interval_of_the_effect_size_is_the_populations_and_contains_the_estimate():
     comparison = compare_paired(np.zeros(8), SAMPLES[3])
     low, high = noncentrality_interval(comparison.t, 7)
-    np.testing.assert_allclose(comparison.gz_interval, np.array([low, high]) / np.sqrt(8))
-    assert comparison.gz_interval[0] < comparison.hedges_gz < comparison.gz_interval[1]
+    np.testing.assert_allclose(comparison.effect.interval, np.array([low, high]) / np.sqrt(8))
+    assert comparison.effect.interval[0] < comparison.effect.value < comparison.effect.interval[1]
 
 
 def test_at_the_margin_of_equivalence_the_larger_of_two_one_sided_tests_has_5_percent():
@@ -118,7 +120,7 @@ def test_power_is_that_of_the_tables():
 
 
 def test_power_and_holms_correction_are_those_of_statsmodels():
-    """Of statsmodels 0.15.0: `TTestPower().power(effect, n, 0.05)`, `multipletests(p, "holm")`."""
+    """By statsmodels 0.15.0: `TTestPower().power(effect, n, 0.05)`, `multipletests(p, "holm")`."""
     expected = {
         (0.5, 34): 0.8077775012792737,
         (0.8, 12): 0.7136600656001074,

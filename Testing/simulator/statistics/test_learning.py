@@ -48,7 +48,7 @@ def test_five_noiseless_trials_that_fall_from_140_to_107_s_are_learning():
     times = 140 * np.arange(1, 6) ** (np.log(107 / 140) / np.log(5))
     trend = falling_trend(times)
     assert (trend.verdict, trend.p) == (TrendVerdict.FALLS, pytest.approx(1 / 120))
-    assert trend.change == pytest.approx(107 - 140, abs=1.0)
+    assert trend.change.value == pytest.approx(107 - 140, abs=1.0)
 
 
 def test_the_trend_is_tested_by_all_orders_of_the_values():
@@ -58,9 +58,11 @@ def test_the_trend_is_tested_by_all_orders_of_the_values():
     trend = falling_trend(values)
     assert trend.p == pytest.approx(np.mean(slopes <= x @ values + 1e-9), rel=1e-9)
     line = scipy.stats.linregress(x, values)
-    assert trend.change == pytest.approx(line.slope * x[-1], rel=1e-9)
+    assert trend.change.value == pytest.approx(line.slope * x[-1], rel=1e-9)
     reach = scipy.stats.t.ppf(0.95, 4) * line.stderr * x[-1]
-    np.testing.assert_allclose(trend.interval, (trend.change - reach, trend.change + reach))
+    np.testing.assert_allclose(
+        trend.change.interval, trend.change.value + np.array([-reach, reach])
+    )
 
 
 def test_inconclusive_trials_are_undecided_and_constant_ones_steady():

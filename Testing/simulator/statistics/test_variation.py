@@ -88,7 +88,7 @@ def test_the_expected_value_of_each_variance_is_the_variance(source, trainees):
     }
     columns = np.hstack(list(roots.values()))
     squares = [getattr(fit_variation(trials, np.exp(column)), source).value for column in columns.T]
-    # Those of the other sources add nothing.
+    # The other sources add nothing.
     assert np.sum(squares) == pytest.approx(roots[source].max() ** 2, abs=1e-10)
 
 
@@ -131,7 +131,7 @@ def test_the_components_of_variance_are_those_of_a_balanced_analysis():
     cells, rows = values.mean(axis=2), values.mean(axis=(1, 2))
     both = cells - rows[:, None] - cells.mean(axis=0) + values.mean()
     ms_both, ms_rows = 8 * (both**2).sum() / 5, 16 * rows.var(ddof=1)
-    # Of the levels chance is known but for practice, which all of them share.
+    # The chance in the levels is known, except for practice, which all levels share.
     assert found.interaction_variance.value == pytest.approx(
         (ms_both - found.trial_variance.value) / 8, abs=1e-12
     )

@@ -15,7 +15,6 @@ from rastrainer_simulator.viewpoint.view_control import (
     STILL,
     Orbit,
     ViewControl,
-    ViewMotion,
     camera_pose,
     heading_deg,
     limited,
@@ -65,7 +64,7 @@ def test_no_turn_goes_under_the_table_overhead_into_the_head_or_out_of_the_room(
 def test_held_buttons_turn_the_view_for_as_long_as_they_are_held(scenario):
     camera, control = scenario.cameras["close-up"], ViewControl()
     for _ in range(100):
-        control.advance(0.01, camera, ViewMotion(around=1.0, nearer=1.0), is_arm_still=False)
+        control.advance(0.01, camera, (1.0, 0.0, 1.0), is_arm_still=False)
     assert control.orbit.azimuth_deg == pytest.approx(70.0)
     assert control.orbit.zoom == pytest.approx(0.5)
     stopped = control.orbit

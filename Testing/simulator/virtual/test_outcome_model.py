@@ -102,7 +102,7 @@ def test_the_fast_rejection_rates_match_those_of_the_report(alternating):
         assert rates.holm == np.mean([one.adjusted_p < 0.05 for one in found])
         assert rates.ranks == np.mean([one.result.ranks.p < 0.05 for one in found])
         if rates.coverage is not None:
-            ends = np.array([one.result.interval for one in found]).T
+            ends = np.array([one.result.difference.interval for one in found]).T
             held = (ends[0] <= rates.true_difference) & (rates.true_difference <= ends[1])
             assert rates.coverage == np.mean(held)
 

@@ -1,8 +1,6 @@
 """A recorded trial replayed in the simulator's views: as recorded, played and sought."""
 
 import os
-import re
-import secrets
 import signal
 import subprocess
 import sys
@@ -28,6 +26,7 @@ from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial, load_trial
 from rastrainer_simulator.replay.replay_presenter import ReplayPresenter
 from rastrainer_simulator.virtual.cohort import RECORDS
+from Testing.end_to_end.simulator_process import SERVES, paired_key
 from Testing.simulator.net.views.served import ViewClient
 
 
@@ -252,18 +251,17 @@ def test_canceled_loading_ends(journal, setup, monkeypatch):
 
 
 def test_the_program_serves_the_replay_to_views_until_escape(journal, tmp_path, loop_thread):
-    key = secrets.token_hex(32)
     command = ["replay", str(journal), "--no-window", "--view-port", "0"]
     process = subprocess.Popen(
         [sys.executable, "-m", "rastrainer_simulator.cli.main", *command],
-        env={**os.environ, "RASTRAINER_VIEW_KEY": key, "XDG_CACHE_HOME": str(tmp_path)},
+        env={**os.environ, "XDG_CACHE_HOME": str(tmp_path)},
         stdout=subprocess.PIPE,
         text=True,
     )
     try:
         line = process.stdout.readline()
-        url = re.search(r"http://\S+?:\d+", line)[0]
-        view = ViewClient(loop_thread, url, key)
+        url, code = SERVES.search(line.strip()).groups()
+        view = ViewClient(loop_thread, url, paired_key(url, code))
         view.join()
         first = view.next("state")
         messages = view.all_until(

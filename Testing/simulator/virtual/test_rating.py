@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import random
 import re
-import secrets
 import sqlite3
 import subprocess
 import sys
@@ -32,6 +31,7 @@ from rastrainer_simulator.rating.rating_presenter import RatingPresenter
 from rastrainer_simulator.rating.rating_work import RatingWork
 from rastrainer_simulator.server.replay_server import ReplayLoader, trials_to_show
 from rastrainer_simulator.virtual.cohort import RECORDS
+from Testing.end_to_end.simulator_process import SERVES, paired_key
 from Testing.simulator.net.views.served import ViewClient
 
 VIEW = 1
@@ -303,18 +303,17 @@ class RatingProcess:
     """`rastrainer rate` as a process, and a page that joins it."""
 
     def __init__(self, folder, loop_thread, cache):
-        key = secrets.token_hex(32)
         words = ["rate", str(folder / STUDY_FILE), "--records", str(folder / RECORDS)]
         words += ["--rater", "R1", "--replays", "2", "--no-window", "--view-port", "0"]
         self._process = subprocess.Popen(
             [sys.executable, "-m", "rastrainer_simulator.cli.main", *words],
-            env={**os.environ, "RASTRAINER_VIEW_KEY": key, "XDG_CACHE_HOME": str(cache)},
+            env={**os.environ, "XDG_CACHE_HOME": str(cache)},
             stdout=subprocess.PIPE,
             text=True,
         )
         self.lines = [self._process.stdout.readline() for _ in range(2)]
-        url = re.search(r"http://\S+?:\d+", self.lines[1])[0]
-        self._view = ViewClient(loop_thread, url, key)
+        url, code = SERVES.search(self.lines[1].strip()).groups()
+        self._view = ViewClient(loop_thread, url, paired_key(url, code))
         self._view.join()
 
     def press(self, code):

@@ -68,22 +68,11 @@ def list_scenarios(
     Unusable ones are listed with their problem. Of two with the same name, the first folder's is
     listed. `list_one` lists the scenario of a folder; by default `list_folder`.
     """
-    folders = [
-        path.parent
-        for library in libraries
-        for path in sorted(Path(library).glob(f"*/{FILE_NAME}"))[:MAX_SCENARIOS]
-    ]
-    return list_folders(folders, list_one)
-
-
-def list_folders(
-    folders: Iterable[Path], list_one: Callable[[Path], ListedScenario] | None = None
-) -> list[ListedScenario]:
-    """Return the scenarios in these folders themselves, otherwise like `list_scenarios`."""
     listed: dict[str, ListedScenario] = {}
-    for folder in folders:
-        entry = (list_one or list_folder)(folder)
-        listed.setdefault(entry.name, entry)
+    for library in libraries:
+        for path in sorted(Path(library).glob(f"*/{FILE_NAME}"))[:MAX_SCENARIOS]:
+            entry = (list_one or list_folder)(path.parent)
+            listed.setdefault(entry.name, entry)
     return sorted(listed.values(), key=lambda entry: entry.title.casefold())
 
 

@@ -1,1 +1,1 @@
-"""What is stored of all trainees, what it shows, and how it is exported."""
+"""The study: stored data of all trainees, their evaluation and their export."""

@@ -16,7 +16,6 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import ReplayTrack, find_track, read_trajectory
 from rastrainer.json_records import record_from_json
-from rastrainer.motion.trajectory import Trajectory
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.database.study import Study
@@ -60,8 +59,9 @@ def store_delivered(
         is_being_scored: whether its registration or score is being sent to the simulator.
     """
     record = record_from_json(TrialRecord, value)
-    is_new = study.check_trial(record)
-    if not is_new and (is_being_scored or study.has("truths", record.trial_id)):
+    trial_id = record.trial_id
+    if study.has("trials", trial_id) and (is_being_scored or study.is_revealed(trial_id)):
+        study.add_trial(record)
         return DeliveredTrial(record)
     try:
         analysis = analyze(record)
@@ -96,17 +96,9 @@ def scored_with_journal(
     Without the folder of journals, less of the touches is explained. `pause` is called again and
     again while the journal is read; a thread may wait in it.
     """
-    trajectory = trajectory_of(analysis.record, records, pause)
+    record = analysis.record
+    trajectory = None if records is None else read_trajectory(records, record.trial_id, pause)
     return analysis.scored(scenario, truth, references, trajectory)
-
-
-def trajectory_of(
-    record: TrialRecord, records: Path | None, pause: Callable[[], None] = lambda: None
-) -> Trajectory | None:
-    """Return a trial's trajectory from its journal, or None."""
-    if records is None or not records.is_dir():
-        return None
-    return read_trajectory(records, record.trial_id, pause)
 
 
 def with_progress(analysis: TrialAnalysis, study: Study) -> TrialAnalysis:
@@ -177,13 +169,13 @@ def explain(
 ) -> TrialAnalysis:
     """Return the registration of a trial, with the touches explained by its journal."""
     progress(_READING, 0.0)
-    return analyze_trial(record, scenario, trajectory=trajectory_of(record, records))
+    return analyze_trial(record, scenario, trajectory=read_trajectory(records, record.trial_id))
 
 
 def explain_procedure(
     record: TrialRecord, scenario: Scenario, truth: RevealedTruth, progress: Progress
 ) -> ProcedureOutcome | None:
-    """Return the errors of a stored trial's procedure; None where it is of another plan."""
+    """Return the errors of a stored trial's procedure; None if it followed another plan."""
     progress("Computing errors", 0.0)
     try:
         return procedure_outcome(record, scenario, truth.matrix)

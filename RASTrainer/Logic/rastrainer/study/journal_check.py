@@ -66,7 +66,7 @@ def check_journal(
 
 
 def _entries(journal: bytes, sealed: str) -> list[Entry]:
-    """Return the entries of a trial, up to what came after it; they hold the sealed line."""
+    """Return the entries of a trial, without later entries; they hold the sealed line."""
     entries: list[Entry] = []
     previous = NO_LINE
     for number, line in enumerate(journal.splitlines(), start=1):

@@ -5,13 +5,16 @@ Each mark is stored once, none is overwritten, the latest count.
 
 from __future__ import annotations
 
+import json
 import random
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from typing import Annotated, Any
 
 from rastrainer.errors import InputError
-from rastrainer.json_checks import accepted, pseudonym
+from rastrainer.json_checks import accepted, pseudonym, text
+from rastrainer.json_records import record_from_json
 from rastrainer.study.database.study import Study
 
 LOWEST, HIGHEST = 1, 5
@@ -31,7 +34,7 @@ class RatingForm:
     """A form of domains that are marked from 1 (worst) to 5 (best), and added up.
 
     Names of domains and the scale are as published. The sentences that describe marks are our own,
-    in the simulator's texts: the published ones are their authors'.
+    in the simulator's texts: the published sentences belong to their authors.
 
     Attributes:
         domains: Those that a replay can show, in their order.
@@ -42,7 +45,7 @@ class RatingForm:
     title: str
     domains: tuple[RatingDomain, ...]
     left_out: Mapping[str, str]
-    source: str
+    source: Annotated[str, text(300)]
 
     @property
     def lowest_total(self) -> int:
@@ -55,48 +58,9 @@ class RatingForm:
         return HIGHEST * len(self.domains)
 
 
-GEARS = RatingForm(
-    name="gears",
-    title="GEARS",
-    domains=(
-        RatingDomain("gears_depth", "Depth perception"),
-        RatingDomain("gears_efficiency", "Efficiency"),
-        RatingDomain("gears_force", "Force sensitivity"),
-        RatingDomain("gears_control", "Robotic control"),
-    ),
-    left_out={
-        "Bimanual dexterity": "the trainee drives one arm",
-        "Autonomy": "a replay does not show who has helped",
-    },
-    source="Goh, Goldfarb, Sander, Miles and Dunkin 2012, Global evaluative assessment of robotic "
-    "skills: validation of a clinical assessment tool to measure robotic surgical skills",
-)
-OSATS = RatingForm(
-    name="osats",
-    title="OSATS global rating",
-    domains=(
-        RatingDomain("osats_tissue", "Respect for tissue"),
-        RatingDomain("osats_motion", "Time and motion"),
-        RatingDomain("osats_handling", "Instrument handling"),
-        RatingDomain("osats_flow", "Flow of operation and forward planning"),
-    ),
-    left_out={
-        "Knowledge of instruments": "there is one instrument",
-        "Use of assistants": "there are none",
-        "Knowledge of specific procedure": "the simulator leads through it",
-    },
-    source="Martin, Regehr, Reznick, MacRae, Murnaghan, Hutchison and Brown 1997, Objective "
-    "structured assessment of technical skill (OSATS) for surgical residents",
-)
-
+_FILE = Path(__file__).with_name("rating_forms.json").read_text(encoding="utf-8")
+GEARS, OSATS = (record_from_json(RatingForm, each) for each in json.loads(_FILE))
 FORMS = {form.name: form for form in (GEARS, OSATS)}
-
-
-def find_form(name: str) -> RatingForm:
-    """Return a form; raise `InputError` if unknown."""
-    if name not in FORMS:
-        raise InputError(f"There is no form {name[:40]!r}; there are {', '.join(FORMS)}.")
-    return FORMS[name]
 
 
 @dataclass(frozen=True)
@@ -124,9 +88,9 @@ class RatingStore:
     ) -> tuple[str, ...]:
         """Assign replays to a rater; return their trials in the rater's order.
 
-        All raters get the same trials: those that somebody has, and more of `trial_ids`, drawn at
-        random, where these are fewer than `count`. Each rater gets them in their own order. What a
-        rater has already keeps its place.
+        All raters get the same trials: those of the other raters, and if these are fewer than
+        `count`, more of `trial_ids`, drawn at random. Each rater gets them in another order. A
+        rater's earlier replays keep their places.
         """
         rater = accepted(pseudonym, rater, "The name of a rater")
         with self._database.writing():

@@ -56,14 +56,14 @@ class TrialRow:
 
 @dataclass(frozen=True)
 class StudyData:
-    """The data of a report; `gap` is that of its virtual cohort.
+    """The data of a report; `gap` says what is missing from its virtual cohort.
 
     Attributes:
-        trials: Without trial runs; for trainees in a protocol, those of its steps.
+        trials: Without trial runs; for trainees in a protocol, only trials of its steps.
         mean_ct_s: Mean completion times for CTPS instead of the trials' own, by mode.
         skipped: Trainee, step and reason of each skipped step.
         outside_protocol: Number of trials outside the protocol, which are left out.
-        objections: Trainee, trial and reasons of those of them that broke a rule of the protocol.
+        objections: Trainee, trial and reasons, for each of these that broke a rule of the protocol.
         versions: Of the programs that made the records, name → different versions.
         aborted: Including trial runs, by trainee in order.
         undelivered: First and last numbers of trials that never arrived, by their simulator's
@@ -118,7 +118,7 @@ class StudyData:
 def read_study_data(place: StudyPlace, allow_incomplete: bool = False) -> StudyData:
     """Read a study's database, or a CSV file with the header `mode,subject,task,ct,rmse`.
 
-    Notes beside a CSV file `NAME.csv` are read from `NAME.json`.
+    Notes next to a CSV file `NAME.csv` are read from `NAME.json`.
     """
     if isinstance(place, Path) and not place.is_file():
         raise InputError(f"There is no file {place}.")
@@ -210,7 +210,7 @@ def _from_database(place: StudyPlace) -> StudyData:
 
 
 def _objected(record: TrialRecord, steps: Iterable[StudyStep]) -> tuple[str, str, str] | None:
-    """Return why a trial did not count for the step of its task and mode; None if nothing does."""
+    """Return why a trial was no valid trial of the step with its task and mode; None if it was."""
     of_task = (s for s in steps if (s.task, s.mode) == (record.task, record.mode))
     step = next(of_task, None)
     reasons = () if step is None else objections_to(step, record)

@@ -120,7 +120,7 @@ def aborted_touches_csv(trials: Iterable[StoredAbortedTrial]) -> str:
 def touches_csv(trials: Iterable[tuple[TrialRow, StoredTrial]]) -> str:
     """Return the kept touches of trials as CSV, in order.
 
-    Positions are those of the tip in `World`; simulated times include pauses. Residuals are of the
+    Positions of the tip are in `World`; simulated times include pauses. Residuals are of the
     rigid fit, empty for points left out of it.
     """
     rows = []
@@ -138,10 +138,10 @@ def touches_csv(trials: Iterable[tuple[TrialRow, StoredTrial]]) -> str:
 def procedures_csv(trials: Iterable[TrialRow]) -> str:
     """Return the errors of procedures against the truth as CSV, one trajectory per row.
 
-    What is not due to the registration is in the columns of the hand where hands aligned the guide,
-    and in those of the robot where it did, in which only the depth is by hand. Both parts of an
-    error are lengths of vectors, which do not add up; depth errors do. A plunge depth is empty
-    where the instrument missed the skull.
+    Errors that are not due to the registration are in the columns of the hand if hands aligned the
+    guide, and in the robot's columns if the robot did; then only the depth is by hand. Both parts
+    of an error are lengths of vectors, which do not add up; depth errors do. A plunge depth is
+    empty if the instrument missed the skull.
     """
     rows = [
         _procedure_cells(trial, trial.procedure, errors)
@@ -158,7 +158,7 @@ def _procedure_cells(
     nearest = min(errors.kept_mm, key=errors.kept_mm.__getitem__, default="")
 
     def by_whom(others: float) -> list[float | None]:
-        """Return the cell of the hand, and that of the robot."""
+        """Return the cells of the hand and of the robot."""
         return [None, others] if errors.self_aligned else [others, None]
 
     def parts(error: SplitError) -> list[float | None]:

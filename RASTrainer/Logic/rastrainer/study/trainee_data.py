@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 from rastrainer.files.writing import write_json
@@ -13,7 +13,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.ratings import RatingStore
 
-FORMAT = "RASTrainer trainee 4"
+FORMAT = "RASTrainer trainee 1"
 
 
 def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
@@ -23,47 +23,24 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
     place = progress.enrolled().get(pseudonym)
     if place is not None:
         entries = progress.progress(pseudonym).entries
-        protocol = {"place": place, "steps": [asdict(entry) for entry in entries]}
+        protocol = {"place": place, "steps": [record_to_json(entry) for entry in entries]}
+    aborted = study.aborted(pseudonym)
     document = {
         "format": FORMAT,
-        "trainee": asdict(trainee),
+        "trainee": record_to_json(trainee),
         "protocol": protocol,
-        "trials": [
-            {
-                "record": record_to_json(trial.record),
-                "registrations": {
-                    kind: record_to_json(fit) for kind, fit in trial.registrations.items()
-                },
-                "score": None
-                if trial.score is None
-                else record_to_json(trial.score, with_defaults=True),
-                "true_tre_mm": trial.true_tre_mm,
-                "head_to_world": None if trial.truth is None else trial.truth.head_to_world,
-                "motion": trial.record.motion,
-                "procedure": None
-                if trial.procedure is None
-                else record_to_json(trial.procedure, with_defaults=True),
-            }
-            for trial in trials
-        ],
-        "aborted_trials": [
-            {
-                "record": record_to_json(stored.record),
-                "step": stored.step,
-                "repeat_reason": stored.repeat_reason,
-            }
-            for stored in study.aborted(pseudonym)
-        ],
+        "trials": [record_to_json(trial, with_defaults=True) for trial in trials],
+        "abortedTrials": [record_to_json(stored, with_defaults=True) for stored in aborted],
         "curricula": [
             {
                 "curriculum": None if curriculum is None else curriculum.to_json(),
-                "stored_utc": stored_utc,
+                "storedUtc": stored_utc,
             }
             for name, curriculum, stored_utc in CurriculumStore(study).choices()
             if name == pseudonym
         ],
         "ratings": [
-            {"trial_id": rating.trial_id, "form": rating.form, "marks": dict(rating.marks)}
+            {"trialId": rating.trial_id, "form": rating.form, "marks": dict(rating.marks)}
             for rating in RatingStore(study).ratings()
             if rating.trial_id in {trial.record.trial_id for trial in trials}
         ],
@@ -74,7 +51,7 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
 
 @dataclass(frozen=True)
 class Erasure:
-    """Numbers of deleted trials and journals, those of unfinished trials included; what may remain.
+    """Numbers of deleted trials and journals, unfinished trials included, and what may remain.
 
     Missing are UUIDs of deleted trials whose journals were not found; unreadable journals name no
     trainee.

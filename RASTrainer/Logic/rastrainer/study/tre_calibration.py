@@ -15,8 +15,7 @@ import numpy as np
 
 from rastrainer.number_text import fixed, percent
 from rastrainer.protocol import TRIAL_RUN
-from rastrainer.registration.fits import RIGID
-from rastrainer.study.database.values import StoredTrial
+from rastrainer.study.study_data import TrialRow
 
 MIN_SHARE_TRIALS = 5
 """Fewer trials have no meaningful share."""
@@ -64,7 +63,7 @@ class CalibrationPoint:
 
     @property
     def is_inside(self) -> bool:
-        """Whether the true error lies in the interval."""
+        """Whether the interval contains the true error."""
         return self.interval_mm[0] <= self.true_mm <= self.interval_mm[1]
 
 
@@ -80,16 +79,6 @@ class TreCalibration:
     points: tuple[CalibrationPoint, ...]
     without_truth: int = 0
     without_expectation: int = 0
-
-    @classmethod
-    def of(
-        cls,
-        points: Iterable[CalibrationPoint],
-        without_truth: int = 0,
-        without_expectation: int = 0,
-    ) -> TreCalibration:
-        ordered = tuple(sorted(points, key=lambda point: (point.expected_mm, point.true_mm)))
-        return cls(ordered, without_truth, without_expectation)
 
     @property
     def inside(self) -> Proportion | None:
@@ -135,31 +124,23 @@ class TreCalibration:
         return found
 
 
-def calibration_of(trials: Iterable[StoredTrial]) -> TreCalibration:
-    """Return the calibration of stored trials, using their rigid registrations; trial runs are left
-    out.
-    """
+def calibration_of(trials: Iterable[TrialRow]) -> TreCalibration:
+    """Return the calibration of the rigid registrations of trials; trial runs are left out."""
     points, without_truth, without_expectation = [], 0, 0
     for trial in trials:
-        record, rigid = trial.record, trial.registrations.get(RIGID)
-        if record.task == TRIAL_RUN:
+        values = trial.values
+        if trial.task == TRIAL_RUN:
             continue
-        if rigid is None or rigid.expected_tre_mm is None or rigid.tre_interval_mm is None:
+        if not {"expected_tre_mm", "tre_low_mm"} <= values.keys():
             without_expectation += 1
-        elif trial.true_tre_mm is None:
+        elif "true_tre_mm" not in values:
             without_truth += 1
         else:
-            points.append(
-                CalibrationPoint(
-                    record.trainee,
-                    record.mode,
-                    record.task,
-                    rigid.expected_tre_mm,
-                    rigid.tre_interval_mm,
-                    trial.true_tre_mm,
-                )
-            )
-    return TreCalibration.of(points, without_truth, without_expectation)
+            interval = values["tre_low_mm"], values["tre_high_mm"]
+            errors = values["expected_tre_mm"], interval, values["true_tre_mm"]
+            points.append(CalibrationPoint(trial.trainee, trial.mode, trial.task, *errors))
+    ordered = tuple(sorted(points, key=lambda point: (point.expected_mm, point.true_mm)))
+    return TreCalibration(ordered, without_truth, without_expectation)
 
 
 def share_text(inside: Proportion) -> str:

@@ -77,7 +77,7 @@ class GivenPoints:
 
         Of a trace, `least_traced` points are needed: as many as register it, or fewer to show it.
         """
-        what = "The simulator's answer to GetTrial"
+        what = "The trial"
         given = record_from_json(_TrialAnswer, answer, what)
         is_by_fiducials = given.method is RegistrationMethod.FIDUCIALS
         if is_by_fiducials and len(given.touches) < FIDUCIAL_COUNT:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from functools import partial
+from typing import TypeVar
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
-from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind, stepped
+from rastrainer_simulator.flow.pages.session_page import SessionPage, ShownPage, page_kind
 from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS, LAYOUTS, preset_name
@@ -37,13 +40,13 @@ _LISTED = (
     ("pause", (ControlName.PAUSE,)),
     ("menu", (ControlName.MENU,)),
 )
+T = TypeVar("T")
 REMEMBERED = 4
 """Number of inputs shown on the page to try them."""
 
 
 @page_kind("controls")
 def controls_page(page: SessionPage, leads_on: bool = False) -> PageContent:
-    """Show which input does what, on the device in the reader's hands."""
     session, operator = page.session, page.session.operator
 
     def lead_on() -> None:
@@ -59,11 +62,12 @@ def controls_page(page: SessionPage, leads_on: bool = False) -> PageContent:
     rows = (
         *((page.button("next", lead_on),) if leads_on else ()),
         page.button("test", page.open_page(PadTestPage)),
-        page.button("rebind", page.open_page(BindingsPage)),
+        page.button(
+            "rebind", lambda: session.pages.open(bindings_page(session, device=operator.kind))
+        ),
         page.button("back"),
     )
-    said = (page.say("controls.text"),)
-    return PageContent(page.say("controls.title"), said, facts, rows, operator.picture)
+    return PageContent((page.say("controls.text"),), facts, rows, picture=operator.picture)
 
 
 class PadTestPage(SessionPage):
@@ -95,7 +99,7 @@ class PadTestPage(SessionPage):
             label = self.session.operator.input_label(device, name)
             facts.append(Fact(label, self.session.texts.listed(works) or self.say("test.nothing")))
         text = self.say("test.text", menu=self.session.operator.label(ControlName.MENU))
-        return PageContent(self.say("test.title"), (text,), facts, (*axes, self.button("back")))
+        return PageContent((text,), facts, (*axes, self.button("back")))
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
         if name in self.session.controls.bindings.table(device)[ControlName.MENU]:
@@ -114,52 +118,40 @@ GROUPS = {
 LISTEN_S = 10.0
 
 
-class BindingsPage(SessionPage):
-    """The controls of a device, a group at a time."""
+@page_kind("bindings")
+def bindings_page(page: ShownPage, device: InputDevice, group: str = "work") -> PageContent:
+    session, say = page.session, page.say
+    table, presets = session.controls.bindings.table(device), LAYOUTS[device]
+    preset = preset_name(device, table)
 
-    name = "bindings"
+    def use_preset(name: str | None) -> None:
+        assert name is not None, "it is chosen among the presets"
+        session.rebind(session.controls.bindings.with_table(device, presets[name]))
 
-    def __init__(self, session: TrainingSession) -> None:
-        super().__init__(session)
-        self._device = session.operator.kind
-        self._group = "work"
+    def restore_defaults() -> None:
+        session.rebind(DEFAULT_BINDINGS)
+        session.notices.add(say("bindings.are default"))
 
-    def content(self) -> PageContent:
-        session, device = self.session, self._device
-        preset = preset_name(device, session.controls.bindings.table(device))
+    def control_row(control: ControlName) -> PageRow:
+        inputs = (session.operator.input_label(device, name) for name in table[control])
+        listen = page.open_page(ListenPage, device, control)
+        label = say(f"control.{control.value}")
+        return page.button(control.value, listen, label, value=session.texts.listed(inputs))
 
-        def step_device(direction: int) -> None:
-            self._device = stepped(tuple(InputDevice), device, direction)
+    def shown(name: str, options: Sequence[T], chosen: T, key: str) -> PageRow:
+        return page.choice(name, options, chosen, partial(page.set_value, name), say(key))
 
-        def step_preset(direction: int) -> None:
-            presets = LAYOUTS[device]
-            names = tuple(presets)
-            name = names[0] if preset is None else stepped(names, preset, direction)
-            session.rebind(session.controls.bindings.with_table(device, presets[name]))
-
-        def step_group(direction: int) -> None:
-            self._group = stepped(tuple(GROUPS), self._group, direction)
-
-        def restore_defaults() -> None:
-            session.rebind(DEFAULT_BINDINGS)
-            session.notices.add(self.say("bindings.are default"))
-
-        def control_row(control: ControlName) -> PageRow:
-            table = session.controls.bindings.table(device)
-            inputs = (session.operator.input_label(device, name) for name in table[control])
-            listen = self.open_page(ListenPage, device, control)
-            label = self.say(f"control.{control.value}")
-            return self.button(control.value, listen, label, value=session.texts.listed(inputs))
-
-        rows = (
-            self.choice("device", self.say(f"device.{device.value}"), step_device),
-            self.choice("preset", self.say(f"bindings.preset.{preset or 'own'}"), step_preset),
-            self.choice("group", self.say(f"bindings.group.{self._group}"), step_group),
-            *map(control_row, GROUPS[self._group]),
-            self.button("defaults", restore_defaults),
-            self.button("back"),
-        )
-        return PageContent(self.say("bindings.title"), rows=rows)
+    rows = (
+        shown("device", tuple(InputDevice), device, f"device.{device.value}"),
+        page.choice(
+            "preset", tuple(presets), preset, use_preset, say(f"bindings.preset.{preset or 'own'}")
+        ),
+        shown("group", tuple(GROUPS), group, f"bindings.group.{group}"),
+        *map(control_row, GROUPS[group]),
+        page.button("defaults", restore_defaults),
+        page.button("back"),
+    )
+    return PageContent(rows=rows)
 
 
 class ListenPage(SessionPage):
@@ -178,7 +170,7 @@ class ListenPage(SessionPage):
         key = f"listen.{self._device.value}"
         text = self.say(key, control=control, seconds=math.ceil(self._left))
         title = self.say("listen.title", control=control)
-        return PageContent(title, (text,), rows=(self.button("cancel"),))
+        return PageContent((text,), rows=(self.button("cancel"),), title=title)
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
         if device is not self._device:
@@ -220,7 +212,7 @@ def conflict_page(
         page.button("another", lambda: session.pages.replace(ListenPage(session, device, control))),
         page.button("cancel"),
     )
-    return PageContent(page.say("conflict.title"), (text,), rows=rows)
+    return PageContent((text,), rows=rows)
 
 
 def rebind(session: TrainingSession, device: InputDevice, control: ControlName, name: str) -> None:

@@ -5,7 +5,8 @@ It opens the lists of heads, and of the assignments of a trainee's curriculum.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
 from functools import partial
 
 from rastrainer.protocol import TRIAL_RUN, Mode, StepKind, TutorialRule
@@ -13,11 +14,11 @@ from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.scenario import method_of, playable_methods
 from rastrainer.study_messages import AssignmentStanding, StudyStep
 from rastrainer.trial.scoring import PASS_MARK
-from rastrainer_simulator.flow.pages.session_page import SessionPage, stepped
+from rastrainer_simulator.flow.pages.session_page import SessionPage, ShownPage, page_kind
 from rastrainer_simulator.flow.pages.trainee_id import (
-    KeyboardPage,
-    QuestionnairePage,
     clicked_id_page,
+    keyboard_page,
+    questionnaire_page,
 )
 from rastrainer_simulator.flow.pages.trial_review import own_trials_page
 from rastrainer_simulator.flow.session.chosen_trial import (
@@ -69,45 +70,40 @@ class ExperimentPage(SessionPage):
             shown = session.texts.listed(f"{score:.0f}" for score in scores)
             trend = ScoreTrend(self.say("experiment.scores", scores=shown), scores, mark)
         rows = (*self._choices(), *self._beginnings(), self.button("back"))
-        title = self.say("experiment.title")
-        return PageContent(title, said, rows=rows, trend=trend, first=self._first)
+        return PageContent(said, rows=rows, trend=trend, first=self._first)
 
     def _choices(self) -> Iterator[PageRow]:
-        """Yield who trains, on which head and how; what a study decides cannot be changed."""
-        session, step = self.session, self.session.step
+        session, step, say = self.session, self.session.step, self.say
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
             yield self.button("answer", partial(self._open_questionnaire, step))
         yield from self._trainee()
-
-        def step_mode(direction: int) -> None:
-            session.mode = stepped([mode.value for mode in Mode], session.mode, direction)
-
-        yield self.choice("mode", self.say(f"mode.{session.mode}"), step_mode)
-        yield self.button("scenario", self.open_page(ScenarioPage), value=session.scenario.title)
+        modes, shown = [mode.value for mode in Mode], say(f"mode.{session.mode}")
+        yield self.choice("mode", modes, session.mode, self._chooser("mode"), shown)
+        yield self.button("scenario", self._open_heads, value=session.scenario.title)
         methods, offered = playable_methods(session.scenario), offered_method(session)
-
-        def step_method(direction: int) -> None:
-            session.method = stepped(methods, offered, direction)
-
+        is_free = step is None
         if len(methods) > 1:
             method = offered if step is None else method_of(step.method)
-            value, help_ = self.say(f"method.{method.value}"), self.say("experiment.method help")
-            yield self.choice("method", value, step_method, is_enabled=step is None, help=help_)
+            shown, help_ = say(f"method.{method.value}"), say("experiment.method help")
+            choose = self._chooser("method")
+            yield self.choice(
+                "method", methods, offered, choose, shown, is_enabled=is_free, help=help_
+            )
         names = ["", *(each.name for each in session.scenario.procedures)]
         chosen = session.procedure if session.procedure in names else ""
-
-        def step_procedure(direction: int) -> None:
-            session.procedure = stepped(names, chosen, direction)
-
         if len(names) > 1:
-            value = session.procedure_title(chosen if step is None else step.procedure)
+            shown = session.procedure_title(chosen if step is None else step.procedure)
+            choose, help_ = self._chooser("procedure"), say("experiment.procedure help")
             yield self.choice(
-                "procedure",
-                value,
-                step_procedure,
-                is_enabled=step is None,
-                help=self.say("experiment.procedure help"),
+                "procedure", names, chosen, choose, shown, is_enabled=is_free, help=help_
             )
+
+    def _chooser(self, name: str) -> Callable[[object], None]:
+        return partial(setattr, self.session, name)
+
+    def _open_heads(self) -> None:
+        session = self.session
+        session.pages.open(scenario_page(session, session.services.list_scenarios()))
 
     def _trainee(self) -> Iterator[PageRow]:
         """Yield the trainee's ID, and for who only clicks what enters one."""
@@ -115,7 +111,7 @@ class ExperimentPage(SessionPage):
         help_ = self.say("experiment.trainee help")
         label = self.say("experiment.trainee")
         item = MenuItem("trainee", label, ItemKind.TEXT, session.trainee, help=help_)
-        enter = self.open_page(KeyboardPage, self._write_id)
+        enter = self.open_page(keyboard_page, self._write_id)
         if session.operator.is_one_of(SourceKind.KEYBOARD, SourceKind.MOUSE):
             enter = partial(session.pages.move, 1)
         yield PageRow(item, enter, write=self._write_id)
@@ -131,12 +127,11 @@ class ExperimentPage(SessionPage):
             self._usual_id = ""
 
     def _beginnings(self) -> Iterator[PageRow]:
-        """Yield what can be begun: assignments, tutorial and tasks; and the trainee's trials."""
         session, curriculum = self.session, self.session.curriculum
         words = session.assignment_texts
         if curriculum is not None:
             summary, advice = words.summary(curriculum), words.advice(curriculum)
-            opening = self.open_page(AssignmentsPage)
+            opening = self.open_page(assignments_page)
             yield self.button("assignments", opening, value=summary, help=advice)
         if tutorial_rule(session) is not TutorialRule.SKIPPED:
             reason = tutorial_obstacle(session)
@@ -200,7 +195,7 @@ class ExperimentPage(SessionPage):
 
     def _open_questionnaire(self, step: StudyStep) -> None:
         with self.session.complaining():
-            self.session.pages.open(QuestionnairePage(self.session, step))
+            self.session.pages.open(questionnaire_page(self.session, step))
 
 
 def open_experiment(
@@ -210,87 +205,70 @@ def open_experiment(
     session.pages.open(ExperimentPage(session, first), ignore_input_briefly)
 
 
-class ScenarioPage(SessionPage):
-    """Lists the scenarios, and why some cannot be used."""
+Listing = Future[list[ListedScenario]]
 
-    name = "scenario"
 
-    def __init__(self, session: TrainingSession) -> None:
-        super().__init__(session)
-        self._listing = session.services.list_scenarios()
-        self._wanted = ""
+def _is_loaded(page: ShownPage, _listing: Listing, wanted: str = "") -> bool:
+    """Return whether the chosen head is loaded; the page stays if it was refused."""
+    session = page.session
+    return wanted == session.scenario.name and not session.reload.is_under_way
 
-    def content(self) -> PageContent:
-        listed = self._listing.result() if self._listing.done() else []
-        text = self.say("scenario.text" if self._listing.done() else "scenario.looking")
-        rows = (*map(self._head, listed), self.button("back"))
-        first = _HEAD + self.session.scenario.name
-        return PageContent(self.say("scenario.title"), (text,), rows=rows, first=first)
 
-    def advance(self, dt: float) -> None:  # noqa: ARG002
-        """Go back once the chosen head is loaded; stay if it was refused."""
-        if not self._wanted or self.session.reload.is_under_way:
-            return
-        is_there = self.session.scenario.name == self._wanted
-        self._wanted = ""
-        if is_there:
-            self.back()
+@page_kind("scenario", is_over=_is_loaded)
+def scenario_page(page: ShownPage, listing: Listing, wanted: str = "") -> PageContent:
+    """List the scenarios, and why some cannot be used."""
+    session, is_loading = page.session, page.session.reload.is_under_way
+    present = session.scenario.name
 
-    def _head(self, entry: ListedScenario) -> PageRow:
-        is_present = entry.name == self.session.scenario.name
-        is_loading = self.session.reload.is_under_way
-        value = "scenario.loading" if entry.name == self._wanted and is_loading else ""
-        value = "scenario.present" if is_present and not value else value
-        return self.button(
+    def load(name: str) -> None:
+        page.set_value("wanted", name)
+        session.reload.use_scenario(name)
+
+    def head(entry: ListedScenario) -> PageRow:
+        value = page.say("scenario.present") if entry.name == present else ""
+        if entry.name == wanted and is_loading:
+            value = page.say("scenario.loading")
+        return page.button(
             _HEAD + entry.name,
-            partial(self._load, entry.name),
+            partial(load, entry.name),
             entry.title,
-            value=self.say(value) if value else "",
+            value=value,
             is_enabled=not entry.problem and not is_loading,
-            help=entry.problem or self.say("scenario.help"),
+            help=entry.problem or page.say("scenario.help"),
             picture=f"/scenarios/{entry.name}.png" if entry.preview else "",
         )
 
-    def _load(self, name: str) -> None:
-        self._wanted = name
-        self.session.reload.use_scenario(name)
+    listed = listing.result() if listing.done() else []
+    text = page.say("scenario.text" if listing.done() else "scenario.looking")
+    return PageContent(
+        (text,), rows=(*map(head, listed), page.button("back")), first=_HEAD + present
+    )
 
 
-class AssignmentsPage(SessionPage):
-    """Lists the assignments; the next to practice has the focus, and each begins its trial."""
+@page_kind("assignments", is_over=lambda page: page.session.curriculum is None)
+def assignments_page(page: SessionPage) -> PageContent:
+    """List the assignments; the next to practice has the focus, and each begins its trial."""
+    session, curriculum = page.session, page.session.curriculum
+    back, words = page.button("back"), session.assignment_texts
+    if curriculum is None:
+        return PageContent(rows=(back,))
 
-    name = "assignments"
-
-    def content(self) -> PageContent:
-        session, curriculum = self.session, self.session.curriculum
-        title, back, words = (
-            self.say("assignments.title"),
-            self.button("back"),
-            session.assignment_texts,
+    def row(each: AssignmentStanding) -> PageRow:
+        reason = assignment_obstacle(session, each)
+        return page.button(
+            _ASSIGNMENT + each.name,
+            partial(begin, each),
+            words.label(each),
+            value=words.progress(each),
+            is_enabled=not reason,
+            help=reason or f"{words.title(each)}. {words.goal(each)}",
         )
-        if curriculum is None:
-            return PageContent(title, rows=(back,))
 
-        def row(each: AssignmentStanding) -> PageRow:
-            reason = assignment_obstacle(session, each)
-            return self.button(
-                _ASSIGNMENT + each.name,
-                partial(begin, each),
-                words.label(each),
-                value=words.progress(each),
-                is_enabled=not reason,
-                help=reason or f"{words.title(each)}. {words.goal(each)}",
-            )
+    def begin(each: AssignmentStanding) -> None:
+        session.mode = each.mode or session.mode
+        session.method, session.procedure = method_of(each.method), each.procedure
+        start_task(session, each.task)
 
-        def begin(each: AssignmentStanding) -> None:
-            session.mode = each.mode or session.mode
-            session.method, session.procedure = method_of(each.method), each.procedure
-            start_task(session, each.task)
-
-        said = (curriculum.title, words.advice(curriculum))
-        rows = (*map(row, curriculum.assignments), back)
-        return PageContent(title, said, rows=rows, first=_ASSIGNMENT + curriculum.next)
-
-    def advance(self, dt: float) -> None:  # noqa: ARG002
-        if self.session.curriculum is None:
-            self.back()
+    said = (curriculum.title, words.advice(curriculum))
+    rows = (*map(row, curriculum.assignments), back)
+    return PageContent(said, rows=rows, first=_ASSIGNMENT + curriculum.next)

@@ -8,7 +8,7 @@ from rastrainer.number_text import clock
 from rastrainer.protocol import TRIAL_RUN, TutorialRule
 from rastrainer_simulator.flow.pages.controls import controls_page
 from rastrainer_simulator.flow.pages.experiment import open_experiment
-from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind
+from rastrainer_simulator.flow.pages.session_page import SessionPage, ShownPage, page_kind
 from rastrainer_simulator.flow.pages.trial_review import error_tone
 from rastrainer_simulator.flow.session.chosen_trial import (
     may_skip,
@@ -23,46 +23,35 @@ from rastrainer_simulator.record.trial_context import TutorialOutcome
 SHEETS = 3
 
 
-class IntroductionPage(SessionPage):
-    """A few sheets of text; the last leads to the controls."""
+def _leave_sheet(page: ShownPage, sheet: int = 1) -> None:
+    if sheet == 1:
+        page.session.pages.close()
+    else:
+        page.set_value("sheet", sheet - 1)
 
-    name = "introduction"
-    _sheet = 1
 
-    def content(self) -> PageContent:
-        key, alone = f"introduction.text.{self._sheet}", ".alone"
-        # Mention 3D Slicer only if it is connected.
-        is_alone = not self.session.services.is_slicer_connected()
-        if is_alone and f"{key}{alone}" in self.session.texts:
-            key += alone
-        place = self.say("introduction.sheet", sheet=self._sheet, sheets=SHEETS)
-        rows = (
-            self.button("next", self._turn),
-            self.button("skip", self._leave),
-            self.button("back"),
-        )
-        title = self.say(f"introduction.title.{self._sheet}")
-        return PageContent(title, (self.say(key), place), rows=rows, first="next")
-
-    def back(self) -> None:
-        if self._sheet == 1:
-            self.session.pages.close()
-        else:
-            self._sheet -= 1
-
-    def _turn(self) -> None:
-        if self._sheet < SHEETS:
-            self._sheet += 1
-        else:
-            self._leave()
-
-    def _leave(self) -> None:
-        self.session.pages.replace(controls_page(self.session, True))
+@page_kind("introduction", leave=_leave_sheet)
+def introduction_page(page: ShownPage, sheet: int = 1) -> PageContent:
+    """Show one of a few sheets of text; the last leads to the controls."""
+    session = page.session
+    key, alone = f"introduction.text.{sheet}", f"introduction.text.{sheet}.alone"
+    # Mention 3D Slicer only if it is connected.
+    if not session.services.is_slicer_connected() and alone in session.texts:
+        key = alone
+    skip = partial(session.pages.replace, controls_page(session, True))
+    turn = partial(page.set_value, "sheet", sheet + 1)
+    rows = (
+        page.button("next", turn if sheet < SHEETS else skip),
+        page.button("skip", skip),
+        page.button("back"),
+    )
+    place = page.say("introduction.sheet", sheet=sheet, sheets=SHEETS)
+    title = page.say(f"introduction.title.{sheet}")
+    return PageContent((page.say(key), place), rows=rows, title=title, first="next")
 
 
 @page_kind("tutorial", pause_goes_back=True)
 def tutorial_page(page: SessionPage) -> PageContent:
-    """Offer to continue the tutorial, to restart it or to leave it."""
     session, say = page.session, page.say
     tutorial = session.tutorial
     step, steps = (1, 1) if tutorial is None else tutorial.place
@@ -83,12 +72,12 @@ def tutorial_page(page: SessionPage) -> PageContent:
         page.button("restart", partial(session.begin_tutorial, *session.practiced)),
         page.button("leave", leave, say("tutorial.skip" if is_skipped else "tutorial.leave")),
     )
-    return PageContent(session.practice_title, () if is_practice else (paused,), rows=rows)
+    said = () if is_practice else (paused,)
+    return PageContent(said, rows=rows, title=session.practice_title)
 
 
 @page_kind("tutorial-done")
 def tutorial_done_page(page: SessionPage, outcome: TutorialOutcome) -> PageContent:
-    """Say how exact the touches were, and lead to the trial run."""
     session, say = page.session, page.say
     errors = (say("tutorial.mm", error=error) for error in outcome.errors_mm)
     facts = (
@@ -103,13 +92,11 @@ def tutorial_done_page(page: SessionPage, outcome: TutorialOutcome) -> PageConte
         page.button("again", session.begin_tutorial),
         page.button("menu"),
     )
-    text = say("tutorial-done.text", trainee=outcome.trainee)
-    return PageContent(say("tutorial-done.title"), (text,), facts, rows)
+    return PageContent((say("tutorial-done.text", trainee=outcome.trainee),), facts, rows)
 
 
 @page_kind("practiced")
 def practiced_page(page: SessionPage, outcome: TutorialOutcome) -> PageContent:
-    """Say how exact the touch of a practiced point was, and offer another one."""
     session, error_mm = page.session, outcome.errors_mm[-1]
     error = page.say("tutorial.mm", error=error_mm)
     fact = Fact(page.say("practiced.error"), error, error_tone(error_mm))
@@ -117,4 +104,4 @@ def practiced_page(page: SessionPage, outcome: TutorialOutcome) -> PageContent:
         page.button("again", partial(session.begin_tutorial, *session.practiced)),
         page.button("menu", label=page.say("tutorial-done.menu")),
     )
-    return PageContent(session.practice_title, (), (fact,), rows)
+    return PageContent((), (fact,), rows, title=session.practice_title)

@@ -1,10 +1,10 @@
-"""The pages of a scored procedure: its errors and lines."""
+"""The errors of a scored procedure."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from rastrainer.procedure.plan import MAX_TRAJECTORIES
@@ -14,15 +14,13 @@ from rastrainer.trial.procedure_outcome import (
     PLUNGE_LIMIT_MM,
     TARGET_LIMIT_MM,
 )
-from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.pages.session_page import SessionPage, ShownPage, page_kind
 from rastrainer_simulator.flow.pages.trial_review import ErrorsPage
 from rastrainer_simulator.flow.session.open_pages import PageContent
-from rastrainer_simulator.flow.session.plan_marks import PLACED, PLANNED, SHOWN, drawn, placed_line
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.session.trainee_history import detail_number
-from rastrainer_simulator.presentation.screen import ErrorArrow, Fact, Screen, Tone
+from rastrainer_simulator.presentation.screen import Fact, Tone
 from rastrainer_simulator.state import TrialResult
-from rastrainer_simulator.trial_state import PlannedLine
 
 LONGEST_NAME = 60
 _SPLIT = (
@@ -69,80 +67,39 @@ def _trajectories_of(details: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
     return [each for each in listed if isinstance(each, dict)]
 
 
-class ProcedureErrorsPage(SessionPage):
-    """The errors of one trajectory after the other, each split into registration and hand."""
+@page_kind("procedure-errors")
+def procedure_errors_page(page: ShownPage, number: int = 0) -> PageContent:
+    each = _trajectories_of(procedure_details(page.session.training.result))
+    details = each[number] if each else {}
+    name, say = _text(details.get("name")), page.say
+    choose = partial(page.set_value, "number")
+    choice = page.choice("trajectory", range(len(each)), number, choose, name)
+    lines = page.button("lines", page.open_page(ErrorsPage, True))
+    by_robot = details.get("selfAligned") is True
+    text = say("procedure-errors.robot text" if by_robot else "procedure-errors.text")
+    rows = (*((choice,) if len(each) > 1 else ()), lines, page.button("back"))
+    title = say("procedure-errors.title", name=name)
+    return PageContent((text,), tuple(_facts(page, details)), rows, title=title)
 
-    name = "procedure-errors"
-    _number = 0
 
-    def content(self) -> PageContent:
-        each = _trajectories_of(procedure_details(self.session.training.result))
-        details = each[self._number] if each else {}
-        name = _text(details.get("name"))
-
-        def step(direction: int) -> None:
-            self._number = (self._number + direction) % len(each)
-
-        choice = (self.choice("trajectory", name, step),) if len(each) > 1 else ()
-        lines = self.button("lines", self.open_page(ProcedureLinesPage))
-        by_robot = details.get("selfAligned") is True
-        text = self.say("procedure-errors.robot text" if by_robot else "procedure-errors.text")
-        title = self.say("procedure-errors.title", name=name)
-        rows = (*choice, lines, self.button("back"))
-        return PageContent(title, (text,), self._facts(details), rows)
-
-    def _facts(self, details: Mapping[str, Any]) -> list[Fact]:
-        facts = []
-        for name, whole, registration, hand, limit in _SPLIT:
-            numbers = [detail_number(details, member) for member in (whole, registration, hand)]
-            if None in numbers:
-                continue
+def _facts(page: SessionPage, details: Mapping[str, Any]) -> Iterator[Fact]:
+    say = page.say
+    for name, whole, registration, hand, limit in _SPLIT:
+        numbers = [detail_number(details, member) for member in (whole, registration, hand)]
+        if None not in numbers:
             values = dict(zip(("error", "registration", "hand"), numbers, strict=True))
             unit = "deg" if name == "angle" else "mm"
-            text = self.say(f"procedure-errors.split {unit}", **values)
-            facts.append(Fact(self.say(f"procedure-errors.{name}"), text, _tone(numbers[0], limit)))
-        plunge, kept = detail_number(details, "plungeMm"), detail_number(details, "keptMm")
-        label = self.say("procedure-errors.plunge")
-        if plunge is None:
-            missed = self.say("procedure-errors.no inner table")
-            facts.append(Fact(label, missed, Tone.WARNING))
-        else:
-            text = self.say("result.mm", error=plunge)
-            facts.append(Fact(label, text, _tone(plunge, PLUNGE_LIMIT_MM)))
-        if kept is not None:
-            key = "procedure-errors.hit" if kept <= 0.0 else "procedure-errors.kept"
-            tone = Tone.ERROR if kept <= 0.0 else Tone.PLAIN
-            nearest = _text(details.get("nearest"))
-            facts.append(Fact(nearest, self.say(key, distance=kept), tone))
-        return facts
-
-
-class ProcedureLinesPage(ErrorsPage):
-    """Shows the planned, the registered and the placed lines in the head, without a menu."""
-
-    name = "procedure-lines"
-
-    def screen(self) -> Screen:
-        """Return the lines at the true pose of the head, which the score has revealed."""
-        is_scored = self.session.training.result is not None
-        lines = tuple(_lines(self.session)) if is_scored else ()
-        return replace(super().screen(), errors=lines, is_head_clear=True)
-
-    def title(self) -> str:
-        return self.say("procedure-lines.title")
-
-
-def _lines(session: TrainingSession) -> Iterator[ErrorArrow]:
-    procedure = session.training.procedure
-    assert procedure is not None, "the page is opened for a procedure"
-    planned = session.scenario.procedure(procedure.name).trajectories
-    for plan, trajectory in zip(planned, procedure.trajectories, strict=True):
-        entry, target = map(session.truly_in_world, (plan.entry_ras, plan.target_ras))
-        yield drawn(PlannedLine(plan.name, entry, target), PLANNED)
-        yield drawn(trajectory.line, SHOWN)
-        placed = placed_line(trajectory)
-        if placed is not None:
-            yield drawn(placed, PLACED)
+            text = say(f"procedure-errors.split {unit}", **values)
+            yield Fact(say(f"procedure-errors.{name}"), text, _tone(numbers[0], limit))
+    plunge, kept = detail_number(details, "plungeMm"), detail_number(details, "keptMm")
+    missed, tone = say("procedure-errors.no inner table"), Tone.WARNING
+    if plunge is not None:
+        missed, tone = say("result.mm", error=plunge), _tone(plunge, PLUNGE_LIMIT_MM)
+    yield Fact(say("procedure-errors.plunge"), missed, tone)
+    if kept is not None:
+        key = "procedure-errors.hit" if kept <= 0.0 else "procedure-errors.kept"
+        tone = Tone.ERROR if kept <= 0.0 else Tone.PLAIN
+        yield Fact(_text(details.get("nearest")), say(key, distance=kept), tone)
 
 
 def _tone(error: float | None, limit: float) -> Tone:

@@ -19,13 +19,12 @@ from rastrainer.trial.scoring import (
 from rastrainer.trial.trial_feedback import MAX_SHORT
 from rastrainer_simulator.flow.pages.experiment import open_experiment
 from rastrainer_simulator.flow.pages.procedure import (
-    ProcedureErrorsPage,
     procedure_details,
+    procedure_errors_page,
     procedure_facts,
 )
 from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind
 from rastrainer_simulator.flow.pages.trial_review import ErrorsPage, ReplayPage
-from rastrainer_simulator.flow.session.local_scorer import SCORED_BY_SIMULATOR
 from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.session.trainee_history import (
@@ -38,6 +37,7 @@ from rastrainer_simulator.presentation.screen import Fact, Tone
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
 from rastrainer_simulator.state import TrainingState, TrialResult
 from rastrainer_simulator.texts.texts import Texts
+from rastrainer_simulator.training.local_scorer import SCORED_BY_SIMULATOR
 
 LONGEST_SENTENCE = 300
 MAX_WARNINGS = 2
@@ -56,7 +56,6 @@ _ONWARD = ("next", "procedure", "errors", "worst", "replay", "again", "menu")
 
 
 def _following(session: TrainingSession) -> str:
-    """Return the task that comes next; "" for none, or where a curriculum says what does."""
     step = session.trial_step
     if step is not None:
         return step.task if step.is_played else ""
@@ -85,9 +84,8 @@ def _onward(page: SessionPage) -> tuple[PageRow, ...]:
     return (*rows, page.button("menu", menu, page.say("result.menu")))
 
 
-@page_kind("waiting", leave=lambda session: open_experiment(session, _following(session)))
+@page_kind("waiting", leave=lambda page: open_experiment(page.session, _following(page.session)))
 def waiting_page(page: SessionPage) -> PageContent:
-    """Say that the points are registered, and the score has not come yet."""
     session, say = page.session, page.say
     scorer, is_there = session.local_scorer, session.services.is_slicer_connected()
     key = "waiting.slicer" if is_there else "waiting.nobody"
@@ -97,7 +95,7 @@ def waiting_page(page: SessionPage) -> PageContent:
     waiting = say(key, trainee=session.training.trainee)
     why = (say("waiting.problem", reason=problem),) if problem else ()
     facts = _facts_of_trial(session)
-    return PageContent(say("waiting.title"), (waiting, *why), facts, _onward(page))
+    return PageContent((waiting, *why), facts, _onward(page))
 
 
 class ResultPage(SessionPage):
@@ -141,7 +139,7 @@ class ResultPage(SessionPage):
         verdict = {True: "passed", False: "failed", None: "title"}[self._is_passed]
         task = session.task_title(training.task)
         title = self.say(f"result.{verdict}", trainee=training.trainee, task=task)
-        return PageContent(title, said, self._facts(score), self._rows())
+        return PageContent(said, self._facts(score), self._rows(), title=title)
 
     def _facts(self, score: Fact) -> list[Fact]:
         """Return each value with its limit; nothing looks good in a trial that is not passed."""
@@ -169,7 +167,6 @@ class ResultPage(SessionPage):
         return [*facts, *_facts_of_trial(self.session), *shown]
 
     def _rows(self) -> tuple[PageRow, ...]:
-        """Return where the trainee can go: after a failure first to what helps."""
         session, is_in_study = self.session, self.session.trial_step is not None
         rows = [
             *_onward(self),
@@ -178,7 +175,7 @@ class ResultPage(SessionPage):
             self.button("replay", self.show_again),
         ]
         if procedure_details(self._result):
-            rows.append(self.button("procedure", self.open_page(ProcedureErrorsPage)))
+            rows.append(self.button("procedure", self.open_page(procedure_errors_page)))
         # In a study, practice comes where the study has it.
         worst = "" if is_in_study else _worst_point(session.training, self._result)
         if worst:
@@ -190,7 +187,6 @@ class ResultPage(SessionPage):
         return tuple(named[name] for name in order if name in named)
 
     def back(self) -> None:
-        """Go to the next task, or to this one again where it is not passed."""
         failed = self.session.training.task
         first = failed if self._is_passed is False else _following(self.session)
         open_experiment(self.session, first)

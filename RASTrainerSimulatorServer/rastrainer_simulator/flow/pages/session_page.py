@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from functools import partial
-from typing import TypeVar
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
 
 from rastrainer_simulator.flow.session.open_pages import Page, PageContent
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.screen import PRESS, Hint
-
-T = TypeVar("T")
 
 
 class SessionPage(Page):
@@ -30,49 +28,55 @@ class SessionPage(Page):
         return lambda: self.session.pages.open(page(self.session, *arguments))
 
 
-Leave = Callable[[TrainingSession], object]
-Show = Callable[..., PageContent]
+@dataclass(frozen=True)
+class PageKind:
+    """A kind of page: a function of the page and its arguments that returns the content.
+
+    Attributes:
+        leave: does what going back does, given the same arguments; closes the page by default.
+        is_over: whether the page is left without the trainee, given the same arguments.
+    """
+
+    name: str
+    show: Callable[..., PageContent]
+    leave: Callable[..., object] = lambda page, *_arguments, **_values: page.session.pages.close()
+    is_over: Callable[..., bool] = lambda *_arguments, **_values: False
+    pause_goes_back: bool = False
+
+    def __call__(self, session: TrainingSession, *arguments: Any, **values: Any) -> ShownPage:
+        return ShownPage(self, session, arguments, values)
 
 
 class ShownPage(SessionPage):
-    """A page without a state of its own: `show` makes what it shows now.
-
-    `show` is given the page and the arguments; `leave` is called when the trainee goes back.
-    """
+    """A page of a kind; its rows may change its `values`, which are arguments, too."""
 
     def __init__(
         self,
-        name: str,
-        show: Show,
-        leave: Leave | None,
-        pause_goes_back: bool,
+        kind: PageKind,
         session: TrainingSession,
-        *arguments: object,
+        arguments: tuple[Any, ...],
+        values: dict[str, Any],
     ) -> None:
         super().__init__(session)
-        self.name, self.pause_goes_back = name, pause_goes_back
-        self._show, self._leave, self._arguments = show, leave, arguments
+        self.name, self.pause_goes_back = kind.name, kind.pause_goes_back
+        self._kind, self._arguments, self._values = kind, arguments, values
+
+    def set_value(self, name: str, value: Any) -> None:
+        self._values[name] = value
 
     def content(self) -> PageContent:
-        return self._show(self, *self._arguments)
+        return self._kind.show(self, *self._arguments, **self._values)
 
     def back(self) -> None:
-        if self._leave is None:
-            super().back()
-        else:
-            self._leave(self.session)
+        self._kind.leave(self, *self._arguments, **self._values)
+
+    def advance(self, dt: float) -> None:  # noqa: ARG002
+        if self._kind.is_over(self, *self._arguments, **self._values):
+            self.back()
 
 
-def page_kind(
-    name: str, leave: Leave | None = None, pause_goes_back: bool = False
-) -> Callable[[Show], Callable[..., SessionPage]]:
-    """Make a function that returns the content of a page one that makes this page."""
-    return lambda show: partial(ShownPage, name, show, leave, pause_goes_back)
-
-
-def stepped(options: Sequence[T], value: T, direction: int) -> T:
-    """Return the next (1) or previous (−1) of some options, around the ends."""
-    return options[(options.index(value) + direction) % len(options)]
+def page_kind(name: str, **others: Any) -> Callable[[Callable[..., PageContent]], PageKind]:
+    return lambda show: PageKind(name, show, **others)
 
 
 def clickable_hint(session: TrainingSession, control: ControlName, key: str) -> Hint:

@@ -7,7 +7,7 @@ from functools import partial
 
 from rastrainer_simulator.flow.pages.controls import controls_page
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
-from rastrainer_simulator.flow.pages.introduction import IntroductionPage
+from rastrainer_simulator.flow.pages.introduction import introduction_page
 from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind
 from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.preferences import (
@@ -23,30 +23,28 @@ from rastrainer_simulator.ops.instructor_pin import LONGEST_PIN, SHORTEST_PIN
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 
 
-@page_kind("start", leave=lambda _session: None)
+@page_kind("start", leave=lambda _page: None)
 def start_page(page: SessionPage) -> PageContent:
     """Show the first menu. It leads new trainees through the introduction once."""
     has_read = page.session.has_read_introduction
     rows = (
-        page.button("train", page.open_page(ExperimentPage if has_read else IntroductionPage)),
-        page.button("introduction", page.open_page(IntroductionPage)),
+        page.button("train", page.open_page(ExperimentPage if has_read else introduction_page)),
+        page.button("introduction", page.open_page(introduction_page)),
         page.button("controls", page.open_page(controls_page)),
         page.button("settings", page.open_page(settings_page)),
         page.button("quit", page.open_page(quit_page)),
     )
-    return PageContent(page.say("start.title"), (page.say("start.text"),), rows=rows)
+    return PageContent((page.say("start.text"),), rows=rows)
 
 
 @page_kind("quit")
 def quit_page(page: SessionPage) -> PageContent:
-    """Ask for confirmation before the simulator is shut down."""
-
     def leave() -> None:
         page.session.services.quit()
         page.back()
 
     rows = (page.button("stay"), page.button("leave", leave))
-    return PageContent(page.say("quit.title"), (page.say("quit.text"),), rows=rows, first="stay")
+    return PageContent((page.say("quit.text"),), rows=rows, first="stay")
 
 
 @page_kind("settings")
@@ -63,28 +61,31 @@ def settings_page(page: SessionPage) -> PageContent:
         elif is_locked:
             help_ = page.say("settings.locked")
         is_free = lock.has_pin or name not in OF_INSTRUCTORS
-
-        def step(direction: int) -> None:
-            session.prefer(session.preferences.stepped(name, direction))
-
+        is_enabled = is_free and not waits and not is_locked
+        chosen = getattr(session.preferences, name)
         return page.choice(
-            name, value(name), step, is_enabled=is_free and not waits and not is_locked, help=help_
+            name,
+            OPTIONS[name],
+            chosen,
+            lambda value: session.prefer(**{name: value}),
+            shown(name, chosen),
+            is_enabled=is_enabled,
+            help=help_,
         )
 
-    def value(name: str) -> str:
-        chosen = getattr(session.preferences, name)
+    def shown(name: str, value: object) -> str:
         if name == "volume":
-            return f"{chosen} %"
+            return f"{value} %"
         if name in ("coarse", "fine"):
-            return f"{chosen} mm/s"
-        if isinstance(chosen, bool):
-            chosen = "yes" if chosen else "no"
-        return page.say(f"settings.{name}.{chosen}")
+            return f"{value} mm/s"
+        if isinstance(value, bool):
+            value = "yes" if value else "no"
+        return page.say(f"settings.{name}.{value}")
 
     unlock = page.button("unlock", page.open_page(PinPage))
     pin = unlock if lock.is_locked else page.button("lock", lock.lock)
     rows = (*map(setting, OPTIONS), *((pin,) if lock.has_pin else ()), page.button("back"))
-    return PageContent(page.say("settings.title"), rows=rows)
+    return PageContent(rows=rows)
 
 
 DIGITS = "1234567890"
@@ -117,20 +118,16 @@ class PinPage(SessionPage):
         rows = (
             # First, so that the dots are visible even if the digits need more room than there is.
             unlock,
-            *(self.button(digit, partial(self._add, digit), label=digit) for digit in DIGITS),
-            self.button("delete", self._delete),
+            *(self.button(digit, partial(self._type, digit), label=digit) for digit in DIGITS),
+            self.button("delete", partial(self._type, "")),
             self.button("cancel"),
         )
-        return PageContent(self.say("pin.title"), (self.say("pin.text"),), rows=rows)
+        return PageContent((self.say("pin.text"),), rows=rows)
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """Add a typed digit; the focus goes to the button that unlocks, for the key Enter."""
         if device is not InputDevice.KEYBOARD or name not in {*_KEYS, _DELETE_KEY}:
             return False
-        if name == _DELETE_KEY:
-            self._delete()
-        else:
-            self._add(_KEYS[name])
+        self._type(_KEYS.get(name, ""))
         self.session.pages.focus("unlock")
         self.session.happened(FeedbackEvent.FOCUS)
         return True
@@ -155,8 +152,6 @@ class PinPage(SessionPage):
         self._pin = ""
         self.session.lock.forget_guess()
 
-    def _add(self, digit: str) -> None:
-        self._pin = (self._pin + digit)[:LONGEST_PIN]
-
-    def _delete(self) -> None:
-        self._pin = self._pin[:-1]
+    def _type(self, digit: str) -> None:
+        """Add a digit; "" deletes the last one."""
+        self._pin = (self._pin + digit)[:LONGEST_PIN] if digit else self._pin[:-1]

@@ -8,52 +8,41 @@ from functools import partial
 
 from rastrainer.study.protocol.questionnaires import QuestionnaireItem, find_questionnaire
 from rastrainer.study_messages import StudyStep
-from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind, stepped
+from rastrainer_simulator.flow.pages.session_page import SessionPage, ShownPage, page_kind
 from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
-from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.presentation.screen import Fact
 
 ROWS = ("ABCDEFGHIJ", "KLMNOPQRST", "UVWXYZ-_.", "0123456789")
 MAX_KNOWN = 5
-
+UNANSWERED = "–"
 
 Write = Callable[[str], None]
 """Takes the new ID."""
 
 
-def _id_content(page: SessionPage, name: str, rows: Iterable[PageRow]) -> PageContent:
+def _id_content(page: SessionPage, rows: Iterable[PageRow]) -> PageContent:
     entered = Fact(page.say("experiment.trainee"), page.session.trainee + "_")
-    return PageContent(page.say(f"{name}.title"), (), (entered,), tuple(rows))
+    return PageContent((), (entered,), tuple(rows), title=page.say("clicked-id.title"))
 
 
 def _delete(page: SessionPage, write: Write) -> PageRow:
     return page.button("delete", lambda: write(page.session.trainee[:-1]))
 
 
-class KeyboardPage(SessionPage):
-    """Rows of characters: left and right choose one, accepting types it."""
+@page_kind("keyboard")
+def keyboard_page(page: ShownPage, write: Write, **chosen: str) -> PageContent:
+    """Show rows of characters: left and right choose one, accepting types it."""
 
-    name = "keyboard"
+    def row(number: int, characters: str) -> PageRow:
+        name = f"row{number}"
+        here = chosen.get(name, characters[0])
+        shown = " ".join(f"[{each}]" if each == here else each for each in characters)
+        choose, label = partial(page.set_value, name), page.say("keyboard.row")
+        choice = page.choice(name, characters, here, choose, shown, label)
+        return replace(choice, accept=lambda: write(page.session.trainee + here))
 
-    def __init__(self, session: TrainingSession, write: Write) -> None:
-        super().__init__(session)
-        self._write = write
-        self._chosen = [row[0] for row in ROWS]
-
-    def content(self) -> PageContent:
-        rows = (self._row(number) for number in range(len(ROWS)))
-        others = _delete(self, self._write), self.button("done")
-        return _id_content(self, "keyboard", (*rows, *others))
-
-    def _row(self, number: int) -> PageRow:
-        chosen = self._chosen[number]
-
-        def step(direction: int) -> None:
-            self._chosen[number] = stepped(ROWS[number], chosen, direction)
-
-        shown = " ".join(f"[{each}]" if each == chosen else each for each in ROWS[number])
-        row = self.choice(f"row{number}", shown, step, label=self.say("keyboard.row"))
-        return replace(row, accept=lambda: self._write(self.session.trainee + chosen))
+    others = _delete(page, write), page.button("done")
+    return _id_content(page, (*map(row, range(len(ROWS)), ROWS), *others))
 
 
 @page_kind("clicked-id")
@@ -74,74 +63,48 @@ def clicked_id_page(page: SessionPage, write: Write) -> PageContent:
         )
         for number, row in enumerate(ROWS)
     )
-    others = _delete(page, write), page.button("done")
-    return _id_content(page, "clicked-id", (*known, *rows, *others))
+    return _id_content(page, (*known, *rows, _delete(page, write), page.button("done")))
 
 
 @page_kind("character")
 def character_page(page: SessionPage, write: Write, row: str) -> PageContent:
-    """Show the characters of one row: a click adds one to the ID."""
-
     def add(character: str) -> None:
         write(page.session.trainee + character)
         page.back()
 
     characters = (page.button(each, partial(add, each), label=each) for each in row)
-    return _id_content(page, "clicked-id", (*characters, page.button("back")))
+    return _id_content(page, (*characters, page.button("back")))
 
 
-UNANSWERED = "–"
+def _has_moved_on(page: SessionPage, step: StudyStep, **_answers: int) -> bool:
+    return page.session.services.assigned.steps.get(step.trainee) != step
 
 
-class QuestionnairePage(SessionPage):
-    """Collects an answer to each item, and submits them together for Slicer to store."""
+@page_kind("questionnaire", is_over=_has_moved_on)
+def questionnaire_page(page: ShownPage, step: StudyStep, **answers: int) -> PageContent:
+    """Collect an answer to each item, and submit them together for Slicer to store."""
+    asked = find_questionnaire(step.questionnaire)
 
-    name = "questionnaire"
+    def ends(name: str) -> dict[str, object]:
+        words = {"low": page.say(f"{name}.low"), "high": page.say(f"{name}.high")}
+        return {"lowest": asked.lowest, "highest": asked.highest, **words}
 
-    def __init__(self, session: TrainingSession, step: StudyStep) -> None:
-        super().__init__(session)
-        self._step = step
-        self._questionnaire = find_questionnaire(step.questionnaire)
-        self._answers: dict[str, int] = {}
-
-    def content(self) -> PageContent:
-        asked = self._questionnaire
-        items = (self._item(number, item) for number, item in enumerate(asked.items, start=1))
-        is_complete = len(self._answers) == len(asked.items)
-        help_ = "" if is_complete else self.say("questionnaire.open")
-
-        def keep() -> None:
-            answers = [self._answers[item.name] for item in asked.items]
-            self.session.services.assigned.answer(self._step.trainee, answers)
-            self.back()
-
-        ends = self._ends(asked.name)
-        text = self.say("questionnaire.text", trainee=self._step.trainee, **ends)
-        button = self.button("keep", keep, is_enabled=is_complete, help=help_)
-        return PageContent(asked.title, (text,), rows=(*items, button, self.button("back")))
-
-    def _item(self, number: int, item: QuestionnaireItem) -> PageRow:
-        """Return an item's question, with the ends of its scale if they are its own."""
-        line = self.say(item.name)
+    def row(number: int, item: QuestionnaireItem) -> PageRow:
+        line = page.say(item.name)
         if item.anchors:
-            line = self.say("questionnaire.ends", topic=line, **self._ends(item.name))
-        answer = str(self._answers.get(item.name, UNANSWERED))
+            line = page.say("questionnaire.ends", topic=line, **ends(item.name))
+        mark, choose = answers.get(item.name), partial(page.set_value, item.name)
+        shown = UNANSWERED if mark is None else str(mark)
+        return page.choice(item.name, asked.marks, mark, choose, shown, f"{number}. {line}")
 
-        def mark(direction: int) -> None:
-            """Go to the next or previous mark; the first step goes to the end it came from."""
-            marks = self._questionnaire.marks
-            first = marks[-1] if direction > 0 else marks[0]
-            before = self._answers.get(item.name, first)
-            self._answers[item.name] = stepped(marks, before, direction)
+    def keep() -> None:
+        given = [answers[item.name] for item in asked.items]
+        page.session.services.assigned.answer(step.trainee, given)
+        page.back()
 
-        return self.choice(item.name, answer, mark, label=f"{number}. {line}")
-
-    def _ends(self, name: str) -> dict[str, object]:
-        asked = self._questionnaire
-        ends = {"low": self.say(f"{name}.low"), "high": self.say(f"{name}.high")}
-        return {"lowest": asked.lowest, "highest": asked.highest, **ends}
-
-    def advance(self, dt: float) -> None:  # noqa: ARG002
-        """Close when the study has moved on, for example with answers given in Slicer."""
-        if self.session.services.assigned.steps.get(self._step.trainee) != self._step:
-            self.back()
+    is_complete = len(answers) == len(asked.items)
+    help_ = "" if is_complete else page.say("questionnaire.open")
+    text = page.say("questionnaire.text", trainee=step.trainee, **ends(asked.name))
+    button = page.button("keep", keep, is_enabled=is_complete, help=help_)
+    items = map(row, range(1, len(asked.items) + 1), asked.items)
+    return PageContent((text,), rows=(*items, button, page.button("back")), title=asked.title)

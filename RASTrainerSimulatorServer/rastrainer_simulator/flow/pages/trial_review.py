@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
 
@@ -9,7 +10,7 @@ from rastrainer.errors import InputError
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.pages.session_page import SessionPage, clickable_hint, page_kind
 from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
-from rastrainer_simulator.flow.session.plan_marks import plan_marks
+from rastrainer_simulator.flow.session.plan_marks import plan_marks, scored_lines
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.session.trainee_history import OwnTrial
 from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice, SourceKind
@@ -17,6 +18,7 @@ from rastrainer_simulator.presentation.screen import ErrorArrow, Hint, Screen, S
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
 from rastrainer_simulator.replay.replay_presenter import ACTIONS, Player, PlayerAction
+from rastrainer_simulator.trial_state import PlannedLine
 from rastrainer_simulator.vectors import Vector, add, length, scale, subtract
 
 GOOD_MM = 2.0
@@ -37,21 +39,32 @@ LONGER = 5.0
 
 
 class ErrorsPage(SessionPage):
-    """Shows the head without a menu, with an arrow from each fiducial toward its touch."""
+    """Shows errors in the head, without a menu: of touches, or of a procedure's lines."""
 
-    name = "errors"
+    def __init__(self, session: TrainingSession, has_lines: bool = False) -> None:
+        super().__init__(session)
+        self._has_lines = has_lines
+        self.name = "procedure-lines" if has_lines else "errors"
 
     def content(self) -> PageContent:
-        return PageContent(self.title(), rows=(self.button("back"),))
+        title = self.say(f"{self.name}.title", longer=LONGER, good=GOOD_MM, poor=POOR_MM)
+        return PageContent(rows=(self.button("back"),), title=title)
 
     def screen(self) -> Screen:
-        """Return the arrows; they show the true errors, which the score has already revealed."""
-        session = self.session
-        touches = session.training.touches if session.training.result is not None else ()
-        fiducials = session.control_loop.simulation.truth.fiducials_ras
-        errors = (
-            error_arrow(session.truly_in_world(fiducials[t.label]), t.position) for t in touches
-        )
+        """Return arrows or lines at the true pose of the head, which the score has revealed."""
+        session, training = self.session, self.session.training
+        errors: Iterable[ErrorArrow] = ()
+        if self._has_lines and training.procedure is not None and training.result is not None:
+            plan = session.scenario.procedure(training.procedure.name).trajectories
+            ends = (map(session.truly_in_world, (each.entry_ras, each.target_ras)) for each in plan)
+            true = (PlannedLine("", *line) for line in ends)
+            errors = scored_lines(true, training.procedure)
+        elif training.result is not None:
+            fiducials = session.control_loop.simulation.truth.fiducials_ras
+            errors = (
+                error_arrow(session.truly_in_world(fiducials[t.label]), t.position)
+                for t in training.touches
+            )
         back = Hint(session.operator.label(ControlName.BACK), self.say("hint.result"), "back")
         hints: tuple[Hint, ...] = (back,)
         if not session.operator.is_one_of(SourceKind.XR):
@@ -60,10 +73,11 @@ class ErrorsPage(SessionPage):
             turn = self.say("hint.turn_view")
             hints = (*(Hint(session.operator.pair_label(*pair), turn) for pair in pairs), back)
         return Screen(
-            instruction=ScreenMessage(self.title()),
+            instruction=ScreenMessage(self.content().title),
             hints=hints,
             language=session.preferences.language,
             errors=tuple(errors),
+            is_head_clear=self._has_lines,
         )
 
     def pressed(self, control: ControlName) -> bool:
@@ -73,9 +87,6 @@ class ErrorsPage(SessionPage):
         camera = session.scenario.cameras[session.state.camera]
         session.view.control.turn(camera, *_TURNS[control], 1.0)
         return True
-
-    def title(self) -> str:
-        return self.say("errors.title", longer=LONGER, good=GOOD_MM, poor=POOR_MM)
 
 
 def error_arrow(fiducial: Vector, touch: Vector) -> ErrorArrow:
@@ -101,7 +112,6 @@ class ReplayPage(SessionPage):
     def __init__(
         self, session: TrainingSession, loading: TrialLoading, begins_at_worst: bool
     ) -> None:
-        """`begins_at_worst` shows the worst touch at first."""
         super().__init__(session)
         self.playback: Playback | None = None
         self._loading = loading
@@ -109,7 +119,7 @@ class ReplayPage(SessionPage):
         self._player: Player | None = None
 
     def content(self) -> PageContent:
-        return PageContent(self.say("replay.loading"), rows=(self.button("back"),))
+        return PageContent(rows=(self.button("back"),), title=self.say("replay.loading"))
 
     def screen(self) -> Screen | None:
         """Return the screen of the playback, with the plan of a procedure if it was visible."""
@@ -181,7 +191,6 @@ _VERDICTS = {True: "experiment.passed", False: "experiment.failed", None: "exper
 
 @page_kind("own-trials")
 def own_trials_page(page: SessionPage) -> PageContent:
-    """List the newest trials first; choosing one shows it again."""
     session, say = page.session, page.say
 
     def show(trial_id: str) -> None:
@@ -206,4 +215,5 @@ def own_trials_page(page: SessionPage) -> PageContent:
     trainee = session.trainee_id
     trials = reversed(session.history.own(trainee)[-MOST_TRIALS:])
     back = page.button("back", label=say("experiment.back"))
-    return PageContent(say("own-trials.title", trainee=trainee), rows=(*map(row, trials), back))
+    title = say("own-trials.title", trainee=trainee)
+    return PageContent(rows=(*map(row, trials), back), title=title)

@@ -59,14 +59,12 @@ class AssignedTraining:
             del self.curricula[next(iter(self.curricula))]
 
     def break_left_s(self, trainee: str) -> float:
-        """Return how long the trainee's break still lasts, in s; 0 without one."""
         step = self.steps.get(trainee)
         if step is None or step.kind != StepKind.BREAK:
             return 0.0
         return step.left_s(self._clock() - self._received_at[trainee])
 
     def note_registered(self, trainee: str, task: str, mode: str) -> None:
-        """Note a trial: what the study has requested is not started twice."""
         step = self.steps.get(trainee)
         wanted = (StepKind.TRIAL.value, task, mode)
         if step is not None and (step.kind, step.task, step.mode) == wanted:

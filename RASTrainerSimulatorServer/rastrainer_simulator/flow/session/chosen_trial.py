@@ -1,4 +1,4 @@
-"""A trial as the study requires or the trainee has chosen it, and what it waits for."""
+"""A trial as the study requires or the trainee has chosen it, and the reasons against it."""
 
 from __future__ import annotations
 
@@ -34,7 +34,6 @@ def start_task(session: TrainingSession, task: str) -> None:
 
 
 def procedure_of(session: TrainingSession, task: str) -> str:
-    """Return the name of the procedure that follows the touches of a task; "" for none."""
     step = session.step
     if step is not None:
         return step.procedure
@@ -43,7 +42,6 @@ def procedure_of(session: TrainingSession, task: str) -> str:
 
 
 def registration_method(session: TrainingSession, task: str) -> RegistrationMethod:
-    """Return the method by which a trial of a task is registered."""
     step = session.step
     if step is not None:
         return method_of(step.method)
@@ -166,21 +164,18 @@ def tutorial_obstacle(session: TrainingSession) -> str:
 
 
 def _unready(session: TrainingSession) -> str:
-    """Return why nothing can begin yet; "" where trainee and robot are ready."""
     if not session.trainee_id:
         return session.texts.say("experiment.no trainee")
     return session.texts.say("being set up") if session.reload.is_under_way else ""
 
 
 def tutorial_rule(session: TrainingSession) -> TutorialRule:
-    """Return whether the tutorial comes before the trial run: by the study, or by the setting."""
     step = session.step
     chosen = step.tutorial if step is not None and step.tutorial else session.preferences.tutorial
     return TutorialRule(chosen)
 
 
 def may_skip(session: TrainingSession) -> bool:
-    """Return whether the trainee may skip tutorial and trial run."""
     is_led = session.step is not None or session.curriculum is not None
     return not is_led and not session.lock.is_locked
 
@@ -216,6 +211,5 @@ def needs_tutorial(session: TrainingSession) -> bool:
 
 
 def has_learned(session: TrainingSession) -> bool:
-    """Return whether the trainee has finished the tutorial with the device in use."""
     device = session.operator.learned(session.mode)
     return session.history.has_learned(session.trainee_id, device)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
@@ -18,6 +18,8 @@ from rastrainer_simulator.presentation.screen import (
     ScoreTrend,
     Screen,
 )
+
+T = TypeVar("T")
 
 _STEPS = {ControlName.LEFT: -1, ControlName.RIGHT: 1}
 _MOVES = {ControlName.UP: -1, ControlName.DOWN: 1}
@@ -40,17 +42,18 @@ class PageRow:
 
 @dataclass(frozen=True)
 class PageContent:
-    """The content of a page, in the order of `Menu`.
+    """The content of a page; a part that it does not have is empty.
 
     Attributes:
+        title: "" for the sentence "NAME.title".
         first: name of the row that has the focus when the page opens; "" is the first that can be
             chosen.
     """
 
-    title: str
     paragraphs: Sequence[str] = ()
     facts: Sequence[Fact] = ()
     rows: Sequence[PageRow] = ()
+    title: str = ""
     picture: ControlsPicture = ""
     trend: ScoreTrend | None = None
     first: str = ""
@@ -75,7 +78,6 @@ class Page:
         raise NotImplementedError
 
     def back(self) -> None:
-        """Leave the page, as the trainee wants."""
         raise NotImplementedError
 
     def button(
@@ -86,9 +88,23 @@ class Page:
         return PageRow(item, accept or self.back)
 
     def choice(
-        self, name: str, value: str, step: Callable[[int], object], label: str = "", **others: Any
+        self,
+        name: str,
+        options: Sequence[T],
+        chosen: T,
+        choose: Callable[[T], object],
+        shown: str,
+        label: str = "",
+        **others: Any,
     ) -> PageRow:
-        row = self.button(name, lambda: step(1), label, kind=ItemKind.CHOICE, value=value, **others)
+        """Return a choice, around the ends; from a value that is no option it goes to an end."""
+
+        def step(direction: int) -> None:
+            before = -1 if direction > 0 else 0
+            place = options.index(chosen) if chosen in options else before
+            choose(options[(place + direction) % len(options)])
+
+        row = self.button(name, lambda: step(1), label, kind=ItemKind.CHOICE, value=shown, **others)
         return dataclasses.replace(row, step=step)
 
     def screen(self) -> Screen | None:
@@ -150,9 +166,10 @@ class OpenPages:
 
     def open(self, page: Page, ignore_input_briefly: bool = False) -> None:
         """Open a page over the others; with a grace time where it opens automatically."""
+        first = page.content().first
         self._grace_s = GRACE_S if ignore_input_briefly else 0.0
         self._open.append(page)
-        self._focus.append(page.content().first)
+        self._focus.append(first)
 
     def close(self) -> None:
         if self._open:
@@ -169,7 +186,7 @@ class OpenPages:
         shown = self.top.content()
         return Menu(
             self.top.name,
-            shown.title,
+            shown.title or self.top.say(f"{self.top.name}.title"),
             tuple(shown.paragraphs),
             tuple(shown.facts),
             tuple(row.item for row in shown.rows),
@@ -199,7 +216,6 @@ class OpenPages:
             page.back()
 
     def move(self, direction: int) -> None:
-        """Move the focus to the next (1) or previous (−1) row, around the ends."""
         if self.top is None:
             return
         rows = self.top.content().rows
@@ -214,7 +230,6 @@ class OpenPages:
             self._focus[-1] = name
 
     def choose(self, name: str) -> None:
-        """Choose a row: press a button, step a choice, go to a text."""
         row = self._row(name)
         if row is not None:
             self.focus(name)

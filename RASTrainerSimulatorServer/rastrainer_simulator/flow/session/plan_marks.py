@@ -5,7 +5,7 @@ Checkpoints are marks on the patient's skin, as fiducials are: they are drawn wh
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from rastrainer.procedure.geometry import BoneAhead
 from rastrainer.transforms import MM_PER_M
@@ -61,13 +61,15 @@ def depth_ruler(
     )
 
 
-def placed_line(trajectory: TrajectoryState) -> PlannedLine | None:
-    """Return the line from the guide's tip to the tip of the placed instrument; None before."""
-    guide, depth = trajectory.guide, trajectory.instrument_depth
-    if guide is None or depth is None:
-        return None
-    end = add(guide.tip, scale(guide.direction, depth))
-    return PlannedLine(trajectory.line.name, guide.tip, end)
+def scored_lines(plan: Iterable[PlannedLine], procedure: ProcedureState) -> Iterator[ErrorArrow]:
+    """Yield the planned lines where they truly are, and the registered and the placed lines."""
+    for true, trajectory in zip(plan, procedure.trajectories, strict=True):
+        yield drawn(true, PLANNED)
+        yield drawn(trajectory.line, SHOWN)
+        guide, depth = trajectory.guide, trajectory.instrument_depth
+        if guide is not None and depth is not None:
+            end = add(guide.tip, scale(guide.direction, depth))
+            yield ErrorArrow(guide.tip, end, PLACED)
 
 
 def drawn(line: PlannedLine, tone: Tone, before_m: float = 0.0) -> ErrorArrow:

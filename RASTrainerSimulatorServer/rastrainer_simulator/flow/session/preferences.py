@@ -52,7 +52,7 @@ class Preferences:
         coarse: fastest travel of the tip, mm/s.
         fine: the same while the trigger for fine speed is held, mm/s.
         view: when the view goes to each next point automatically: "practice" is outside of a study.
-        ghost: which earlier trial is shown beside the arm, outside of studies.
+        ghost: the earlier trial that is shown next to the arm, outside of studies.
         expert: ID of the trainee whose best acceptable trials are the ghost "expert"; any text.
         tutorial: whether it comes before the trial run, unless a study says otherwise.
     """
@@ -73,12 +73,6 @@ class Preferences:
     ghost: Annotated[str, _any_of(GhostRule)] = GhostRule.OFF.value
     expert: Annotated[str, text(64, 0)] = ""
     tutorial: Annotated[str, _any_of(TutorialRule)] = TutorialRule.REQUIRED.value
-
-    def stepped(self, name: str, direction: int) -> Preferences:
-        """Return the preferences with one of them moved to its next or previous option."""
-        options = OPTIONS[name]
-        place = (options.index(getattr(self, name)) + direction) % len(options)
-        return dataclasses.replace(self, **{name: options[place]})
 
     def applied_to(self, settings: SimulationSettings) -> SimulationSettings:
         teleoperation = settings.teleoperation
@@ -108,7 +102,7 @@ OF_THE_SIMULATION = ("coarse", "fine", "axes", "direction", "touch", "self_align
 OF_INSTRUCTORS = ("order", "tutorial")
 """Preferences that are changed in the file, or with the instructor's PIN where there is one.
 
-Trainees do not decide what they may leave out.
+Trainees do not decide which tasks they skip.
 """
 OF_TRAINEES = ("language", "volume", "muted", "speech")
 """Preferences that no PIN locks: trainees have to understand and hear."""

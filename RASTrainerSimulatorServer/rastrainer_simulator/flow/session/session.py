@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import Future
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +21,6 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
 from rastrainer.study_messages import CurriculumMessage, StudyStep
 from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
-from rastrainer_simulator.flow.session.local_scorer import LocalScorer
 from rastrainer_simulator.flow.session.open_pages import OpenPages
 from rastrainer_simulator.flow.session.operator_device import OperatorDevice
 from rastrainer_simulator.flow.session.preferences import (
@@ -43,8 +44,11 @@ from rastrainer_simulator.replay.ghost import TrialGhost
 from rastrainer_simulator.replay.recorded_trial import TrialLoading, load_trial
 from rastrainer_simulator.state import Answer, Event, SimulationState, TouchStage, TrainingState
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
+from rastrainer_simulator.training.local_scorer import LocalScorer
 from rastrainer_simulator.vectors import Vector, in_meters
 from rastrainer_simulator.viewpoint.view_control import Orbit
+
+_log = logging.getLogger(__name__)
 
 REACHED_S = 20.0
 """How long a reached assignment is shown: it comes while the result is read."""
@@ -173,9 +177,18 @@ class TrainingSession:
     def do(self, command: str, arguments: Mapping[str, Any] | None = None) -> None:
         holder = self.controls.holder
         sender = "" if holder is None else holder.kind.value
-        with self.complaining():
-            checked = check_arguments(command, arguments or {})
+        checked = self._checked(command, arguments or {})
+        if checked is not None:
             self._asked.append((command, self.control_loop.submit(command, checked, sender)))
+
+    def _checked(self, command: str, arguments: Mapping[str, Any]) -> dict[str, Any] | None:
+        """Return checked arguments; the reason against them, which names a command, is logged."""
+        try:
+            return check_arguments(command, arguments)
+        except InputError as error:
+            _log.warning("%s", error)
+            self.complain(self.texts.say("warning.impossible"))
+            return None
 
     def begin_tutorial(self, task: str = TRIAL_RUN, point: str = "") -> None:
         """Open the tutorial, or the practice of a task's point, in place of any page.
@@ -186,9 +199,8 @@ class TrainingSession:
             self.complain(self.texts.say("being set up"))
             return
         wanted = {"task": task, "trainee": self.trainee_id, "mode": self.mode}
-        with self.complaining():
-            arguments = check_arguments(CommandName.START_TASK, wanted)
-            setup = self.control_loop.setup
+        arguments, setup = self._checked(CommandName.START_TASK, wanted), self.control_loop.setup
+        if arguments is not None:
             self.tutorial = Tutorial(setup, self.state, arguments, point)
             self.practiced = task, point
             practice = self.tutorial.practice
@@ -210,9 +222,9 @@ class TrainingSession:
                 self.history.keep_tutorial(outcome)
         return outcome
 
-    def prefer(self, preferences: Preferences) -> None:
+    def prefer(self, **changes: Any) -> None:
         before = self.control_loop.setup.settings
-        self.preferences = preferences
+        self.preferences = preferences = replace(self.preferences, **changes)
         self.texts = self.operator.texts = Texts(LANGUAGES[preferences.language])
         self.reload.request(before, preferences.applied_to(before))
         with self.complaining():

@@ -32,7 +32,6 @@ from rastrainer_simulator.viewpoint.view_control import (
     CameraPose,
     Pictures,
     ViewControl,
-    ViewMotion,
     camera_pose,
     heading_deg,
     orbit_to,
@@ -87,7 +86,7 @@ class TrialView:
         dt: float,
         state: SimulationState,
         scenario: Scenario,
-        motion: ViewMotion,
+        motion: Vector,
         sticks: OperatorInput,
         follows: bool,
     ) -> None:

@@ -39,7 +39,7 @@ _MAY_TOUCH = (TutorialStep.LOWER, TutorialStep.TOUCH, TutorialStep.GUIDED, Tutor
 class TouchPractice:
     """Some points of a task, touched while no trial is open.
 
-    The rules are those of a trial, whose state machine is used, but the simulation, its clients and
+    It uses the state machine of a trial, with its rules, but the simulation, its clients and
     the journals know nothing of it: only what the views show is changed (`shown`).
     """
 
@@ -55,7 +55,7 @@ class TouchPractice:
         """Begin; the head stays where it is.
 
         Args:
-            arguments: checked ones of StartTask, with `trialId`.
+            arguments: checked arguments of StartTask, with `trialId`.
             points: which are touched.
             rest: where the tip may still be on the skin from a touch before, World, m.
         """
@@ -135,7 +135,7 @@ def _tip(state: SimulationState) -> Vector:
 
 
 class Tutorial:
-    """Leads through the steps, each of which is done when what it asks for has really happened.
+    """Leads through the steps; a step is done when the arm, the view or a touch has really changed.
 
     Attributes:
         points: that are touched: label → World, m.
@@ -150,7 +150,7 @@ class Tutorial:
         arguments: dict[str, str],
         practiced: str = "",
     ) -> None:
-        """Begin; `arguments` are checked ones of StartTask; `practiced` is a point of its task."""
+        """Begin, by checked arguments of StartTask; `practiced` is a point of its task."""
         self.trainee, self.mode = arguments["trainee"], arguments["mode"]
         self.setup = setup
         trial = {**arguments, "trialId": str(uuid.uuid4())}

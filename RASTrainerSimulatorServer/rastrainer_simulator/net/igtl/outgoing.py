@@ -23,7 +23,7 @@ class Outgoing:
         self._packed: dict[int, bytes | None] = {}
 
     def packed(self, version: int) -> bytes | None:
-        """Return the message's bytes, or None where that header version cannot carry it.
+        """Return the message's bytes, or None if that header version cannot carry it.
 
         Version 1 has no metadata, and so no empty list: such a client keeps its last point.
         """
@@ -66,7 +66,7 @@ class OutgoingQueue:
         self._latest[key] = data
 
     def take(self, about: int) -> bytes:
-        """Remove and return messages of `about` bytes in all, the lasting ones first."""
+        """Remove and return messages of `about` bytes in all, lasting messages first."""
         taken, size = [], 0
         while size < about and self._lasting:
             taken.append(self._lasting.popleft())

@@ -19,10 +19,42 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.loop.timing import Pacer
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
 from rastrainer_simulator.net.igtl.server import ClientConnection
-from rastrainer_simulator.net.igtl.told import told
 from rastrainer_simulator.state import SimulationState, TrainingState
+from rastrainer_simulator.texts.texts import LocalizedText, Texts
 from rastrainer_simulator.training.tracing import stroke_data
 from rastrainer_simulator.trial_state import ProcedureState, Tool
+
+_WITHOUT_DISTANCE: Mapping[str, tuple[str, tuple[str, ...]]] = {
+    "too far": (
+        "Too far from point {point}: a touch counts within {radius:g} mm.",
+        ("point", "radius"),
+    ),
+    "above the skin": ("The tip is above the skin: lower it onto point {point}.", ("point",)),
+    "wrong point": (
+        "Wrong point: that is point {label}; point {point} is next.",
+        ("point", "label"),
+    ),
+    "above a checkpoint": ("The tip is above the skin: lower it onto the checkpoint.", ()),
+    "too far to lock": (
+        "The guide's tip is too far from the skin along its axis: lock it within {limit:.0f} mm.",
+        ("limit",),
+    ),
+}
+_TOLD = Texts({key: text for key, (text, _values) in _WITHOUT_DISTANCE.items()})
+_SAME = {"much too far": "too far"}
+
+
+def told(sentence: str) -> str:
+    """Return a trial's sentence in English, without the distances that the trainee reads.
+
+    With the exact pose of the tip, they would give the secret pose of the head
+    (`Testing/security/pose_leak.py`).
+    """
+    if not isinstance(sentence, LocalizedText):
+        return sentence
+    key = _SAME.get(sentence.key, sentence.key)
+    kept = _WITHOUT_DISTANCE[key][1] if key in _WITHOUT_DISTANCE else tuple(sentence.values)
+    return _TOLD.say(key, **{name: sentence.values[name] for name in kept})
 
 
 def tips(state: SimulationState, seq: int) -> tuple[Message, ...]:
@@ -64,7 +96,7 @@ def captured_points(training: TrainingState) -> Message:
 def what_changes(state: SimulationState, is_guided: bool = False) -> dict[str, Any]:
     """Return `SimState` without its number and time; it is sent when this changes.
 
-    No distance to the head goes to clients: beside the pose of the tip it would be a range finder,
+    No distance to the head goes to clients: with the pose of the tip it would be a range finder,
     which gives the head's secret pose (`Testing/security/pose_leak.py`).
     """
     training, trace = state.training, state.training.trace
@@ -132,15 +164,9 @@ class PoseSubscription:
         """`is_steady` also wants poses that have not changed."""
         self.tool_tip = Pacer(tool_tip_hz)
         self.links = Pacer(links_hz)
-        self._is_steady = is_steady
-        self._sent: dict[str, bytes] = {}
-
-    def is_news(self, device: str, content: bytes) -> bool:
-        """Return whether a pose, as sent with 32 bits, is to be sent; it then counts as sent."""
-        if self._sent.get(device) == content and not self._is_steady:
-            return False
-        self._sent[device] = content
-        return True
+        self.is_steady = is_steady
+        self.sent: dict[str, bytes] = {}
+        """The content of each device's last pose, as sent with 32 bits."""
 
 
 class Publisher:
@@ -182,7 +208,7 @@ class Publisher:
         return bool(self._poses) and (is_news or state.sim_time >= self._next)
 
     def publish(self, state: SimulationState) -> None:
-        """Send each client what is due and new."""
+        """Send each client the devices that are due and have changed."""
         now = state.sim_time
         sent, training = self._sent_training, state.training
         if training is not sent:
@@ -207,13 +233,16 @@ class Publisher:
         self._next = min([self._state.next, *due])
 
     def _publish_poses(self, due: Iterable[ClientConnection], messages: Iterable[Message]) -> None:
-        """Send each client what is new to it; the messages carry the next number."""
+        """Send each client the messages that are new to it; they carry the next number."""
         is_sent = False
         for message in messages:
             content = message.content.pack()
-            receivers = [
-                client for client in due if self._poses[client].is_news(message.device, content)
-            ]
+            receivers = []
+            for client in due:
+                poses = self._poses[client]
+                if poses.is_steady or poses.sent.get(message.device) != content:
+                    poses.sent[message.device] = content
+                    receivers.append(client)
             self._send(receivers, message)
             is_sent = is_sent or bool(receivers)
         if is_sent:

@@ -11,7 +11,6 @@ import logging
 import socket
 import time
 from collections import Counter
-from collections.abc import Collection
 from typing import Protocol
 
 from rastrainer.errors import InputError
@@ -22,8 +21,8 @@ from rastrainer_simulator.net.limits import LinkLimits
 from rastrainer_simulator.net.listener import listen
 
 FIRST_MESSAGE_S = 0.25
-"""Time that a client has to show by its first message which header version it speaks; then it is
-taken for a listener of version 2."""
+"""Time in which a client shows its header version by its first message; then it counts as a
+listener of version 2."""
 MESSAGE_BYTES = 72 * 1024
 """Body of a message that is waited for; a longer one is passed over."""
 HALF_MESSAGE_S = 10.0
@@ -31,10 +30,10 @@ HALF_MESSAGE_S = 10.0
 SILENT_PEER_S = 20.0
 """After which a peer is dropped whose machine does not answer any more."""
 READING_SHARE = 0.3
-"""Of one core for reading; the connections share it evenly."""
+"""Share of one core for reading; the connections divide it evenly."""
 _PIECE_BYTES = 16 * 1024
 RECONNECT_S = 1.0
-"""Between two attempts to reach a listening Slicer."""
+"""Time between two attempts to reach a listening Slicer."""
 _CONNECT_TIMEOUT_S = 5.0
 _CLOSE_TIMEOUT_S = 0.5
 _logger = logging.getLogger("rastrainer.igtl")
@@ -47,8 +46,8 @@ class ClientConnection(asyncio.BufferedProtocol):
     """One peer; `scores` is whether it has said that it registers and scores trials.
 
     Messages go out with the header version that the peer speaks. A peer of version 1 could not
-    even pass over one of version 2: so nothing is sent before the peer's first header, whatever
-    follows it, or some tenths of a second in which a mere listener has sent none.
+    even skip a message of version 2: so nothing is sent before the peer's first header, or some
+    tenths of a second in which a mere listener has sent none.
     """
 
     def __init__(self, owner: IgtlServer):
@@ -71,7 +70,7 @@ class ClientConnection(asyncio.BufferedProtocol):
         self._read_on: asyncio.TimerHandle | None = None
         self._drop_slow: asyncio.TimerHandle | None = None
         self._drop_stalled: asyncio.TimerHandle | None = None
-        # How many messages came before the one that has partly arrived; None while none has.
+        # How many messages came before a message that has partly arrived; None without one.
         self._half_message: int | None = None
         self._reason = ""
 
@@ -83,7 +82,7 @@ class ClientConnection(asyncio.BufferedProtocol):
             self._flush_soon()
 
     def send_latest(self, message: Outgoing) -> None:
-        """Send a device's state, in place of an older one that still waits."""
+        """Send a device's state, in place of an older state that still waits."""
         data = message.packed(self.header_version)
         if data is not None:
             self._queue.put_latest(message.key, data)
@@ -172,7 +171,7 @@ class ClientConnection(asyncio.BufferedProtocol):
                 timer.cancel()
         self._transport = None
         self.closed.set()
-        # Of an error, why the operating system ended the connection; none where the peer left.
+        # Why the operating system ended the connection; no words if the peer left.
         words = "" if error is None else getattr(error, "strerror", None) or str(error)
         self._owner.disconnected(self, self._reason or words)
 
@@ -239,13 +238,9 @@ class IgtlServer:
         self.handler = handler
         self.log = LinkLog()
         self.connections: dict[ClientConnection, None] = {}
-        self._opened: set[ClientConnection] = set()
+        self.clients: set[ClientConnection] = set()
+        """The connections that may be sent to."""
         self._listening: list[asyncio.Server] = []
-
-    @property
-    def clients(self) -> Collection[ClientConnection]:
-        """The connections that may be sent to, at this moment."""
-        return tuple(self._opened)
 
     async def listen(self, host: str, port: int) -> int:
         """Listen and return the port, which is any free one where `port` is 0."""
@@ -276,7 +271,7 @@ class IgtlServer:
             await asyncio.sleep(RECONNECT_S)
 
     async def close(self) -> None:
-        """Stop listening, send the clients what is still waiting, and end."""
+        """Stop listening, send the waiting messages, and end."""
         for listening in self._listening:
             listening.close()
         connections = tuple(self.connections)
@@ -302,20 +297,20 @@ class IgtlServer:
         self.connections[connection] = None
 
     def opened(self, connection: ClientConnection) -> None:
-        self._opened.add(connection)
+        self.clients.add(connection)
         self.handler.connected(connection)
 
     def disconnected(self, connection: ClientConnection, reason: str) -> None:
         if reason:
             self.log.note(f"{connection.host} was disconnected: {reason}")
         self.connections.pop(connection, None)
-        if connection in self._opened:
-            self._opened.discard(connection)
+        if connection in self.clients:
+            self.clients.discard(connection)
             self.handler.disconnected(connection)
 
 
 class LinkLog:
-    """Logs the first problem immediately and those of the following second in one line."""
+    """Logs the first problem immediately and the problems of the next second in one line."""
 
     def __init__(self):
         self._counts: Counter[str] = Counter()

@@ -11,7 +11,7 @@ import itertools
 import json
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import Future
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
@@ -37,14 +37,13 @@ from rastrainer.study.protocol.steps import StepAnswers
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
-from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher
+from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher, told
 from rastrainer_simulator.net.igtl.registration_check import (
     CHECKED,
-    RegistrationCheck,
     SubmitCommand,
+    submit_checked,
 )
 from rastrainer_simulator.net.igtl.server import ClientConnection, IgtlServer
-from rastrainer_simulator.net.igtl.told import told
 from rastrainer_simulator.net.limits import LinkLimits
 from rastrainer_simulator.state import Answer, SimulationState, answered
 from rastrainer_simulator.texts.texts import LocalizedText
@@ -56,7 +55,7 @@ _OWN_DEVICES = frozenset(
 COMMANDS_AT_ONCE = 16
 """Commands of one client that are submitted to the control loop at a time."""
 WAITING_COMMANDS, WAITING_COMMAND_BYTES = 4096, 2**20
-"""Further ones that may wait for their turn; one more is refused."""
+"""Further commands that may wait for their turn; another is refused."""
 OFFERS_AT_ONCE = 8
 """Trials in one round of offers."""
 _NUMBERS = 2**32
@@ -139,7 +138,7 @@ class CommandHandler:
     def _reply(self, connection: ClientConnection, command: Command, answer: Answer) -> None:
         """Send an answer; its body repeats the sentence for clients that read no metadata.
 
-        What the rules of a trial refuse has a code and values beside the sentence.
+        A refusal by the rules of a trial has a code and values besides the sentence.
         """
         metadata, data = {STATUS_KEY: SUCCESS if answer.ok else FAIL}, dict(answer.data)
         if not answer.ok:
@@ -175,19 +174,19 @@ class SimulatorLink:
     ):
         """Make a link, in the event loop's thread.
 
-        Args:
-            arrivals: counts the records that `unacknowledged` gives, since the start.
-            find_scenario: gives the scenario of a name, the present one for ""; in any thread.
-            health: gives what the heartbeat reports about the simulator, ready for JSON.
-            answers: gives a study's answers that Slicer has not taken yet.
-            slicer_left: is called when the last client that registers and scores has left.
+        `arrivals` counts the records that `unacknowledged` gives, since the start; `find_scenario`
+        gives the present scenario for "", in any thread; `health` is for the heartbeat; `answers`
+        gives a study's answers that Slicer has not taken yet; `slicer_left` is called when the last
+        client that registers and scores has left.
         """
         self.server = IgtlServer(self, limits)
         self.publisher = Publisher(latest)
         self.offers = TrialOffers(unacknowledged, lambda: self.server.clients)
         self._arrivals = arrivals
         self._offered_arrivals = arrivals()
-        self._check = RegistrationCheck(submit, latest, find_scenario)
+        registering = ThreadPoolExecutor(max_workers=1, thread_name_prefix="registration")
+        check = partial(submit_checked, submit, lambda: latest().training, find_scenario)
+        self._submit_checked: SubmitCommand = partial(registering.submit, check)
         self._submit_command = submit
         self._health = health
         self._answers = answers
@@ -214,7 +213,7 @@ class SimulatorLink:
             self._slicer_left()
 
     def publish(self, state: SimulationState) -> None:
-        """Publish what is due, and offer a trial that has just been registered or aborted."""
+        """Publish the devices that are due, and offer a trial that has just been closed."""
         self.publisher.publish(state)
         arrivals = self._arrivals()
         if arrivals != self._offered_arrivals:
@@ -267,7 +266,7 @@ class SimulatorLink:
         if not is_offered:
             sentence = "This trial was not offered over this connection."
             return answered(Answer(0, False, sentence))
-        submit = self._check.submit if name in CHECKED else self._submit_command
+        submit = self._submit_checked if name in CHECKED else self._submit_command
         return submit(name, arguments, connection.name)
 
     def _greet(self, connection: ClientConnection, arguments: Mapping[str, Any]) -> Answer:
@@ -307,7 +306,7 @@ class TrialOffers:
         self._start = 0
 
     def offer_newest(self) -> None:
-        """Offer the aborted trials, then the one that was registered last.
+        """Offer the aborted trials, then the last registered trial.
 
         In a study, a client counts a repeat only if it knows which trials were aborted before.
         """

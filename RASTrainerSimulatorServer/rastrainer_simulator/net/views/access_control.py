@@ -1,4 +1,4 @@
-"""Who may pass: every request is checked here before anything else happens.
+"""Access control: checks every request before anything else happens.
 
 A person types the pairing code into a view, and gets a session key for it.
 """
@@ -70,10 +70,6 @@ class Sessions:
             write_private_json(self._boards, [each.hex() for each in self._hashes[role]])
         return key
 
-    def admit(self, key: str) -> None:
-        """Accept a view's key that was agreed on before the simulator was started."""
-        self._hashes[ViewRole.VIEW].append(_hash(key))
-
     def role(self, key: str) -> ViewRole | None:
         """Return what a key was given out for, None for no key; it takes the same time for all."""
         if not SHORTEST_KEY <= len(key) <= LONGEST_KEY:
@@ -92,17 +88,17 @@ def _hash(key: str) -> bytes:
 
 
 class PairingCode(GuessLimit):
-    """The present code. After five wrong ones there is a new one, and a pause that grows."""
+    """The present code. After five wrong codes it changes, and a growing pause begins."""
 
     def __init__(self, clock: Callable[[], float], on_new: Callable[[str], None]) -> None:
         """Make a code; `on_new` is given each one after it, to be shown."""
         super().__init__(clock)
         self._on_new = on_new
         self.code = _new_code()
-        """What a person types; never logged."""
+        """Digits that a person types; never logged."""
 
     def accepts(self, code: str) -> bool:
-        """Compare a code, in the same time for every one, and count the wrong ones."""
+        """Compare a code, in the same time for every code, and count wrong codes."""
         is_right = hmac.compare_digest(code.encode(), self.code.encode())
         if self.guessed(is_right):
             _log.warning("%d wrong pairing codes were tried; there is a new one.", WRONG_GUESSES)

@@ -1,6 +1,6 @@
-"""Teachers' boards at this seat: what they receive, and what they may order with its PIN.
+"""Teachers' boards at this seat: their news, and orders given with its PIN.
 
-A board sees who trains, how far they are and what is wrong; it may pause, say something, or show a
+A board sees the trainee, their progress and warnings; it may pause, send a sentence, or show a
 replay.
 """
 

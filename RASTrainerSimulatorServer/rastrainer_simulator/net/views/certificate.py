@@ -62,7 +62,7 @@ def own_certificate(folder: Path) -> Certificate:
 
 
 def own_addresses() -> tuple[str, ...]:
-    """Return the addresses of this machine in its networks, the one others would use first."""
+    """Return the addresses of this machine in its networks, the most usable first."""
     found: list[str] = []
     with contextlib.suppress(OSError), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         # Nothing is sent: this only looks up the route to an address reserved for documentation.

@@ -51,9 +51,9 @@ _http_log.addFilter(
 class GuardedServer:
     """Serves clients with a session's key, on any number of ports.
 
-    Where there are as many connections as may be, the oldest that has shown no key yields to a new
-    one, and where all have, the oldest that only watches: whoever takes places and does not even
-    read what was asked for keeps nobody out, and who watches keeps out nobody who takes part.
+    If all connections are in use, a new one replaces the oldest that has shown no key, or else the
+    oldest that only watches: idle strangers keep nobody out, and spectators keep no participant
+    out.
     """
 
     def __init__(
@@ -118,7 +118,7 @@ class GuardedServer:
 
     @web.middleware
     async def _check(self, request: web.Request, handler: Handler) -> web.StreamResponse:
-        """Refuse what comes from elsewhere or without a session's key."""
+        """Refuse requests from other origins or without a session's key."""
         check_origin(request)
         role = self._sessions.role(session_key(request))
         if role is not None:

@@ -1,4 +1,4 @@
-"""All joined views, and what is sent to them."""
+"""All joined views, and the messages sent to them."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ class JoinedViews:
         return has_joined and self._pacer.is_due(time.monotonic())
 
     def tell(self, now: SimulationState) -> None:
-        """Send what moves, and check whether it needs another scene."""
+        """Send the moving bodies, and check whether another scene is needed."""
         if self._boards.joined and self._boards.pacer.is_due(time.monotonic()):
             self._boards.tell(now, self._presenter.seat())
         if not self._views:
@@ -159,7 +159,7 @@ class JoinedViews:
             self._covering(now, pictures),
             presenter.ghost(now),
         )
-        # Only spectators are sent where a headset is.
+        # Only spectators are sent the headset's pose.
         whole, text = "", message_text(news)
         for view in views:
             if view.is_spectator and not whole:
@@ -167,12 +167,12 @@ class JoinedViews:
             view.outbox.put_latest(StateNews.type, whole if view.is_spectator else text)
 
     def _put_pairing(self, view: ViewSocket) -> None:
-        # By the code a spectator could come back as one who drives.
+        # With the code, a spectator could come back as a driver.
         if view.is_local and self._pairing and not view.is_spectator:
             view.outbox.put_latest(PairingNews.type, self._pairing)
 
     def _headset_pose(self) -> HeadsetPose | None:
-        """Return what the newest headset has sent; one that reconnects is another view."""
+        """Return the newest headset's pose; a headset that reconnects is another view."""
         headsets = [view for view in self._views.values() if view.hello.kind == "headset"]
         return headsets[-1].headset_pose if headsets else None
 
@@ -254,7 +254,7 @@ class JoinedViews:
             for view in tuple(self._views.values()):
                 view.release_if_silent(self._limits.silent_s)
                 if view.has_fallen_silent(self._limits.lost_s):
-                    self._presenter.on_silence(view.number)
+                    self._presenter.receive(view.number, "silence")
 
 
 def _put_control(view: ViewSocket, control: Control) -> None:

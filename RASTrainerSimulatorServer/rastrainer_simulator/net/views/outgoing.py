@@ -1,4 +1,4 @@
-"""What views are sent of a state, a scene and a trace; docs/views.md says what each means."""
+"""Messages to views about a state, a scene and a trace; docs/views.md explains them."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ GHOST_LINKS = (7,)
 """The links of the arm that are shown of a ghost, by the number of joints before each."""
 GHOST_BODIES = (*(f"link_{joint}" for joint in GHOST_LINKS), "tool")
 DECIMALS = 6
-"""Of meters: a micrometer. Of a quaternion: less than that at the reach of the arm."""
+"""A micrometer in positions; in quaternions, less than that at the reach of the arm."""
 NEWS_HZ = 5.0
 
 
 def scene_news(sha256: str, scenario: Scenario, task: str, axes: AxesChoice) -> SceneNews:
-    """Return where the scene is, and what goes with it; `axes` are those of the sticks."""
+    """Return the scene's address, cameras and fiducials; `axes` are the sticks' axes."""
     fiducials = {}
     if task:
         chosen = scenario.task(task)
@@ -70,7 +70,7 @@ def state_news(
     translucent: CoveringBodies,
     ghost: Sequence[np.ndarray] | None = None,
 ) -> StateNews:
-    """Return what moves.
+    """Return poses, contact and progress.
 
     `delayed` ticks of the control loop were late or skipped; `ghost` are poses of `GHOST_BODIES`,
     (4, 4) float, to World, m.
@@ -156,8 +156,8 @@ def _pose(matrix: np.ndarray) -> Pose:
 def quaternion(rows: Sequence[Sequence[float]]) -> tuple[float, float, float, float]:
     """Return the unit quaternion (x, y, z, w) of a rotation matrix, given row by row.
 
-    The largest of the four is found first and the others divided by it (Shepperd 1978), so that
-    no angle loses digits. A (4, 4) pose is taken for its rotation.
+    The largest of the four is found first and the others divided by it (Shepperd 1978), so that no
+    angle loses digits. Of a (4, 4) pose, only the rotation counts.
     """
     (xx, xy, xz, *_), (yx, yy, yz, *_), (zx, zy, zz, *_) = rows[:3]
     squares = (1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz, 1 + xx + yy + zz)
@@ -173,7 +173,7 @@ def quaternion(rows: Sequence[Sequence[float]]) -> tuple[float, float, float, fl
 
 
 class TraceUpdate:
-    """The trace as all views know it; each message has only what they do not know."""
+    """The trace as all views know it; each message has only the new part."""
 
     def __init__(self) -> None:
         self._points: tuple[TracedPoint, ...] = ()
@@ -184,7 +184,7 @@ class TraceUpdate:
     def news(
         self, now: SimulationState, guidance: TraceGuidance, time_s: float
     ) -> TraceNews | None:
-        """Return what is new; None where nothing is, or it is too early to send it."""
+        """Return the new part; None if there is none, or it is too early to send it."""
         traced, phase = now.training.trace, now.training.phase
         is_shown = traced is not None and phase in OPEN_PHASES and phase not in PROCEDURE_PHASES
         points = traced.points if traced is not None and is_shown else ()

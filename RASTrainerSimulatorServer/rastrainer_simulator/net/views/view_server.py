@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import gzip
-import os
 import socket
 import ssl
 from collections import Counter
@@ -22,9 +21,7 @@ from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.listener import is_loopback
 from rastrainer_simulator.net.views.access_control import (
     BOARDS_FILE,
-    LONGEST_KEY,
     ROLE,
-    SHORTEST_KEY,
     PairingCode,
     Sessions,
     fresh_json,
@@ -34,7 +31,6 @@ from rastrainer_simulator.net.views.boards import InstructorOrders
 from rastrainer_simulator.net.views.guarded_server import GuardedServer, page_answer
 from rastrainer_simulator.net.views.joined_views import JoinedViews
 from rastrainer_simulator.ops.instructor_pin import InstructorPin
-from rastrainer_simulator.ops.processes import VIEW_KEY_VARIABLE
 from rastrainer_simulator.presentation.messages import (
     SUBPROTOCOL,
     WATCHING_KINDS,
@@ -112,18 +108,9 @@ class ViewServer:
     async def start(self, port: int | None, certificates: Path | None = None) -> None:
         """Listen on this computer, and with a folder for certificates to the local network.
 
-        To the network by TLS: on the next port or, where that is taken, any free one. `port` 0 is
-        any free one, None the usual one or, where that is taken, any free one. A key in the
-        environment variable `RASTRAINER_VIEW_KEY` is accepted: who starts the simulator may give
-        the same one to a window.
+        The network is served by TLS, on the next port or, if that is taken, any free one. `port` 0
+        is any free one, None the usual one or, where that is taken, any free one.
         """
-        agreed = os.environ.get(VIEW_KEY_VARIABLE)
-        if agreed is not None:
-            if not SHORTEST_KEY <= len(agreed) <= LONGEST_KEY:
-                raise InputError(
-                    f"{VIEW_KEY_VARIABLE} must have {SHORTEST_KEY} to {LONGEST_KEY} letters."
-                )
-            self.sessions.admit(agreed)
         usual = DEFAULT_VIEW_PORT if port is None else port
         local = await _or_any_port(lambda one: self.listen(DEFAULT_HOST, one), usual, port is None)
         where = f"http://{DEFAULT_HOST}:{local}"

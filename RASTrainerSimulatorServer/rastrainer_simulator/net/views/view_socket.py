@@ -140,12 +140,9 @@ class ViewSocket:
             self.headset_pose = message if message.eyes is not None else None
         elif isinstance(message, (HeadsetInput, Hello)):
             raise InputError(f"A {self.hello.kind} sends no {message.type} after its hello.")
-        elif isinstance(message, Frames):
-            self._has_reported_frames = True
-            self._presenter.on_frames(self.number, message)
         else:
-            # Such as `on_press` and `on_item`.
-            getattr(self._presenter, f"on_{message.type}")(self.number, *values)
+            self._has_reported_frames |= isinstance(message, Frames)
+            self._presenter.receive(self.number, message.type, *values)
 
     async def close(self, code: int, reason: str) -> None:
         """End it, with a code of WebSockets and a reason."""
@@ -168,10 +165,10 @@ class HeldInput:
         self._has_sticks = False
 
     def key(self, code: str, is_down: bool, text: str) -> None:
-        """Process a key; no hand holds more than a few, so further ones are ignored.
+        """Process a key; no hand holds more than a few, so further keys are ignored.
 
-        A Shift key that was down when the view fell silent, and has not come up since, is held
-        still: what is pressed next must not move fast because a computer draws slowly.
+        A Shift key that was down when the view fell silent, and has not come up since, stays held:
+        the next key must not move the arm fast because a computer draws slowly.
         """
         self._held_in_silence.discard(code)
         if is_down and self._held_in_silence:
@@ -182,11 +179,11 @@ class HeldInput:
             self._keys[code] = None
         else:
             return
-        self._presenter.on_key(self._view, code, is_down, text)
+        self._presenter.receive(self._view, "key", code, is_down, text)
 
     def pad(self, axes: Sequence[float], buttons: Sequence[float]) -> None:
         self._pad = (len(axes), len(buttons)) if any(axes) or any(buttons) else None
-        self._presenter.on_pad(self._view, axes, buttons)
+        self._presenter.receive(self._view, "pad", axes, buttons)
 
     def sticks(
         self,
@@ -196,7 +193,8 @@ class HeldInput:
         yaw_deg: float,
     ) -> None:
         self._has_sticks = any(translation) or any(rotation) or is_fine
-        self._presenter.on_sticks(self._view, translation, rotation, is_fine, yaw_deg)
+        values = translation, rotation, is_fine, yaw_deg
+        self._presenter.receive(self._view, "sticks", *values)
 
     def release(self, is_silent: bool = False) -> None:
         """Release everything that is held, since the view has left or is silent."""
@@ -229,7 +227,7 @@ class Outbox:
         self._is_filled.set()
 
     def put_event(self, text: str) -> None:
-        """Have a text sent after the previous ones, none of them left out."""
+        """Send a text after all previous texts."""
         if len(self._events) >= MAX_WAITING_EVENTS:
             self.is_overfull = True
         else:

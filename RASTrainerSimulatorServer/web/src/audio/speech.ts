@@ -3,14 +3,14 @@
 import type { Screen } from "../generated";
 
 export class Speech {
-  /** What the screen says now, the most urgent first. */
+  /** Sentences of the present screen, the most urgent first. */
   private shown: readonly string[] = [];
-  /** What of that has been read. */
+  /** Those that have been read. */
   private said = new Set<string>();
   private language = "";
   private isReading = false;
 
-  /** Read what is new on a screen; what has gone before its turn is not read. */
+  /** Read the new sentences of a screen, except those that are gone before their turn. */
   show(screen: Screen): void {
     this.shown = screen.isSpoken ? sentences(screen) : [];
     this.said = new Set(this.shown.filter((text) => this.said.has(text)));

@@ -1,4 +1,4 @@
-/** The section of the class: asks the board for its table again and again, and says what is wrong with it. */
+/** The section of the class: asks the board for its table again and again, and reports problems. */
 
 import { byId, element } from "../elements";
 import type { ClassNews, TileNews } from "../generated";

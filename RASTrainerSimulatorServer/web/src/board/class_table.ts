@@ -95,7 +95,7 @@ export class ClassTable {
   }
 }
 
-/** How far a trainee is: assignments that are reached, and shares of the open ones. */
+/** A trainee's progress: assignments reached, and shares of the open assignments. */
 function progressOf({ cells }: TraineeRow): number {
   return cells.reduce((sum, { state, done, needed }) => sum + (state === "locked" ? 0 : done / needed), 0);
 }

@@ -15,15 +15,15 @@ export interface Field {
 export interface Form {
   title: string;
   fields?: readonly Field[];
-  /** Running text, and one that is to be compared. */
+  /** Running text, and text that is to be compared. */
   text?: string;
   fingerprint?: string;
   accept: BoardText;
 }
 
 /**
- * Ask in a dialog; return what was entered, null for Cancel. `submit` may return what is wrong with it, which is
- * shown while the dialog stays; "" closes it.
+ * Ask in a dialog; return the entries, null for Cancel. `submit` may return a sentence on a problem,
+ * which is shown while the dialog stays; "" closes it.
  */
 export async function ask(
   form: Form,

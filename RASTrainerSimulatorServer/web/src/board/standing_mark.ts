@@ -1,4 +1,4 @@
-/** Drawn signs of where a trainee stands with an assignment; the word beside each says the same. */
+/** Signs of a trainee's standing in an assignment; the word next to each says the same. */
 
 import type { AssignmentState } from "../generated";
 

@@ -1,4 +1,4 @@
-/** What the teacher's board says, in the language of the browser. */
+/** Texts of the teacher's board, in the language of the browser. */
 
 import * as german from "../texts/de.json";
 import * as english from "../texts/en.json";
@@ -25,7 +25,7 @@ const language = navigator.language.slice(0, 2);
 const { page, board } = LANGUAGES[language] ?? english;
 document.documentElement.lang = language in LANGUAGES ? writtenLanguage(language) : "en";
 
-/** What drives an arm, as the page of its seat calls it. */
+/** Name of the device that drives an arm, as on its seat's page. */
 export function holderName(holder: string): string {
   return page[`source.${holder}`] ?? holder;
 }

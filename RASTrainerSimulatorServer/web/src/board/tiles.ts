@@ -85,7 +85,7 @@ function stateOf({ link, seat }: TileNews): string {
   return WORKING.includes(seat.phase) ? say("doing.where", { doing, touch: say(`touch.${seat.touch}`) }) : doing;
 }
 
-/** What the trainee reads: warnings, and the instruction or which menu is open. */
+/** The trainee's text: warnings, and the instruction or the open menu. */
 function saidAt({ warnings, screen, instruction }: SeatReport): string {
   const last = screen === "" ? instruction : say("menu", { title: screen });
   return [...warnings, last].filter((text) => text !== "").join(" · ");

@@ -9,7 +9,7 @@ const START = 9;
 const CHANGE = 0.004;
 /** As far as released sticks may rest from their middle. */
 const AT_REST = 0.15;
-/** A pad that is pushed this far takes the place of one that is not. */
+/** A pad that is pushed this far replaces an idle pad. */
 const PUSHED = 0.5;
 
 export class Gamepads {
@@ -30,7 +30,7 @@ export class Gamepads {
     this.control = control;
   }
 
-  /** Look at the pad, and tell what has changed. */
+  /** Read the pad, and report changes. */
   poll(): void {
     const pad = this.choose();
     if (pad === null) {

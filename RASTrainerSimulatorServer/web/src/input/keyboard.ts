@@ -6,7 +6,7 @@ import type { Connection } from "../stream/connection";
 
 /** These stay the browser's own. */
 const BROWSERS = new Set(["F3", "F5", "F6", "F11", "F12", "MetaLeft", "MetaRight", "AltLeft", "Tab"]);
-/** What a field does with keys that type nothing. */
+/** A field's actions for keys that type nothing. */
 const EDITS = new Set(["Backspace", "Delete", "ArrowLeft", "ArrowRight", "Home", "End"]);
 const PRESSES = new Set(["Enter", "NumpadEnter", "Space"]);
 
@@ -29,7 +29,7 @@ export class Keyboard {
     return this.held.size > 0;
   }
 
-  /** Tell what is written on the keys, as far as it is known. */
+  /** Report the keys' labels, as far as they are known. */
   async tellNames(): Promise<void> {
     await readKeyNames();
     this.connection.send({ type: "layout", keys: keyNames() });

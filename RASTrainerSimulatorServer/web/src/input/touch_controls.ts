@@ -6,7 +6,7 @@ import type { ControlNews, Screen, StateNews } from "../generated";
 import { say } from "../texts";
 import { TouchStick } from "./touch_stick";
 
-/** What a button presses, as the simulator calls it. */
+/** Control that a button presses, by the simulator's name. */
 const CONTROLS = ["menu", "best_view", "camera", "undo", "touch"] as const;
 type TouchControl = (typeof CONTROLS)[number];
 
@@ -44,7 +44,7 @@ export class TouchControls {
   }
 
   show(screen: Screen): void {
-    // What can be left, such as a replay, is watched: its buttons are among the hints.
+    // A screen that can be left, such as a replay, is only watched: its buttons are among the hints.
     this.isWorking = screen.menu === null && !screen.hints.some((hint) => hint.item === "back");
     this.isForMouse = screen.hasSticks;
     if (!this.isWorking) this.release();
@@ -92,7 +92,7 @@ export class TouchControls {
     this.right.label(say(isOn(this.tilt) ? "touch.tilting" : "touch.right"));
   }
 
-  /** Say that a touch screen is used, before what was touched is sent. */
+  /** Report the use of a touch screen, before the touch itself is sent. */
   private use(): void {
     if (!this.isHolding) this.tell();
     if (this.isUsed) return;

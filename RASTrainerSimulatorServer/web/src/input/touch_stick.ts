@@ -26,7 +26,7 @@ export class TouchStick {
     this.place.dataset.says = text;
   }
 
-  /** Release the stick, whatever the thumb does. */
+  /** Release the stick, even under the thumb. */
   release(): void {
     this.pointer = null;
     this.put(0, 0);

@@ -43,7 +43,7 @@ export class ViewMouse {
     this.hiding = setTimeout(() => (canvas.style.cursor = "none"), HIDDEN_MS);
   }
 
-  /** Send what has come together since the last picture. */
+  /** Send the movement since the last picture. */
   tell(): void {
     const { around, higher, zoom } = this;
     if (around === 0 && higher === 0 && zoom === 1) return;
@@ -87,7 +87,7 @@ export class ViewMouse {
     if (count === 2 && before > 0) this.zoom *= before / Math.max(1, this.spread());
   }
 
-  /** What is seen follows the hand: the eye goes the other way. */
+  /** The picture follows the hand, so the eye moves the other way. */
   private drag(right: number, down: number): void {
     this.around -= (DEG_PER_HEIGHT * right) / window.innerHeight;
     this.higher += (DEG_PER_HEIGHT * down) / window.innerHeight;

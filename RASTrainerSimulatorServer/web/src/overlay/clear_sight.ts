@@ -10,7 +10,7 @@ import { yUp } from "../scene/viewpoint";
 const PANELS = ["status", "instruction", "warnings", "inset", "guiding", "hints", "control"];
 /** A panel that comes so near to tip or point, in pixels, covers it. */
 const COVERS = 16;
-/** And one that does, until it is so much farther away: it does not flicker. */
+/** A part that does stays clear until it is so much farther away, so that it does not flicker. */
 const FLICKER = 16;
 
 export class ClearSight {

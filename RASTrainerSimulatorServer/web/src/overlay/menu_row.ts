@@ -4,14 +4,14 @@ import type { Connection } from "../stream/connection";
 import { element } from "../elements";
 import { MAX_ITEM_TEXT, type MenuItem } from "../generated";
 
-/** What was typed and has not come back from the simulator for so long was not taken. */
+/** Typed text that has not come back from the simulator for so long was refused. */
 const ANSWER_MS = 1000;
 
 export class MenuRow {
   readonly line = element("li", "");
   private readonly label = element("span", "");
   private readonly value: HTMLElement;
-  /** What can have the focus; a meter cannot. */
+  /** The element that takes the focus; a meter cannot. */
   private readonly control: HTMLButtonElement | HTMLInputElement | null;
   private item: MenuItem;
   private typed = -Infinity;
@@ -58,7 +58,7 @@ export class MenuRow {
     else this.value.textContent = item.value;
   }
 
-  /** What a screen reader says of it. */
+  /** Text for screen readers. */
   get spoken(): string {
     return `${this.item.label} ${this.item.value}`.trim();
   }
@@ -87,7 +87,7 @@ export class MenuRow {
     field.spellcheck = false;
     field.oninput = () => this.tell(field);
     field.onfocus = () => {
-      // What is typed replaces the ID that is there. A click would put the cursor into it after this.
+      // Typing replaces the present ID. A click would put the cursor into it after this.
       window.setTimeout(() => field.select());
       if (!this.isFollowing) this.tell(field);
     };

@@ -11,7 +11,7 @@ export class MenuView {
   private readonly text = element("div", "");
   private readonly list = element("ul", "");
   private readonly help = element("p", "");
-  /** Heard by screen readers when the value of what has the focus changes. */
+  /** Heard by screen readers when the focused item's value changes. */
   private readonly spoken = element("p", "");
   private readonly rows = new Map<string, MenuRow>();
   private shown = "";

@@ -10,12 +10,12 @@ import { controlsPicture, inputsOf } from "../panels/controls_picture";
 import { trendPlot } from "../panels/trend_plot";
 import { say, sayHolder, type TextName } from "../texts";
 
-/** What is written on the corner's picture. */
+/** Caption of the inset. */
 const INSETS: Readonly<Record<string, TextName>> = { "close-up": "closeUp", [BESIDE]: "beside", [ACROSS]: "across" };
 
 export class Overlay {
   private readonly shown = new Map<string, string>();
-  /** What the page says itself in place of the simulator's warnings; "" for nothing. */
+  /** The page's own sentence in place of the simulator's warnings; "" for none. */
   private notice: TextName | "" = "";
   private control: ControlNews | null = null;
   private warnings: readonly ScreenMessage[] = [];
@@ -49,14 +49,14 @@ export class Overlay {
     this.sayControl();
   }
 
-  /** Say in the present language what is the page's own and stays. */
+  /** Write the page's own permanent texts in the present language. */
   label(): void {
     this.sayControl();
     this.showFacts();
     this.showWarnings();
   }
 
-  /** Tell beside each menu how another view is paired. */
+  /** Show above each menu how to pair another view. */
   showPairing(pairing: PairingNews): void {
     this.pairing = pairing;
     this.showFacts();

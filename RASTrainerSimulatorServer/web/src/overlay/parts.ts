@@ -15,7 +15,7 @@ export function hintLine(hint: Hint, choose: (item: string) => void): HTMLElemen
   const line = element("li", "");
   const place = hint.item === "" ? line : line.appendChild(element("button", ""));
   place.append(element("kbd", hint.control));
-  // What is written on it already is not said twice.
+  // Its own text is not repeated.
   if (hint.action !== hint.control) place.append(element("span", hint.action));
   if (hint.item === "") return line;
   place.dataset.item = hint.item;

@@ -1,4 +1,4 @@
-/** Arrows at the picture's edge toward what is out of sight: the next point, and the tool. */
+/** Arrows at the picture's edge toward the next point and the tool, if out of sight. */
 
 import { type PerspectiveCamera, Vector3 } from "three";
 
@@ -67,7 +67,7 @@ class EdgeArrow {
   }
 }
 
-/** Keep a height, % from the window's top, between what is written above and below. */
+/** Keep a height, % from the window's top, between the texts above and below. */
 function between(top: number): number {
   const above = byId("words").getBoundingClientRect().bottom + ROOM;
   const below = byId("hints").getBoundingClientRect().top - ROOM;

@@ -5,7 +5,7 @@ import type { Menu } from "../generated";
 import { say, type TextName } from "../texts";
 import { COLORS } from "./pen";
 
-/** Of every drawing, in its own units. */
+/** Size of every drawing, in its own units. */
 export const PICTURE_WIDTH = 1000;
 export const PICTURE_HEIGHT = 520;
 

@@ -25,7 +25,7 @@ export interface Region {
 }
 
 /**
- * The elements are laid out unseen in the page. A browser draws elements on a canvas only as an SVG picture
+ * The elements are laid out in the page, invisible. A browser draws elements on a canvas only as an SVG picture
  * (`foreignObject`), which holds its own style sheet and loads nothing: pictures are drawn on top of it.
  */
 export class ElementPanel extends Panel {
@@ -60,7 +60,7 @@ export class ElementPanel extends Panel {
     this.mesh.visible = isShown && this.isPainted;
   }
 
-  /** Whether the picture is that of the present elements. */
+  /** Whether the picture shows the present elements. */
   get isPainted(): boolean {
     return this.painted !== "" && this.painted === this.wanted;
   }
@@ -178,7 +178,7 @@ export class ElementPanel extends Panel {
     this.mesh.visible = this.isShown;
   }
 
-  /** Put together what the picture of the elements lacks: pictures, clocks, scroll bar, and what is pointed at. */
+  /** Add the parts that the picture of the elements lacks: pictures, clocks, scroll bar and highlight. */
   private compose(): void {
     const { context, canvas, list, picture } = this;
     if (picture === null) return;
@@ -208,7 +208,7 @@ export class ElementPanel extends Panel {
     this.context.fillRect(x, y, width, height);
   }
 
-  /** Draw a picture as large as fits in its element; one that is not loaded yet comes later. */
+  /** Draw a picture as large as fits in its element, once it is loaded. */
   private place(image: HTMLImageElement): void {
     if (!image.complete || image.naturalWidth === 0) return;
     const { x, y, width, height } = this.boxOf(image);

@@ -1,4 +1,4 @@
-/** Paint the bull's-eye along the guide's axis, or the depth ruler of what is fed through it. */
+/** Paint the bull's-eye along the guide's axis, or the depth ruler of the instrument fed through it. */
 
 import {
   BULLS_EYE_FARTHEST_MM,
@@ -66,7 +66,7 @@ function figure(value: number): string {
   return value.toLocaleString(document.documentElement.lang, digits);
 }
 
-/** Return where a distance is drawn, as a share of the radius: near ones are spread. */
+/** Return the drawn radius of a distance, as a share of the whole; small distances are spread. */
 function shownRadius(distance: number): number {
   return Math.min(1, Math.log1p(distance / BULLS_EYE_NEAR_MM) / Math.log1p(BULLS_EYE_FARTHEST_MM / BULLS_EYE_NEAR_MM));
 }

@@ -27,7 +27,7 @@ interface Box {
 export class BackgroundCache {
   private readonly kept = target(SAMPLES);
   private readonly picture = target(0);
-  /** What the kept background was drawn of, and what the last picture shows. */
+  /** Inputs of the kept background, and of the last picture. */
   private keptContent = "";
   private content = "";
   private changed = -Infinity;

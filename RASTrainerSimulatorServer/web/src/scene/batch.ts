@@ -14,7 +14,7 @@ import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 
 import { isSoftware } from "./graphics";
 
-/** How a batch answers to light: matt for the room, glossy for what is looked at closely. */
+/** A batch's answer to light: matt for the room, glossy for bodies that are seen closely. */
 export type Finish = "matt" | "glossy";
 
 /**

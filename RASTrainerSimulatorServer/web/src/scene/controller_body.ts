@@ -1,4 +1,4 @@
-/** What a controller looks like: a dark capsule behind the point from which it points, along −z. */
+/** A controller's body: a dark capsule behind the origin of its ray, along −z. */
 
 import { CapsuleGeometry, Group, Mesh, MeshLambertMaterial } from "three";
 

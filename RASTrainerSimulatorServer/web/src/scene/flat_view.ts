@@ -28,7 +28,7 @@ export class FlatView {
   private chosen = "";
   private isBeside = false;
   private hasLine = false;
-  /** What is seen through in the picture, and in its corner. */
+  /** Bodies that are transparent in the picture, and in the inset. */
   private readonly caches: Record<"view" | "inset", BackgroundCache> | null;
   private covers: Record<"view" | "inset", readonly string[]> = { view: [], inset: [] };
 
@@ -46,7 +46,7 @@ export class FlatView {
     this.chosen = "";
   }
 
-  /** Name of what is in the corner, "" without anything. */
+  /** Name of the inset's view, "" for none. */
   get insetName(): string {
     if (!this.isBeside) return this.otherCamera;
     return this.hasLine ? ACROSS : BESIDE;
@@ -102,7 +102,7 @@ export class FlatView {
     const isUnfinished = this.drawInto("view", this.camera, new DOMRect(0, 0, width, height), now);
     if (!hasInset) return isUnfinished;
     const box = this.frame.getBoundingClientRect();
-    // A low window has no room for it beside the bull's-eye; and what it would cover comes first.
+    // A low window has no room for it next to the bull's-eye, and the covered parts come first.
     if (box.height === 0 || this.frame.classList.contains("clear")) return isUnfinished;
     this.inset.look(this.other, box.width / box.height);
     return this.drawInto("inset", this.other, box, now) || isUnfinished;

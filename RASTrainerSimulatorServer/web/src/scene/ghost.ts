@@ -1,4 +1,4 @@
-/** An earlier trial beside the arm: translucent doubles of its last link and tool. */
+/** An earlier trial next to the arm: translucent doubles of its last link and tool. */
 
 import { GHOST_OPACITY } from "../generated";
 import { Group, Mesh, MeshLambertMaterial, type Object3D } from "three";

@@ -1,4 +1,4 @@
-/** What draws this page: a graphics processor, or the processor, which the simulator may need itself. */
+/** The page's renderer: a graphics processor, or the processor, which the simulator may need itself. */
 
 const SOFTWARE = /llvmpipe|softpipe|swiftshader|software/i;
 

@@ -1,4 +1,4 @@
-/** What a spectator sees of a headset: its eyes' place for the camera, and its controllers in the room. */
+/** A headset as a spectator sees it: its eyes' place for the camera, and its controllers in the room. */
 
 import { Object3D, Vector3 } from "three";
 
@@ -6,7 +6,7 @@ import type { CameraPose, Pose, HeadsetPose } from "../generated";
 import { PoseStream } from "./pose_stream";
 import { controllerBody } from "./controller_body";
 
-/** Of the picture, from top to bottom: enough to see what the wearer does. */
+/** Vertical field of view, wide enough to see the wearer's hands. */
 const ANGLE_DEG = 70;
 const AT_REST: Pose = [0, 0, 0, 0, 0, 0, 1];
 const BODIES = 3;
@@ -31,7 +31,7 @@ export class HeadsetView {
     left.visible = pose?.left != null;
     right.visible = pose?.right != null;
     const eyes = pose?.eyes ?? null;
-    // Whoever puts it on again is elsewhere by then.
+    // The wearer is elsewhere when it is put on again.
     if (eyes === null && this.isWorn) this.stream = new PoseStream(BODIES);
     this.isWorn = eyes !== null;
     if (eyes !== null) this.stream.put(now, [eyes, pose?.left ?? AT_REST, pose?.right ?? AT_REST], now);

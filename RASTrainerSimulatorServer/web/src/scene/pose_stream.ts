@@ -13,7 +13,7 @@ const SMOOTHING = 0.05;
 const CATCH_UP_PER_S = 4;
 
 /**
- * Keeps the last states and plays them by a clock of its own, which follows the stream's. No
+ * Keeps the last states and plays them by a clock that follows the stream's. No
  * memory is allocated after the first state.
  */
 export class PoseStream {

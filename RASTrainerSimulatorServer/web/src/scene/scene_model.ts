@@ -65,10 +65,10 @@ export class SceneModel {
   private skinMesh: Mesh | null = null;
   private readonly skin = isSoftware ? new MeshLambertMaterial() : new MeshStandardMaterial({ roughness: 0.6 });
   private readonly noGo: Object3D[] = [];
-  /** The skin and what it holds, fiducials apart. */
+  /** The skin and the parts within, without fiducials. */
   private readonly inHead: Mesh[] = [];
   private backgroundChanges = 0;
-  /** What is drawn of each body of the arm, with its own material. */
+  /** The mesh of each body of the arm, with its material. */
   private readonly arm = new Map<string, readonly (readonly [Mesh, Material | Material[]])[]>();
   private readonly seenThrough = new MeshLambertMaterial({
     vertexColors: true,
@@ -163,19 +163,19 @@ export class SceneModel {
     }
   }
 
-  /** Let what is within the head be seen through the skin, or not. */
+  /** Show or hide the parts within the head, through the skin. */
   clearHead(isClear: boolean): void {
     if (this.skin.transparent === isClear) return;
     this.skin.transparent = isClear;
     this.skin.opacity = isClear ? CLEAR_SKIN_OPACITY : 1;
     this.skin.depthWrite = !isClear;
     this.skin.needsUpdate = true;
-    // Through the skin only what is drawn before it can be seen.
+    // Only parts drawn before the skin show through it.
     for (const mesh of this.inHead) mesh.layers.set(isClear ? 0 : STATIC);
     this.backgroundChanges++;
   }
 
-  /** What the picture of what stands still depends on. */
+  /** Inputs of the kept background's picture. */
   get backgroundContent(): string {
     const head = this.named.get("head");
     return [this.root.id, this.backgroundChanges, ...(head?.position ?? []), ...(head?.quaternion ?? [])].join();

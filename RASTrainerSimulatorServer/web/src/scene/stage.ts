@@ -61,7 +61,7 @@ export class Stage {
     this.cast(this.renderer.shadowMap.enabled);
   }
 
-  /** What this machine can afford on a flat display. */
+  /** Quality that this machine can afford on a flat display. */
   get affordable(): Quality {
     return isSoftware ? "low" : "high";
   }

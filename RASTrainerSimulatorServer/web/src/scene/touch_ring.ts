@@ -22,7 +22,7 @@ export class TouchRing {
     scene.add(this.mesh);
   }
 
-  /** Show the ring of a state toward a camera; it is hidden far from the head and beside menus. */
+  /** Show the ring of a state toward a camera; it is hidden far from the head and while a menu is open. */
   show(model: SceneModel, state: StateNews, camera: Camera, isWorking: boolean): void {
     const tool = model.node("tool");
     const isShown = isWorking && state.touch !== "far" && tool !== undefined;

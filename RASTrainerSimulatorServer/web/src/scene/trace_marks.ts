@@ -1,4 +1,4 @@
-/** What was traced over the skin: marks, paint around them, and a ring where to draw next. */
+/** The trace on the skin: marks, paint around them, and a ring where to draw next. */
 
 import {
   BufferAttribute,
@@ -51,7 +51,7 @@ export class TraceMarks {
     this.take({ type: "trace", known: 0, points: [], coveredMm: 0, next: null });
   }
 
-  /** Take what is new. */
+  /** Add the new part. */
   take(news: TraceNews): void {
     this.points.length = Math.min(news.known, this.points.length);
     for (const [x, y, z] of news.points) this.points.push(new Vector3(x, y, z).multiplyScalar(0.001));
@@ -88,7 +88,7 @@ export class TraceMarks {
   }
 }
 
-/** How much of the paint covers each vertex of the skin: only what is new is computed. */
+/** Share of paint on each vertex of the skin; computed for new marks only. */
 class SkinPaint {
   private vertices: BufferAttribute | null = null;
   private squares = new Float32Array(0);

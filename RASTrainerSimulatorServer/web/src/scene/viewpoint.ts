@@ -35,7 +35,7 @@ export class Viewpoint {
     this.angle = from.angle + share * (to.angle - from.angle);
   }
 
-  /** Set a camera here; what is projected into its picture before it is drawn is projected from here. */
+  /** Set a camera here, at once also for projections before the next picture. */
   look(camera: PerspectiveCamera, aspect: number): void {
     camera.up.copy(this.up);
     camera.position.copy(this.position);

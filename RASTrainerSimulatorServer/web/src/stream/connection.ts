@@ -60,7 +60,7 @@ export class Connection {
     this.join();
   }
 
-  /** Send a message, unless there is no connection: what was pressed then does not count. */
+  /** Send a message; without a connection, input does not count. */
   send(message: ViewInput): void {
     if (this.isConnected && !this.isWatching) {
       this.lastSent = performance.now();

@@ -28,7 +28,7 @@ export class FrameCount {
     if (passed <= 0 || passed > PERIOD_MS) return;
     const period = 1000 / this.refreshHz;
     this.dropped += Math.max(0, Math.round(passed / period) - 1);
-    // The shortest intervals are the display's own; longer ones are late pictures.
+    // The shortest intervals are the display's own; longer intervals are late pictures.
     if (passed < 1.5 * this.interval) this.interval += SMOOTHING * (passed - this.interval);
     else this.interval += 0.002 * (passed - this.interval);
   }
@@ -38,7 +38,7 @@ export class FrameCount {
     this.shown++;
   }
 
-  /** Tell what was counted if it is time. */
+  /** Report the counts if it is time. */
   tell(now: number): void {
     if (now - this.reported < PERIOD_MS) return;
     this.reported = now;

@@ -1,4 +1,4 @@
-/** What a state says of the touch and of a procedure. */
+/** A state's touch and procedure. */
 
 import { TOUCH_ERRORS, type StateNews, type TouchStage } from "../generated";
 

@@ -5,12 +5,12 @@ const NO_BREAK_SPACE = "\u00a0";
 
 type Texts = Readonly<Record<string, string>>;
 
-/** Return French texts with narrow no-break spaces beside signs of two parts. */
+/** Return French texts with narrow no-break spaces before and after signs of two parts. */
 export function french<Table extends Texts>(texts: Table): Table {
   return eachSet(texts, (text) => text.replace(/ ([:;!?%»])/g, `${NARROW_SPACE}$1`).replace(/« /g, `«${NARROW_SPACE}`));
 }
 
-/** Return Chinese texts with no-break spaces beside numbers and what is filled in. */
+/** Return Chinese texts with no-break spaces around numbers and inserted values. */
 export function chinese<Table extends Texts>(texts: Table): Table {
   return eachSet(texts, (text) => text.replace(/ (?=[\d{/])|(?<=[\d}/]) /g, NO_BREAK_SPACE));
 }
@@ -20,7 +20,7 @@ export function withUnits(text: string): string {
   return text.replace(/(?<=\d) (?=[%/]|(?:mm|cm|s|min|MB)(?![\p{L}’']))|(?<=\d \/) (?=\d)/gu, NO_BREAK_SPACE);
 }
 
-/** Return the tag of what is written: Chinese of every region in simplified characters. */
+/** Return the tag of the written language: Chinese of every region in simplified characters. */
 export function writtenLanguage(tag: string): string {
   return /^zh\b/.test(tag) ? "zh-Hans" : tag;
 }

@@ -21,7 +21,7 @@ import { Viewpoint } from "../scene/viewpoint";
 const WIDTH = 768;
 const HEIGHT = 480;
 const ANGLE_DEG = 10;
-/** Of the dark frame around it, m: so it is seen to be a picture. */
+/** Width of the dark frame, m, which marks it as a picture. */
 const FRAME = 0.012;
 /** It is drawn only in every n-th picture, which spreads its cost. */
 const EVERY = 3;

@@ -1,4 +1,4 @@
-/** What a headset is called. */
+/** Names of headsets. */
 
 import { MAX_DEVICE_TEXT } from "../generated";
 

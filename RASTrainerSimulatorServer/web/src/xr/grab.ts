@@ -9,7 +9,7 @@ const CATCH_UP_S = 0.27;
 const CATCH_UP_PICTURES = 4;
 const SMOOTHING = 0.2;
 const REST_M = 0.001;
-/** Of the simulator's sticks: what is not felt yet, and the power by which they grow. */
+/** The simulator's sticks: dead zone, and exponent of their response. */
 const DEAD_ZONE = 0.12;
 const EXPONENT = 2;
 
@@ -22,7 +22,7 @@ export class Grab {
   private readonly lag = new Vector3();
   private readonly now = new Vector3();
   private tool: Object3D | undefined;
-  /** From one picture to the next, s. */
+  /** Time between pictures, s. */
   private interval = 0;
 
   /** Know the tool's node. */
@@ -49,7 +49,7 @@ export class Grab {
     if (hand === this.hand) this.hand = null;
   }
 
-  /** Push the stick, `passed` s after the last time, so that the tip follows what is grabbed. */
+  /** Push the stick, `passed` s after the last time, so that the tip follows the grabbing hand. */
   steer(translation: number[], passed: number): void {
     this.interval += SMOOTHING * (passed - this.interval);
     if (this.hand === null || this.tool === undefined) return;

@@ -1,4 +1,4 @@
-/** The headset's controllers or tracked hands: what they send, where they point, how they pulse. */
+/** The headset's controllers or tracked hands: input, rays and haptic pulses. */
 
 import {
   BufferGeometry,
@@ -30,7 +30,7 @@ const REPEAT_AFTER_S = 0.4;
 const REPEAT_EVERY_S = 0.15;
 /** A picture that took longer was late: nobody held the stick for a second step. */
 const LONGEST_STEP_S = 0.1;
-/** Of the gamepad in the mapping "xr-standard". */
+/** Indices of buttons and axes in the mapping "xr-standard". */
 const TRIGGER = 0;
 const SQUEEZE = 1;
 const TOUCHPAD = 2;
@@ -51,7 +51,7 @@ interface Hand {
   hasMet: boolean;
 }
 
-/** What the hands do to the page itself. */
+/** The hands' effects on the page itself. */
 export interface HandsListener {
   /** A part of a panel was chosen by pointing at it. */
   onChosen(name: string): void;
@@ -104,7 +104,7 @@ export class Hands {
     for (const hand of this.hands) {
       hand.pointed = this.point(hand);
       if (hand.pointed !== "") hovered = hand.pointed;
-      // What is not seen any more, or is put away, holds nothing.
+      // A hand out of sight, or a controller put away, holds nothing.
       if (hand.source === null || !hand.ray.visible) this.grab.end(hand.ray);
       if (hand.source?.hand) {
         this.takePinch(hand);
@@ -278,7 +278,7 @@ function isWand(pad: Gamepad): boolean {
   return pad.buttons.length <= NEAR_BUTTON;
 }
 
-/** Return how far a button is pressed, 0 to 1; on a wand also one that it does not have. */
+/** Return how far a button is pressed, 0 to 1; on a wand also for a button that it lacks. */
 function valueOf(pad: Gamepad, index: number): number {
   if (!isWand(pad) || index < NEAR_BUTTON) return pad.buttons[index]?.value ?? 0;
   const isFar = stickOf(pad)[1] < UPPER_END;

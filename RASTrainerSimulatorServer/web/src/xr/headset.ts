@@ -20,7 +20,7 @@ import { HeadsetPoses } from "./headset_poses";
 
 const HIGHEST_HZ = 90;
 const MAX_FOVEATION = 1;
-/** Beyond this the direction of the eyes has no way ahead of its own. */
+/** Beyond this, the direction of the eyes gives no way ahead. */
 const STEEP = 0.9;
 /** In the colors that arrows at the page's edge have; that to the tool is slender, as the tool is. */
 const TO_POINT: ArrowLook = { color: 0xffe14a, down: 0.16, radius: 0.007 };
@@ -187,11 +187,11 @@ export class Headset {
     if (hasMoved) this.panels.arrange(this.seating);
   }
 
-  /** Have the sticks, and what is grabbed, follow the eyes. */
+  /** Turn the sticks' and the grab's directions with the eyes. */
   private turnSticks(news: SceneNews): void {
     const { forward, up } = this.ears;
     this.camera.getWorldDirection(forward);
-    // Who looks down or up has the way ahead at the top or the bottom of the picture.
+    // For eyes that look down or up, ahead is at the top or the bottom of the picture.
     if (Math.abs(forward.y) > STEEP) {
       forward.copy(up.setFromMatrixColumn(this.camera.matrixWorld, 1)).multiplyScalar(-Math.sign(forward.y));
     }

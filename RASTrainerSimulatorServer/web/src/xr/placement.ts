@@ -5,7 +5,7 @@ import { Euler, Group, Quaternion, Vector3 } from "three";
 import type { CameraPose } from "../generated";
 import { yUp } from "../scene/viewpoint";
 
-/** From the head to the trainee's eyes: a comfortable reach, seated and standing. */
+/** Distance from the head to the trainee's eyes: a comfortable reach, seated and standing. */
 const AWAY_M = 0.62;
 const EYES_ABOVE_M = 0.45;
 const STEP_M = 0.03;
@@ -13,14 +13,14 @@ const MAX_RISE_M = 0.45;
 const STORED = "rastrainer-table";
 
 export class Placement {
-  /** The headset's own space: what is tracked is a child of it. */
+  /** The headset's space, the parent of tracked objects. */
   readonly rig = new Group();
   /** Where the eyes come to, in three's frame. */
   readonly eyes = new Vector3();
   /** Horizontal, toward the head. */
   readonly forward = new Vector3(0, 0, -1);
   private rise = Number(localStorage.getItem(STORED)) || 0;
-  /** What is looked at: the middle of the patient's head. */
+  /** The point of interest: the middle of the patient's head. */
   readonly focus = new Vector3();
   private readonly seen = new Vector3();
   private seenYaw = 0;

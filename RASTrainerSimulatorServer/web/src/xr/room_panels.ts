@@ -1,4 +1,4 @@
-/** The panels in the room: menus before the eyes, what is read at work beside the head, warnings above it. */
+/** The panels in the room: menus in front of the eyes, facts for the work next to the head, warnings above it. */
 
 import { Group, Vector3 } from "three";
 
@@ -25,13 +25,13 @@ interface Seat {
 /** In front of the eyes, and nearer than the arm. */
 const MENU: Seat = { aside: 0, above: -0.06, away: 0.55 };
 const ACTIONS: Seat = { aside: 0, above: 0.43, away: 0.55 };
-/** Beside the drawing of the controls, which belongs to it. */
+/** Next to the drawing of the controls, which belongs to it. */
 const MENU_ASIDE = 0.41;
 const PICTURE: Seat = { aside: -0.4, above: 0, away: 0.55 };
 const WORK: Seat = { aside: 0.6, above: 0.05, away: 1.1 };
-/** Like a picture that lies on the table beside the head: the arm is seldom before it. */
+/** Like a picture on the table next to the head, where the arm seldom covers it. */
 const CLOSE_UP: Seat = { aside: 0.72, above: -0.5, away: 0.85 };
-/** Between the head and the close-up, below what is read at work. */
+/** Stands between the head and the close-up, below the facts for the work. */
 const GUIDING: Seat = { aside: 0.24, above: -0.42, away: 0.85 };
 /** Below a menu. While the arm is driven, so far above the head's top that no point of it is covered. */
 const WARNING_AT_MENU: Seat = { aside: 0, above: -0.54, away: 0.55 };
@@ -146,7 +146,7 @@ export class RoomPanels {
     this.paint();
   }
 
-  /** Show the bull's-eye or the depth ruler; nothing where there is neither. */
+  /** Show the bull's-eye or the depth ruler, if there is one. */
   showGuiding(aim: GuideAim | null, ruler: DepthRuler | null, depth: number): void {
     this.guiding.mesh.visible = aim !== null || ruler !== null;
     if (this.aim.show(aim, ruler, depth)) this.guiding.texture.needsUpdate = true;
@@ -166,7 +166,7 @@ export class RoomPanels {
     this.paint();
   }
 
-  /** Return which of its own actions a chosen name is, null for an item of the menu. */
+  /** Return the panel's action of this name, null for an item of the menu. */
   localAction(name: string): Local | null {
     return LOCAL.find((action) => PREFIX + action === name) ?? null;
   }
@@ -213,7 +213,7 @@ export class RoomPanels {
   }
 }
 
-/** Return what is read while the arm is driven: the instruction, short facts and the controls. */
+/** Return the text for driving the arm: the instruction, short facts and the controls. */
 function workOf(screen: Screen, holder: HTMLElement): HTMLElement {
   const plain = screen.warnings.filter((warning) => !isUrgent(warning)).slice(0, 2);
   const instruction = message(screen.instruction, part("p", "instruction"));
@@ -239,7 +239,7 @@ function isUrgent(message: ScreenMessage): boolean {
   return message.tone === "warning" || message.tone === "error";
 }
 
-/** Return 1 where the robot, which stands at the origin, is left of what is looked at, else −1. */
+/** Return 1 if the robot, which stands at the origin, is to the left of the line of sight, else −1. */
 function sideWithoutRobot({ eyes, ahead }: Seating): number {
   return ahead.z * eyes.x - ahead.x * eyes.z <= 0 ? 1 : -1;
 }

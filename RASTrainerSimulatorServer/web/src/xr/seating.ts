@@ -1,4 +1,4 @@
-/** From where and toward where the panels are seen: it follows the person, but not each small move. */
+/** The panels' place and direction: it follows the person, but not each small move. */
 
 import { Vector3 } from "three";
 
@@ -17,7 +17,7 @@ export class Seating {
   private isMenu = false;
   private readonly wanted = new Vector3();
 
-  /** Stand at a place, whatever the person did before. */
+  /** Stand at a place, regardless of the person's earlier moves. */
   put(eyes: Vector3, ahead: Vector3, focus: Vector3): void {
     this.eyes.copy(eyes);
     this.ahead.copy(ahead);
@@ -25,8 +25,8 @@ export class Seating {
   }
 
   /**
-   * Follow the person's eyes and their level `gaze`; return whether the panels have to be rearranged. Menus
-   * come up where the eyes look, what is read at work stands around the head.
+   * Follow the person's eyes and their level `gaze`; return whether the panels have to be rearranged.
+   * Menus come up in the line of sight; facts for the work stand around the head.
    */
   follow(eyes: Vector3, gaze: Vector3, isMenu: boolean): boolean {
     const toHead = this.wanted.subVectors(this.focus, eyes).setY(0);

@@ -1,12 +1,12 @@
-/** An arrow before the eyes toward what is out of sight: the next point, or the tool. */
+/** An arrow in front of the eyes toward the next point or the tool, if out of sight. */
 
 import { ConeGeometry, CylinderGeometry, Group, Mesh, MeshBasicMaterial, type PerspectiveCamera, Vector3 } from "three";
 
 import { yUp } from "../scene/viewpoint";
 
-/** What is farther from the middle of the view (rad) is out of sight. */
+/** Points farther from the middle of the view than this (rad) are out of sight. */
 const IN_SIGHT_RAD = 0.45;
-/** Below the middle of the view, where it covers neither the tip nor a panel: in front, m. */
+/** Place below the middle of the view, where it covers neither the tip nor a panel: in front, m. */
 const AHEAD_M = 0.6;
 const LENGTH_M = 0.1;
 /** After the panels. */

@@ -2,8 +2,6 @@ import asyncio
 
 import pytest
 
-from rastrainer_simulator.presentation.messages import Frames
-
 KEY = {"type": "key", "code": "KeyW", "isDown": True, "text": "w"}
 PAD = {"type": "pad", "axes": [0.5, -1.0, 0, 0], "buttons": [0, 1, 0.25]}
 STICKS = {
@@ -30,7 +28,7 @@ MESSAGES = [
     ({"type": "text", "name": "trainee", "value": ""}, ("on_text", "trainee", "")),
     (
         {"type": "frames", "shown": 72, "dropped": 1, "refreshHz": 72.0},
-        ("on_frames", Frames(72, 1, 72.0)),
+        ("on_frames", 72, 1, 72.0),
     ),
     ({"type": "picture", "task": "task-1", "share": 0.5}, ("on_picture", "task-1", 0.5)),
     ({"type": "visibility", "isVisible": False}, ("on_visibility", False)),

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.background_work import inBackground
+from rastrainer.slicer.polydata import meshPolyData
 from rastrainer.slicer.program.child_process import Run
 from rastrainer.slicer.scene.nodes import Role, findNode, findOrAddNode, nodesOf
-from rastrainer.slicer.scene.scenario_nodes import SKIN_COLOR, meshPolyData
+from rastrainer.slicer.scene.scenario_nodes import SKIN_COLOR
 from rastrainer.slicer.translation import _
 from rastrainer.work_progress import Progress
 

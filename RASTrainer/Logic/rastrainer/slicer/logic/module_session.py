@@ -33,7 +33,7 @@ from rastrainer.slicer.logic.training_logic import TrainingLogic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.slicer.logic.trial_services import TrialServices
 from rastrainer.slicer.logic.views import BorrowedLayout, SliceFollower
-from rastrainer.slicer.program.child_process import OwnProcess
+from rastrainer.slicer.program.child_process import OwnProcess, Run
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from rastrainer.slicer.scene.scenario_nodes import SceneFileLoader
 from rastrainer.slicer.scene.scene_watch import SceneWatch
@@ -76,8 +76,12 @@ class ModuleSession:
         findKit: Callable[[], ConnectorKit | None],
         settings: Settings | None = None,
         callSoon: CallSoon = lambda _work: None,
+        run: Run | None = None,
     ) -> None:
-        """Without `settings`, what the user chooses is forgotten at the end."""
+        """Without `settings`, what the user chooses is forgotten at the end.
+
+        `run` runs functions that take long, by default each in a separate process.
+        """
         self.places = places
         self.settings = settings or Settings()
         self.layout = BorrowedLayout(scene)
@@ -87,15 +91,13 @@ class ModuleSession:
         self._callSoon = callSoon
         self._lockWait = LockWait(*INTERACTIVE_WAIT_S)
         find_driver_in(places.simulator)
-        self.scenarios = cache = ScenarioCache(
-            places.assets / "scenarios", places.library, areLibraries=True
-        )
+        self.scenarios = cache = ScenarioCache(places.assets / "scenarios", places.library)
         self.procedures: tuple[tuple[str, str], ...] = ()
         self.methods: tuple[str, ...] = (RegistrationMethod.FIDUCIALS.value,)
         self.cohort = read_trials(places.assets.joinpath(*PUBLISHED_STUDY))
         self.work = BackgroundWork()
         self.link = Link(scene, findKit, callSoon=callSoon)
-        run = OwnProcess(places.python)
+        run = run or OwnProcess(places.python)
         setup = SimulatorSetup(places.python, places.simulator, places.package)
         self.simulator = SimulatorLogic(self.link, setup, places.records, self.settings)
         self.trainees = TraineeLogic(self.openStudy, places.records, self.openStudyPatiently)

@@ -11,7 +11,6 @@ from rastrainer.errors import InputError
 from rastrainer.scenario.library import (
     ListedScenario,
     list_folder,
-    list_folders,
     list_scenarios,
     user_library,
 )
@@ -29,10 +28,8 @@ class ScenarioCache:
     `refresh` finds new ones. May be used in any thread.
     """
 
-    def __init__(self, *folders: Path, areLibraries: bool = False) -> None:
-        """Offer the scenarios of these folders, or of all folders in these libraries."""
-        list_ = list_scenarios if areLibraries else list_folders
-        self._list = partial(list_, folders, self._listOne)
+    def __init__(self, *libraries: Path) -> None:
+        self._list = partial(list_scenarios, libraries, self._listOne)
         self._lines: dict[Path, tuple[tuple, ListedScenario]] = {}
         self._listed: tuple[ListedScenario, ...] | None = None
         self._scenarios: dict[str, tuple[tuple[int, int], Scenario]] = {}

@@ -18,6 +18,7 @@ from rastrainer.slicer.background_work import BackgroundWork, inBackground
 from rastrainer.slicer.logic.head_preview import findSkin
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
+from rastrainer.slicer.polydata import meshPolyData
 from rastrainer.slicer.program.child_process import Run
 from rastrainer.slicer.scene.nodes import (
     ROLE_ATTRIBUTE,
@@ -31,7 +32,6 @@ from rastrainer.slicer.scene.robot import addLink, missingLinks, robotNode, setR
 from rastrainer.slicer.scene.robot_description import READ_LINKS, LinkMesh
 from rastrainer.slicer.scene.scenario_nodes import (
     SKIN_COLOR,
-    meshPolyData,
     showImages,
     showScenario,
     showTask,

@@ -17,13 +17,13 @@ from rastrainer.protocol import Phase
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.logic.training_logic import knownNumber
 from rastrainer.slicer.logic.trial_services import Question, Steps, TrialServices
+from rastrainer.slicer.polydata import pointCloud
 from rastrainer.slicer.scene.error_colors import colorSkin, removeHeadColors
 from rastrainer.slicer.scene.nodes import (
     Role,
     drawAsPoints,
     findNode,
     findOrAddNode,
-    pointCloud,
     removeNode,
     setPoints,
     surfaceOf,

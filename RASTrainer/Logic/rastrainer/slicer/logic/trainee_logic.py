@@ -155,11 +155,12 @@ class TraineeLogic:
 
 def calibration(study: Study) -> TreCalibration:
     """Return true and expected TRE of all trials of the study, of all trainees."""
+    from rastrainer.study.study_data import trial_rows
     from rastrainer.study.tre_calibration import calibration_of
 
     everyone = (*study.trainees(), *study.trainees(archived=True))
     histories = (study.history(trainee.pseudonym) for trainee in everyone)
-    return calibration_of(trial for history in histories for trial in history)
+    return calibration_of(row for history in histories for row in trial_rows(history))
 
 
 class CurriculumLogic(Listening):

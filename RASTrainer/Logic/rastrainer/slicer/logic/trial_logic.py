@@ -199,7 +199,7 @@ class TrialLogic(DeliveryQueue):
         truth = record_from_json(RevealedTruth, answer, "The simulator's answer")
 
         def storeTruth(study: Study) -> None:
-            study.set_truth(trialId, truth.true_tre_mm, truth.head_to_world)
+            study.add_results(trialId, truth=truth)
 
         journal = None
         if (yield lambda: self._services.inStudy(checks_journals)):

@@ -31,7 +31,7 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import STARTED_BY
 from rastrainer.python_environment import clean_environment
-from rastrainer.slicer.program.process_group import OPTIONS, ProcessGroup
+from rastrainer.slicer.program.process_group import OPTIONS, endGroup
 from rastrainer.work_progress import Progress, print_progress, report_line
 
 LINES_KEPT = 2000
@@ -74,7 +74,6 @@ class ChildProcess:
                 errors="replace",
                 **OPTIONS,
             )
-            self._group = ProcessGroup(self._process)
         except OSError as error:
             raise NotStartedError(
                 f"{arguments[0]} cannot be started: {error.strerror or error}."
@@ -101,7 +100,7 @@ class ChildProcess:
             self.end()
         if self._killAt is None or time.monotonic() < self._killAt:
             return False
-        self._group.end(isAsked=False)
+        endGroup(self._process.pid, isAsked=False)
         # A process that has left the group may keep the output open forever.
         return hasEnded and time.monotonic() > self._killAt + LAST_OUTPUT_S
 
@@ -113,14 +112,14 @@ class ChildProcess:
         """Ask the program and all that it has started to end, once; see `poll`."""
         if self._killAt is None:
             self._killAt = time.monotonic() + KILL_AFTER_S
-            self._group.end(isAsked=True)
+            endGroup(self._process.pid, isAsked=True)
 
     def close(self) -> None:
         """End it and all that it has started, in order where that takes half a second at most."""
         self.end()
         self._reader.join(CLOSING_S)
         if not self.poll():
-            self._group.end(isAsked=False)
+            endGroup(self._process.pid, isAsked=False)
             with contextlib.suppress(subprocess.TimeoutExpired):
                 self._process.wait(LAST_OUTPUT_S)
 

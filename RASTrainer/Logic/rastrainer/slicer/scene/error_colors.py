@@ -11,13 +11,13 @@ import vtk
 
 from rastrainer import transforms
 from rastrainer.registration.registration import Registration
+from rastrainer.slicer.polydata import vtkArray
 from rastrainer.slicer.scene.nodes import (
     Role,
     findNode,
     findOrAddNode,
     nodesOfClass,
     surfaceOf,
-    vtkArray,
 )
 
 COLOR_TABLE_ID = "vtkMRMLColorTableNodeFileViridis.txt"

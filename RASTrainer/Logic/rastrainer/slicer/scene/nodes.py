@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import slicer
-import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList
@@ -215,50 +214,6 @@ def drawAsPoints(node: Any) -> None:
         display.SetPointSize(POINT_PIXELS)
         display.SetColor(TOUCH_COLOR)
         display.SetLighting(False)
-
-
-def trianglesPolyData(
-    points: np.ndarray, triangles: np.ndarray, normals: np.ndarray
-) -> vtk.vtkPolyData:
-    """Return a surface of points (n, 3), triangles (m, 3) int, and unit normals (n, 3)."""
-    surface = vtk.vtkPolyData()
-    surface.SetPoints(_vtkPoints(points))
-    surface.SetPolys(_cells(triangles))
-    surface.GetPointData().SetNormals(vtkArray(normals.astype(np.float32), "Normals"))
-    return surface
-
-
-def vtkArray(values: np.ndarray, name: str = "") -> Any:
-    """Return a copy of numbers (n,) or (n, k) as an array of VTK's."""
-    from vtk.util.numpy_support import numpy_to_vtk
-
-    array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
-    array.SetName(name)
-    return array
-
-
-def _vtkPoints(places: np.ndarray) -> vtk.vtkPoints:
-    points = vtk.vtkPoints()
-    points.SetData(vtkArray(places.astype(np.float32)))
-    return points
-
-
-def pointCloud(places: np.ndarray) -> vtk.vtkPolyData:
-    """Return places (n, 3) as points, each of them a vertex cell."""
-    cloud = vtk.vtkPolyData()
-    cloud.SetPoints(_vtkPoints(places))
-    cloud.SetVerts(_cells(np.arange(len(places))[:, None]))
-    return cloud
-
-
-def _cells(corners: np.ndarray) -> vtk.vtkCellArray:
-    """Return cells of equal size, (n, k) int."""
-    from vtk.util.numpy_support import numpy_to_vtkIdTypeArray
-
-    cells = vtk.vtkCellArray()
-    rows = np.ascontiguousarray(corners, dtype=np.int64).ravel()
-    cells.SetData(corners.shape[1], numpy_to_vtkIdTypeArray(rows, deep=True))
-    return cells
 
 
 def _node(scene: Any, className: str, role: str, name: str) -> Any:

@@ -23,6 +23,7 @@ from rastrainer.procedure.errors import (
     TrueLine,
 )
 from rastrainer.procedure.plan import Checkpoint, Procedure, ProcedureTrajectory
+from rastrainer.slicer.polydata import meshPolyData
 from rastrainer.slicer.scene.error_colors import arrowPolyData
 from rastrainer.slicer.scene.nodes import (
     ROLE_ATTRIBUTE,
@@ -35,7 +36,6 @@ from rastrainer.slicer.scene.nodes import (
     worldPoints,
 )
 from rastrainer.slicer.scene.plan_points import ENDS, LINE, LIST, TARGET_COLOR, placedPoints
-from rastrainer.slicer.scene.scenario_nodes import meshPolyData
 from rastrainer.slicer.scene.tables import showTable
 from rastrainer.slicer.translation import _
 

@@ -8,13 +8,12 @@ import slicer
 import vtk
 
 from rastrainer.protocol import DeviceName
+from rastrainer.slicer.polydata import trianglesPolyData, vtkArray
 from rastrainer.slicer.scene.nodes import (
     ROLE_ATTRIBUTE,
     Role,
     findNode,
     poseNode,
-    trianglesPolyData,
-    vtkArray,
 )
 from rastrainer.slicer.scene.robot_description import LinkMesh
 

@@ -8,11 +8,15 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import vtk
+from scipy.spatial.transform import Rotation
+from vtk.util.numpy_support import vtk_to_numpy
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.files.reading import plain_xml, read_bytes
 from rastrainer.protocol import DeviceName
+from rastrainer.slicer.polydata import vtkArray
 from rastrainer.transforms import MM_PER_M
 from rastrainer.work_progress import Progress, no_progress
 
@@ -48,16 +52,8 @@ def originOf(element: Element) -> np.ndarray:
     if origin is None:
         return np.eye(4)
     xyz = numbers(origin.get("xyz", "0 0 0"))
-    roll, pitch, yaw = numbers(origin.get("rpy", "0 0 0"))
-    (sr, sp, sy), (cr, cp, cy) = np.sin([roll, pitch, yaw]), np.cos([roll, pitch, yaw])
-    rotation = np.array(
-        [
-            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-            [-sp, cp * sr, cp * cr],
-        ]
-    )
-    return transforms.rigid(rotation, MM_PER_M * xyz)
+    turn = Rotation.from_euler("xyz", numbers(origin.get("rpy", "0 0 0")))
+    return transforms.rigid(turn.as_matrix(), MM_PER_M * xyz)
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,25 +69,16 @@ class ArmChain:
     axes: np.ndarray
 
     def toolToWorld(self, q: np.ndarray) -> np.ndarray:
-        """Return the poses (m, 4, 4) float, mm, of the tool at joint angles q (m, n) float, rad.
-
-        Rotations follow Rodrigues' formula R = I + sin a K + (1 − cos a) K².
-        """
+        """Return the poses (m, 4, 4) float, mm, of the tool at joint angles q (m, n) float, rad."""
         poses = np.broadcast_to(np.eye(4), (len(q), 4, 4))
         column = 0
         for origin, axis in zip(self.origins, self.axes, strict=True):
             poses = poses @ origin
             if not axis.any():
                 continue
-            angles = q[:, column, None, None]
+            turn = np.broadcast_to(np.eye(4), poses.shape).copy()
+            turn[:, :3, :3] = Rotation.from_rotvec(q[:, column, None] * axis).as_matrix()
             column += 1
-            x, y, z = axis
-            cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-            turn = np.zeros((len(q), 4, 4))
-            turn[:, 3, 3] = 1.0
-            turn[:, :3, :3] = (
-                np.eye(3) + np.sin(angles) * cross + (1.0 - np.cos(angles)) * (cross @ cross)
-            )
             poses = poses @ turn
         return poses
 
@@ -125,12 +112,8 @@ def readArmChain(urdf: Path) -> ArmChain:
 URDF = "iiwa7.urdf"
 
 
-class Shell(NamedTuple):
-    """One colored mesh of a link: `pose` (4, 4) float, mm, from the mesh to the link."""
-
-    path: Path
-    color: np.ndarray
-    pose: np.ndarray
+Shell = tuple[Path, np.ndarray, np.ndarray]
+"""Mesh of a link, its color, and its pose (4, 4) float, mm, in the frame of the link."""
 
 
 class LinkMesh(NamedTuple):
@@ -165,13 +148,19 @@ def readLinkMeshes(folder: Path, progress: Progress = no_progress) -> tuple[Link
     meshes: list[LinkMesh] = []
     for ofLink in shells:
         progress("", len(meshes) / len(shells))
-        parts, first = [], 0
+        append = vtk.vtkAppendPolyData()
         for shell in ofLink:
-            points, normals, triangles = _smooth(shell)
-            colors = np.broadcast_to(np.round(255 * shell.color).astype(np.uint8), points.shape)
-            parts.append((points, normals, colors, triangles + first))
-            first += len(points)
-        meshes.append(LinkMesh(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True))))
+            append.AddInputData(_surface(*shell))
+        append.Update()
+        data = append.GetOutput()
+        arrays = (
+            data.GetPoints().GetData(),
+            data.GetPointData().GetNormals(),
+            data.GetPointData().GetScalars(),
+            data.GetPolys().GetConnectivityArray(),
+        )
+        points, normals, colors, triangles = map(vtk_to_numpy, arrays)
+        meshes.append(LinkMesh(points, normals, colors, triangles.reshape(-1, 3)))
     return tuple(meshes)
 
 
@@ -199,21 +188,18 @@ def _shells(root: Element, folder: Path) -> list[list[Shell]]:
             if material is not None and visual.find("geometry/mesh") is not None:
                 path = folder / attribute(visual, "geometry/mesh", "filename")
                 color = colors[material.get("name")]
-                shells[int(owner[-1])].append(Shell(path, color, pose @ originOf(visual)))
+                shells[int(owner[-1])].append((path, color, pose @ originOf(visual)))
     return shells
 
 
-def _smooth(shell: Shell) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the points, normals and triangles of a mesh in its link's frame, mm."""
-    import vtk
-    from vtk.util.numpy_support import vtk_to_numpy
-
-    if not shell.path.is_file():
-        raise InputError(f"The robot's mesh {shell.path} is missing.")
+def _surface(path: Path, color: np.ndarray, pose: np.ndarray) -> vtk.vtkPolyData:
+    """Return a mesh in its link's frame, mm, with its normals, and its color at each point."""
+    if not path.is_file():
+        raise InputError(f"The robot's mesh {path} is missing.")
     reader = vtk.vtkSTLReader()
-    reader.SetFileName(str(shell.path))
+    reader.SetFileName(str(path))
     transform = vtk.vtkTransform()
-    transform.Concatenate(shell.pose.ravel())
+    transform.Concatenate(pose.ravel())
     transform.Scale(MM_PER_M, MM_PER_M, MM_PER_M)
     placed = vtk.vtkTransformPolyDataFilter()
     placed.SetInputConnection(reader.GetOutputPort())
@@ -222,9 +208,7 @@ def _smooth(shell: Shell) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     normals.SetInputConnection(placed.GetOutputPort())
     normals.SetFeatureAngle(40.0)
     normals.Update()
-    data = normals.GetOutput()
-    return (
-        vtk_to_numpy(data.GetPoints().GetData()),
-        vtk_to_numpy(data.GetPointData().GetNormals()),
-        vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3),
-    )
+    surface = normals.GetOutput()
+    colors = np.tile(np.round(255 * color).astype(np.uint8), (surface.GetNumberOfPoints(), 1))
+    surface.GetPointData().SetScalars(vtkArray(colors, "color"))
+    return surface

@@ -20,6 +20,7 @@ from rastrainer.head.volume import read_nrrd
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import Scenario, SkullKind, task_by_method
 from rastrainer.slicer.background_work import BackgroundWork, CallLater, callNow
+from rastrainer.slicer.polydata import meshPolyData, vtkArray
 from rastrainer.slicer.scene.nodes import (
     CONTENT_ATTRIBUTE,
     SCENARIO_ATTRIBUTE,
@@ -33,16 +34,9 @@ from rastrainer.slicer.scene.nodes import (
     removeNode,
     setPoints,
     stampOf,
-    trianglesPolyData,
-    vtkArray,
 )
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
-
-
-def meshPolyData(mesh: HeadMesh) -> vtk.vtkPolyData:
-    return trianglesPolyData(mesh.vertices, mesh.triangles, mesh.vertex_normals)
-
 
 MODEL, VOLUME = "vtkMRMLModelNode", "vtkMRMLScalarVolumeNode"
 SKIN_COLOR = (0.87, 0.72, 0.62)

@@ -14,6 +14,7 @@ from rastrainer.errors import InputError
 from rastrainer.journal.recording import ReplayTrack
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.number_text import fixed
+from rastrainer.slicer.polydata import pointCloud
 from rastrainer.slicer.scene.nodes import (
     ROLE_ATTRIBUTE,
     TOUCH_COLOR,
@@ -22,7 +23,6 @@ from rastrainer.slicer.scene.nodes import (
     findNode,
     findOrAddNode,
     nodesOfClass,
-    pointCloud,
 )
 from rastrainer.slicer.scene.robot_description import ArmChain
 

@@ -14,7 +14,7 @@ from rastrainer.study_messages import Assignment
 
 @dataclass(frozen=True)
 class Curriculum(PlanFile):
-    """What a trainee should reach."""
+    """The assignments of a trainee, in order."""
 
     WHAT = "The curriculum"
     VERSIONS: ClassVar = {"formatVersion": 1}

@@ -1,4 +1,4 @@
-"""Which curriculum each trainee of a study follows, and which trials count for their standing.
+"""The curricula of a study's trainees, and the trials that count for their standing.
 
 Each choice is stored, the last one counts. Scored trials count, and as failures those that were
 aborted or can have no score.
@@ -16,17 +16,11 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import decoded, json_text
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import pass_mark_of
-from rastrainer.trial.trial_feedback import PastTrial
 
 _STAMPS = """
     SELECT pseudonym,
         (SELECT count(*) FROM aborted_trials WHERE aborted_trials.trainee_id = trainees.id),
-        (SELECT max(scores.id) FROM scores JOIN trials ON trials.trial_id = scores.trial_id
-            WHERE trials.trainee_id = trainees.id),
-        (SELECT count(*) FROM truths JOIN trials ON trials.trial_id = truths.trial_id
-            WHERE trials.trainee_id = trainees.id),
-        (SELECT max(procedure_outcomes.id) FROM procedure_outcomes
-            JOIN trials ON trials.trial_id = procedure_outcomes.trial_id
+        (SELECT max(results.id) FROM results JOIN trials ON trials.trial_id = results.trial_id
             WHERE trials.trainee_id = trainees.id),
         (SELECT max(curriculum_choices.id) FROM curriculum_choices
             WHERE curriculum_choices.trainee_id = trainees.id
@@ -43,9 +37,9 @@ class CurriculumStore:
         self._study = study
 
     def choose(self, curriculum: Curriculum | None, pseudonym: str = "") -> None:
-        """Have a trainee, or by "" all present and future ones, follow a curriculum or none.
+        """Have a trainee follow a curriculum or none; "" means all present and future trainees.
 
-        What was chosen last counts: a choice for everybody ends those for single trainees.
+        The last choice counts: a choice for everybody ends the choices for single trainees.
         """
         marks = _marks(self._study)
         for each in () if curriculum is None else curriculum.assignments:
@@ -82,8 +76,15 @@ class CurriculumStore:
             curriculum = None if row is None else _read(row[0])
             if curriculum is None:
                 return None
-            counted = map(_as_counted, self._study.attempts(pseudonym))
-            return standing_in(curriculum, tuple(counted), _marks(self._study))
+            counted = [
+                trial
+                if (done := trial.procedure_score) is None
+                else replace(
+                    trial, score=done.score, acceptable=done.acceptable, parts=done.desirabilities
+                )
+                for trial in self._study.attempts(pseudonym)
+            ]
+            return standing_in(curriculum, counted, _marks(self._study))
 
     def stamps(self) -> dict[str, tuple[int | None, ...]]:
         """Return for each active trainee numbers that change with where they may stand.
@@ -105,11 +106,3 @@ def _marks(study: Study) -> PassMarkOf:
 
 def _read(text: str | None) -> Curriculum | None:
     return None if text is None else decoded(text, Curriculum.from_json)
-
-
-def _as_counted(trial: PastTrial) -> PastTrial:
-    done = trial.procedure_score
-    if done is None:
-        return trial
-    parts = done.desirabilities
-    return replace(trial, score=done.score, acceptable=done.acceptable, parts=parts)

@@ -21,14 +21,14 @@ from rastrainer.trial.scoring import passes
 from rastrainer.trial.trial_feedback import PastTrial, competence_of
 
 PassMarkOf = Callable[[Assignment], "float | None"]
-"""From an assignment to the study's mark that passes its trials; None where there is none."""
+"""Maps an assignment to the study's pass mark for its trials; None if there is none."""
 RECENT = 3
 """How many of its latest trials an assignment is compared by."""
 
 
 @dataclass(frozen=True)
 class CurriculumStanding:
-    """A trainee's standing; each played trial is one, however many assignments it counts for."""
+    """A trainee's standing; a played trial is counted once, even if several assignments use it."""
 
     curriculum: Curriculum
     standings: tuple[AssignmentStanding, ...]
@@ -42,11 +42,20 @@ class CurriculumStanding:
     def next_best(self) -> AssignmentStanding | None:
         """The assignment to practice next; None when no open one is left.
 
-        It is the weakest of the open ones: the one whose latest mean is farthest below its mark;
-        one that was never played comes first, and of equal ones the first of the curriculum.
+        It is the weakest open assignment, whose latest mean is farthest below its mark. An
+        unplayed assignment comes first, an assignment without a mark last; ties keep their order.
+
+        Drawing the mean of few trials toward the overall mean improved nothing in simulated courses
+        (`Testing/error_rates/curricula.py`).
         """
+
+        def shortfall(standing: AssignmentStanding) -> float:
+            if standing.mark is None:
+                return -math.inf
+            return math.inf if standing.mean is None else standing.mark - standing.mean
+
         is_open = [each for each in self.standings if each.state is AssignmentState.OPEN]
-        return max(is_open, key=_shortfall, default=None)
+        return max(is_open, key=shortfall, default=None)
 
     def message(self, trainee: str) -> CurriculumMessage:
         """Return what the simulator shows a trainee."""
@@ -55,26 +64,14 @@ class CurriculumStanding:
         return CurriculumMessage(trainee, self.curriculum.title, name, self.standings)
 
 
-def _shortfall(standing: AssignmentStanding) -> float:
-    """Return the points from the latest mean up to the mark; infinite before the first trial.
-
-    Without a mark it is infinitely little: practice leads to no goal there.
-
-    Drawing the mean of few trials toward that of all improved nothing in simulated courses
-    (`Testing/error_rates/curricula.py`).
-    """
-    if standing.mark is None:
-        return -math.inf
-    return math.inf if standing.mean is None else standing.mark - standing.mean
-
-
 def by_curriculum(
-    standings: Mapping[str, CurriculumStanding],
+    standings: Mapping[str, CurriculumStanding | None],
 ) -> dict[Curriculum, dict[str, CurriculumStanding]]:
     """Return the standings of trainees, by name, for each curriculum that is followed."""
     groups: dict[Curriculum, dict[str, CurriculumStanding]] = {}
     for name, standing in standings.items():
-        groups.setdefault(standing.curriculum, {})[name] = standing
+        if standing is not None:
+            groups.setdefault(standing.curriculum, {})[name] = standing
     return groups
 
 
@@ -83,8 +80,8 @@ def standing_in(
 ) -> CurriculumStanding:
     """Return where a trainee stands by their trials, in order of starting.
 
-    The score of a trial with a procedure is that of the procedure; the study's pass mark is for
-    goals without their own.
+    In a trial with a procedure, the procedure's score counts. Goals without a mark use the
+    study's pass mark.
     """
     reached: dict[str, str] = {}
     standings = []
@@ -101,11 +98,9 @@ def standing_in(
 
 
 def _counts_for(trial: PastTrial, assignment: Assignment) -> bool:
-    procedure = trial.procedure
-    if trial.is_aborted and (assignment.procedure or not trial.is_in_procedure):
-        procedure = assignment.procedure
-    elif trial.is_aborted:
+    if trial.is_aborted and trial.is_in_procedure and not assignment.procedure:
         return False
+    procedure = assignment.procedure if trial.is_aborted else trial.procedure
     return assignment.is_played_as(
         trial.scenario, trial.task, trial.mode, trial.method.value, procedure
     )
@@ -181,7 +176,7 @@ PARTS = {
     "plunge": "drilling too deep",
     "distance": "the distance to no-go structures",
 }
-"""Of the scores of touches and of procedures."""
+"""The parts of the scores of touches and of procedures."""
 
 
 def title_of(assignment: Assignment) -> str:

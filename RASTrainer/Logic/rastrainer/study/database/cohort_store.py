@@ -1,7 +1,7 @@
 """The virtual cohort that is simulated into a study, stored so that it can resume.
 
 The plan is stored before the first trial, and its completion after the last, so an incomplete study
-is recognized whatever interrupted it.
+is recognized after any interruption.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class CohortStore:
             self._database.insert("cohort", id=1, plan_json=text, planned_trials=planned_trials)
 
     def gap(self) -> str:
-        """Return what is missing, as a sentence; "" if the cohort is complete, or there is none.
+        """Return a sentence about missing trials; "" if the cohort is complete, or there is none.
 
         It stays complete if trainees were deleted since.
         """
@@ -74,9 +74,7 @@ class CohortStore:
 
     def add(self, analysis: TrialAnalysis) -> None:
         """Store a finished trial with all results, the truth included, in one transaction."""
-        record, truth, study = analysis.record, analysis.truth, self._study
-        if truth is None:
-            raise ValueError("A virtual trial is stored with its truth.")
+        record, study = analysis.record, self._study
         with self._database.writing():
             if not study.has_trainee(record.trainee):
                 study.create_trainee(record.trainee, consent=True)
@@ -88,8 +86,8 @@ class CohortStore:
                     analysis.target_errors,
                     analysis.score,
                     analysis.procedure,
+                    analysis.truth,
                 )
-                study.set_truth(record.trial_id, truth.true_tre_mm, truth.head_to_world)
 
     def add_stuck(self, trial_id: str) -> None:
         """Note that a trial was played but not finished."""

@@ -10,12 +10,12 @@ from __future__ import annotations
 import os
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
-from urllib.parse import parse_qsl, quote, unquote, urlencode, urlsplit
+from typing import Any
+from urllib.parse import parse_qsl, unquote, urlsplit
 
 from rastrainer.errors import InputError
 from rastrainer.study.database.schema import TABLES, TRAINEE_ID
@@ -35,44 +35,19 @@ _MAX_LENGTH = 1000
 class PostgresAddress:
     """A database of a PostgreSQL server.
 
-    The host is a computer's name or number, or the folder of the socket on this one. Without user,
-    it is the system's; without port, 5432.
+    Attributes:
+        uri: For libpq, checked.
+        host: A computer's name or number, or the folder of the socket on this one.
+        sslmode: None for libpq's default, which is enough on this computer.
     """
 
+    uri: str
     host: str
     database: str
-    user: str = ""
-    port: int | None = None
-    options: Mapping[str, str] = field(default_factory=dict)
+    sslmode: str | None
 
     def __str__(self) -> str:
-        """Return it as `study_place` reads it."""
-        is_folder = self.host.startswith("/")
-        user = f"{quote(self.user, safe='')}@" if self.user else ""
-        host = "" if is_folder else f"[{self.host}]" if ":" in self.host else self.host
-        port = "" if self.port is None else f":{self.port}"
-        options = {**self.options, **({"host": self.host} if is_folder else {})}
-        if is_folder and self.port is not None:
-            port, options["port"] = "", str(self.port)
-        end = f"?{urlencode(options, safe='/')}" if options else ""
-        return f"{SCHEMES[0]}{user}{host}{port}/{quote(self.database, safe='')}{end}"
-
-    @property
-    def connection_options(self) -> dict[str, str]:
-        """Options of libpq."""
-        words = {"host": self.host, "dbname": self.database, **self.options}
-        if self.user:
-            words["user"] = self.user
-        if self.port is not None:
-            words["port"] = str(self.port)
-        if not self.is_here:
-            words.setdefault("sslmode", SAFE_MODES[0])
-        return words
-
-    @property
-    def is_here(self) -> bool:
-        """Whether its server runs on this computer."""
-        return self.host in _HERE or self.host.startswith("/")
+        return self.uri
 
 
 StudyPlace = Path | PostgresAddress
@@ -87,67 +62,48 @@ def study_place(place: str | os.PathLike[str] | PostgresAddress) -> StudyPlace:
     return _address(text) if text.startswith(SCHEMES) else Path(text)
 
 
-def _address(text: str) -> PostgresAddress:
-    # No sentence repeats what was entered: it might hold a password.
-    if len(text) > _MAX_LENGTH or not text.isprintable():
+def _address(uri: str) -> PostgresAddress:
+    # No sentence repeats the entered address: it might hold a password.
+    if len(uri) > _MAX_LENGTH or not unquote(uri).isprintable():
         raise InputError(f"An address of PostgreSQL is printable text such as {EXAMPLE}.")
     try:
-        parts = urlsplit(text)
-        port, password = parts.port, parts.password
+        parts = urlsplit(uri)
+        port = parts.port or 1
         pairs = parse_qsl(parts.query, keep_blank_values=True, strict_parsing=bool(parts.query))
     except ValueError:
         raise InputError(f"An address of PostgreSQL looks like {EXAMPLE}.") from None
     options = dict(pairs)
-    if password is not None or "password" in options:
+    if parts.password is not None or "password" in options:
         raise InputError(
             "The address of a study must not hold a password, which would be kept in settings and "
             "seen by others. Put it into ~/.pgpass as HOST:PORT:DATABASE:USER:PASSWORD, readable "
             "by you alone."
         )
-    unknown = sorted(set(options) - set(OPTIONS))
-    if unknown or len(options) < len(pairs):
+    if set(options) - set(OPTIONS) or len(options) < len(pairs):
         raise InputError(
             "After its question mark, the address of a study may have each of "
             f"{', '.join(OPTIONS)} once."
         )
-    host = options.pop("host", "") or parts.hostname or ""
+    host = options.get("host", "") or parts.hostname or ""
     database = unquote(parts.path.removeprefix("/"))
     if not host or not database or "/" in database or "," in host or parts.fragment:
         raise InputError(f"The address of a study names a host and a database: {EXAMPLE}.")
-    if "port" in options:
-        text = options.pop("port")
-        if not text.isdecimal() or not 0 < int(text[:6]) < 65536:
-            raise InputError("The port of a study is a number from 1 to 65535.")
-        port = int(text)
-    user = unquote(parts.username or "")
-    if not "".join((host, database, user, *options.values())).isprintable():
-        raise InputError(f"An address of PostgreSQL is printable text such as {EXAMPLE}.")
-    address = PostgresAddress(host, database, user, port, options)
-    if not address.is_here and address.connection_options["sslmode"] not in SAFE_MODES:
+    number = options.get("port", str(port))
+    if not number.isdecimal() or not 0 < int(number[:6]) < 65536:
+        raise InputError("The port of a study is a number from 1 to 65535.")
+    is_here = host in _HERE or host.startswith("/")
+    sslmode = options.get("sslmode", None if is_here else SAFE_MODES[0])
+    if not is_here and sslmode not in SAFE_MODES:
         raise InputError(
             "A study on another computer is reached over TLS with a certificate that is checked: "
             f"leave sslmode out, or set it to {' or '.join(SAFE_MODES)}."
         )
-    return address
+    return PostgresAddress(uri, host, database, sslmode)
 
 
 BUSY_TIMEOUT_S = 30.0
 INTERACTIVE_WAIT_S = (0.05, 1.0)
 """For a window's `LockWait`: not noticeable, and its rest."""
-
-
-class Connection(Protocol):
-    """A connection within a transaction; `sqlite3.Connection` is one.
-
-    Statements are SQL that SQLite and PostgreSQL both know, with `?` for each parameter.
-    `json_extract(column, '$.a.b')` is the one function that differs: its value may be a text.
-    """
-
-    def execute(self, sql: str, parameters: Sequence[Any] = ..., /) -> Any:
-        """Execute a statement."""
-
-    def executemany(self, sql: str, parameters: Iterable[Sequence[Any]], /) -> object:
-        """Execute a statement for each of several sequences of parameters."""
 
 
 class LockWait:
@@ -197,11 +153,16 @@ class StudyUnreachableError(StudyBusyError):
 
 
 class StudyDatabase(ABC):
-    """A connection to a study; each process and thread may have one."""
+    """A connection to a study; each process and thread may have one.
+
+    Statements are SQL that SQLite and PostgreSQL both know, with `?` for each parameter.
+    """
 
     _connection: Any
-    _open: tuple[Connection, bool] | None = None
-    """The open transaction, and whether it may change the study."""
+    _errors: type[Exception]
+    """Base class of the library's errors."""
+    _may_change_now: bool | None = None
+    """Whether the open transaction may change the study; None without one."""
 
     def __init__(self, name: str, place: StudyPlace, lock_wait: LockWait | None) -> None:
         """Connect, and make or check the tables; `lock_wait` is half a minute by default."""
@@ -213,7 +174,7 @@ class StudyDatabase(ABC):
             with self._sentences():
                 self._prepare()
         except BaseException:
-            self._connection.close()
+            self.close()
             raise
 
     def close(self) -> None:
@@ -222,16 +183,16 @@ class StudyDatabase(ABC):
 
     def rows(self, sql: str, *parameters: Any) -> list[Any]:
         """Return all rows that a query finds."""
-        with self.reading() as connection:
-            return connection.execute(sql, parameters).fetchall()
+        with self.reading():
+            return self._execute(sql, *parameters).fetchall()
 
     def row(self, sql: str, *parameters: Any) -> Any:
         """Return the first row that a query finds, or None."""
-        with self.reading() as connection:
-            return connection.execute(sql, parameters).fetchone()
+        with self.reading():
+            return self._execute(sql, *parameters).fetchone()
 
     def insert(self, table: str, is_once: bool = False, **values: Any) -> None:
-        """Store a row; with `is_once`, not in place of one that has its key.
+        """Store a row; with `is_once`, keep a stored row that has the same key.
 
         `trainee` is a pseudonym; the time of storing is added where the table has it.
         """
@@ -246,34 +207,52 @@ class StudyDatabase(ABC):
         )
 
     def change(self, sql: str, *parameters: Any) -> None:
-        with self.writing() as connection:
-            connection.execute(sql, parameters)
+        with self.writing():
+            self._execute(sql, *parameters)
 
-    def reading(self) -> AbstractContextManager[Connection]:
-        """Yield the connection for several reads of one state, or of the open transaction."""
-        return self._joined(may_change=False)
+    def reading(self) -> AbstractContextManager[None]:
+        """Read one state of the study several times, within an open transaction if there is one."""
+        return self._transaction(may_change=False)
 
-    def writing(self) -> AbstractContextManager[Connection]:
-        """Yield the connection for changes in one transaction, once those of others are done.
+    def writing(self) -> AbstractContextManager[None]:
+        """Make changes in one transaction, after the transactions of others.
 
         Within another one of `writing`, the changes are part of that one.
         """
-        return self._joined(may_change=True)
+        return self._transaction(may_change=True)
 
     @contextmanager
-    def _joined(self, may_change: bool) -> Iterator[Connection]:
-        if self._open is not None:
-            connection, may_change_already = self._open
-            if may_change and not may_change_already:
+    def _transaction(self, may_change: bool) -> Iterator[None]:
+        if self._may_change_now is not None:
+            if may_change and not self._may_change_now:
                 raise RuntimeError("A study is changed within a transaction for reading.")
-            yield connection
+            yield
             return
-        with self._transaction(may_change) as connection:
-            self._open = connection, may_change
+        with self._sentences():
             try:
-                yield connection
+                self._begin(may_change)
+                self._may_change_now = may_change
+                yield
+                self._commit()
             finally:
-                self._open = None
+                self._may_change_now = None
+                self._roll_back()
+
+    @contextmanager
+    def _sentences(self) -> Iterator[None]:
+        """Turn the library's errors into sentences for users."""
+        try:
+            yield
+        except self._errors as error:
+            known = self._explained(error)
+            if known is None:
+                raise
+            if isinstance(known, StudyBusyError):
+                self._lock_wait.note_timeout()
+            raise known from error
+
+    def _execute(self, sql: str, *parameters: Any) -> Any:
+        return self._connection.execute(sql, parameters)
 
     @abstractmethod
     def version(self) -> int | None:
@@ -285,7 +264,7 @@ class StudyDatabase(ABC):
 
     @abstractmethod
     def continue_numbers(self) -> None:
-        """Number new rows after all copied ones, within a transaction of `writing`."""
+        """Number new rows after all copied rows, within a transaction of `writing`."""
 
     @abstractmethod
     def _connect(self) -> Any:
@@ -296,9 +275,17 @@ class StudyDatabase(ABC):
         """Make or check the tables."""
 
     @abstractmethod
-    def _transaction(self, may_change: bool) -> AbstractContextManager[Connection]:
-        """Yield the connection in a new transaction."""
+    def _begin(self, may_change: bool) -> None:
+        """Begin a transaction."""
 
     @abstractmethod
-    def _sentences(self) -> AbstractContextManager[None]:
-        """Turn the database's errors into sentences for users."""
+    def _commit(self) -> None:
+        """End the transaction."""
+
+    @abstractmethod
+    def _roll_back(self) -> None:
+        """Undo a transaction that was begun and not committed."""
+
+    @abstractmethod
+    def _explained(self, error: Any) -> InputError | None:
+        """Return what to tell the user of the library's error; None if it is a bug of ours."""

@@ -4,7 +4,7 @@ Psycopg is loaded only for a study in PostgreSQL, and installed with the simulat
 runs the simulator, so its copy fits Slicer, too, and is loaded from the simulator's private folder:
 nothing is installed into Slicer.
 
-A connection keeps what was committed, and notices when the other side is gone.
+A connection keeps committed changes, and notices when the other side is gone.
 """
 
 from __future__ import annotations
@@ -112,7 +112,7 @@ def find_driver_in(folder: Path) -> None:
 def postgres_driver() -> ModuleType:
     """Return the module `psycopg`."""
     searched = [str(folder) for folder in _folders if folder.is_dir()]
-    # Last, and only meanwhile: nothing else of Slicer finds what is in the simulator's folder.
+    # Last, and only meanwhile: nothing else in Slicer finds the simulator's packages.
     sys.path.extend(searched)
     try:
         return importlib.import_module("psycopg")
@@ -138,7 +138,10 @@ def connected(
 ) -> Any:
     """Return a connection; psycopg's error if there is none in time."""
     connection = _impatient(postgres_driver(), answer_s).connect(
-        **address.connection_options,
+        address.uri,
+        # As they were checked.
+        host=address.host,
+        sslmode=address.sslmode,
         **_NETWORK,
         tcp_user_timeout=1000 * silence_s,
         autocommit=True,

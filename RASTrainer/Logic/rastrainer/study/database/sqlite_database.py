@@ -10,8 +10,6 @@ from __future__ import annotations
 import contextlib
 import os
 import sqlite3
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from urllib.parse import quote
 
@@ -40,11 +38,12 @@ class SqliteDatabase(StudyDatabase):
     """A connection to one file; each process and thread may have one."""
 
     _connection: sqlite3.Connection
+    _errors = sqlite3.Error
     _pragmas: tuple[str, ...] = (
         "foreign_keys = ON",
         # Deleted trainees leave no bytes behind in the file.
         "secure_delete = ON",
-        # Also sync the folder: what was committed stays after a power failure, since the simulator
+        # Also sync the folder: committed changes survive a power failure, since the simulator
         # forgets a trial that we have acknowledged.
         "synchronous = EXTRA",
         "journal_mode = DELETE",
@@ -72,18 +71,17 @@ class SqliteDatabase(StudyDatabase):
     def continue_numbers(self) -> None:
         """Do nothing: SQLite numbers new rows after the last one."""
 
-    @contextmanager
-    def _transaction(self, may_change: bool) -> Iterator[sqlite3.Connection]:
-        with self._sentences():
-            timeout_ms = 1000 * self._lock_wait.timeout_s
-            self._connection.execute(f"PRAGMA busy_timeout = {timeout_ms:.0f}")
-            self._connection.execute("BEGIN IMMEDIATE" if may_change else "BEGIN")
-            try:
-                yield self._connection
-                self._connection.execute("COMMIT")
-            finally:
-                if self._connection.in_transaction:
-                    self._connection.execute("ROLLBACK")
+    def _begin(self, may_change: bool) -> None:
+        timeout_ms = 1000 * self._lock_wait.timeout_s
+        self._connection.execute(f"PRAGMA busy_timeout = {timeout_ms:.0f}")
+        self._connection.execute("BEGIN IMMEDIATE" if may_change else "BEGIN")
+
+    def _commit(self) -> None:
+        self._connection.execute("COMMIT")
+
+    def _roll_back(self) -> None:
+        if self._connection.in_transaction:
+            self._connection.execute("ROLLBACK")
 
     def _connect(self) -> sqlite3.Connection:
         # Only a new file is opened: closing an existing one would release our other locks on it.
@@ -118,32 +116,28 @@ class SqliteDatabase(StudyDatabase):
             raise sqlite3.DatabaseError("malformed")
 
     def _create_tables(self) -> None:
-        with self.writing() as connection:
+        with self.writing():
             if self._number("user_version") == 0:  # Another process may have been faster.
                 for statement in STATEMENTS:
-                    connection.execute(statement)
-                connection.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
-                connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+                    self._execute(statement)
+                self._execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
+                self._execute(f"PRAGMA application_id = {APPLICATION_ID}")
 
     def _number(self, pragma: str) -> int:
         return self._connection.execute(f"PRAGMA {pragma}").fetchone()[0]
 
-    @contextmanager
-    def _sentences(self) -> Iterator[None]:
-        try:
-            yield
-        except (sqlite3.IntegrityError, sqlite3.ProgrammingError, sqlite3.InterfaceError):
-            raise
-        except sqlite3.Error as error:
-            text = str(error).lower()
-            if "locked" in text:
-                self._lock_wait.note_timeout()
-                raise StudyBusyError(
-                    f"Another program has locked the study {self.path}; try again when it has "
-                    "finished."
-                ) from error
-            sentence = next((said for words, said in _BY_WORDS.items() if words in text), _DAMAGED)
-            raise InputError(sentence.format(self.path)) from error
+    def _explained(self, error: sqlite3.Error) -> InputError | None:
+        if isinstance(
+            error, (sqlite3.IntegrityError, sqlite3.ProgrammingError, sqlite3.InterfaceError)
+        ):
+            return None
+        text = str(error).lower()
+        if "locked" in text:
+            return StudyBusyError(
+                f"Another program has locked the study {self.path}; try again when it has finished."
+            )
+        sentence = next((said for words, said in _BY_WORDS.items() if words in text), _DAMAGED)
+        return InputError(sentence.format(self.path))
 
 
 class ReadOnlySqliteDatabase(SqliteDatabase):

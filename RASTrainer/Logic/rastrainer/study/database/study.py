@@ -11,13 +11,14 @@ import itertools
 import json
 import os
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
 from rastrainer import json_checks
 from rastrainer.errors import InputError
 from rastrainer.files import writing
+from rastrainer.head.trial_head import UNMOVED
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import TRIAL_RUN, RegistrationMethod
 from rastrainer.registration.registration import Registration
@@ -29,18 +30,22 @@ from rastrainer.study.database.database import (
     study_place,
 )
 from rastrainer.study.database.postgres_database import PostgresDatabase
-from rastrainer.study.database.schema import TABLES, TRAINEE_ID
+from rastrainer.study.database.schema import TRAINEE_ID
 from rastrainer.study.database.sqlite_database import ReadOnlySqliteDatabase, SqliteDatabase
 from rastrainer.study.database.values import (
+    PROCEDURE,
+    RESULTS,
+    SCORE,
+    TRUTH,
     StoredAbortedTrial,
     StoredRegistration,
     StoredTrial,
     Trainee,
     TrialOutcome,
-    decoded,
     decoded_record,
     json_text,
     moment,
+    result_of,
     utc_now,
 )
 from rastrainer.trial.aborted_trial import AbortedTrial
@@ -52,24 +57,35 @@ from rastrainer.trial.trial_feedback import PastTrial
 
 STUDY_FILE = "study.db"
 """The usual name."""
-TRUTH_LIMIT = 1e6
 RECORD_LIMIT_BYTES = 2**20
 
-METHOD = "coalesce(json_extract(record_json, '$.method'), 'fiducials')"
-"""The method by which a trial was registered: its record leaves out fiducials, the default."""
-
 _TRAINEES = "SELECT pseudonym, consent, archived, created_utc FROM trainees"
-
 _STAMPED_TRIALS = f"""
-    SELECT trial_id, rowid, stored_utc,
-        (SELECT max(id) FROM registrations WHERE registrations.trial_id = trials.trial_id),
-        (SELECT max(id) FROM scores WHERE scores.trial_id = trials.trial_id),
-        (SELECT max(id) FROM procedure_outcomes
-            WHERE procedure_outcomes.trial_id = trials.trial_id),
-        (SELECT stored_utc FROM truths WHERE truths.trial_id = trials.trial_id)
-    FROM trials WHERE trainee_id = ({TRAINEE_ID}) ORDER BY started_utc, rowid
+    SELECT trial_id, id, stored_utc,
+        (SELECT max(results.id) FROM results WHERE results.trial_id = trials.trial_id)
+    FROM trials WHERE trainee_id = ({TRAINEE_ID}) ORDER BY started_utc, id
 """
 """Each trial of a trainee with a stamp that changes with any stored result."""
+
+
+def _latest(column: str, kind: str) -> str:
+    """Return a query of the latest result of a kind, within one of `trials`."""
+    own = f"WHERE results.trial_id = trials.trial_id AND kind = '{kind}'"
+    return f"(SELECT {column} FROM results {own} ORDER BY results.id DESC LIMIT 1)"
+
+
+_ATTEMPTS = f"""
+    SELECT trial_id, task, mode, completion_time_s, scenario, started_utc, method,
+        {_latest("result_json", SCORE)}, {_latest("result_json", PROCEDURE)},
+        {_latest("value", TRUTH)} IS NOT NULL
+    FROM trials WHERE trainee_id = ({TRAINEE_ID}) AND task != ? ORDER BY started_utc, id
+"""
+_OUTCOMES = f"""
+    SELECT trial_id, pseudonym, completion_time_s, {_latest("value", SCORE)}, method,
+        {_latest("value", TRUTH)}
+    FROM trials JOIN trainees ON trainees.id = trainee_id
+    WHERE task = ? AND mode = ? ORDER BY trials.id
+"""
 
 
 class DeletedTrialError(InputError):
@@ -87,7 +103,7 @@ class Study:
 
     def __init__(self, database: StudyDatabase) -> None:
         self.database = database
-        self._read_trials: Mapping[str, tuple[tuple, StoredTrial]] = {}
+        self._read_trials: Mapping[str, tuple[list, StoredTrial]] = {}
         """History of the last trainee, each trial with a stamp that changes with it."""
 
     @classmethod
@@ -140,15 +156,12 @@ class Study:
             json_checks.accepted(json_checks.pseudonym, pseudonym, "A pseudonym")
             if self.has_trainee(pseudonym):
                 raise InputError(f"The pseudonym {json.dumps(pseudonym)} is taken; choose another.")
+            trainee = Trainee(pseudonym, consent, archived=False, created_utc=utc_now())
             self.database.insert(
-                "trainees",
-                pseudonym=pseudonym,
-                consent=int(consent),
-                archived=0,
-                created_utc=utc_now(),
+                "trainees", **{**vars(trainee), "consent": int(consent), "archived": 0}
             )
             self.database.change("UPDATE trainee_numbers SET latest = latest + 1")
-            return self.trainee(pseudonym)
+            return trainee
 
     def next_pseudonym(self) -> str:
         """Return the next free pseudonym, such as `T001`."""
@@ -206,10 +219,6 @@ class Study:
             self.database.change("DELETE FROM trainees WHERE pseudonym = ?", pseudonym)
         return len(finished)
 
-    def is_deleted(self, trial_id: str) -> bool:
-        query = "SELECT 1 FROM deleted_trials WHERE trial_sha256 = ?"
-        return self.database.row(query, _sha256(trial_id)) is not None
-
     def add_trial(
         self,
         record: TrialRecord | Mapping[str, Any],
@@ -231,10 +240,23 @@ class Study:
             delivered = record
             record = record_from_json(TrialRecord, delivered)
         with self.database.writing():
-            if not self.check_trial(record):
+            self._check_not_deleted(record.trial_id)
+            if self.has("trials", record.trial_id):
+                # The seed is the simulator's secret at first and may be revealed later.
+                if replace(self.record(record.trial_id), seed=None) != replace(record, seed=None):
+                    raise _other_trial(record.trial_id)
                 return False
-            self._note_delivery(record)
-            self._store("trials", record, delivered)
+            self._store(
+                "trials",
+                record,
+                delivered,
+                task=record.task,
+                mode=record.mode,
+                scenario=record.scenario,
+                method=record.method.value,
+                started_utc=record.started_utc,
+                completion_time_s=record.completion_time_s,
+            )
             self.add_results(record.trial_id, registrations, target_errors, score)
         return True
 
@@ -252,36 +274,26 @@ class Study:
             is_other = row is not None and decoded_record(AbortedTrial, row[0]) != record
             if is_other or self.has("trials", record.trial_id):
                 raise _other_trial(record.trial_id)
-            if row is None:
+            if row is not None:
+                return False
+            if record.is_kept:
+                self._store("aborted_trials", record, delivered)
+            else:
                 self._note_delivery(record)
-            if row is not None or not record.is_kept:
-                return False
-            self._store("aborted_trials", record, delivered)
-        return True
-
-    def check_trial(self, record: TrialRecord) -> bool:
-        """Return whether a trial would be new, before anything is computed from it.
-
-        `DeletedTrialError` if it was deleted.
-        """
-        with self.database.reading():
-            self._check_not_deleted(record.trial_id)
-            if self.has("trials", record.trial_id):
-                # The seed is the simulator's secret at first and may be revealed later.
-                if replace(self.record(record.trial_id), seed=None) != replace(record, seed=None):
-                    raise _other_trial(record.trial_id)
-                return False
-            if not self.has_trainee(record.trainee):
-                json_checks.accepted(json_checks.pseudonym, record.trainee, "A pseudonym")
-            return True
+        return record.is_kept
 
     def has(self, table: str, trial_id: str) -> bool:
         query = f"SELECT 1 FROM {table} WHERE trial_id = ?"
         return self.database.row(query, trial_id) is not None
 
-    def _check_exists(self, trial_id: str) -> None:
-        if not self.has("trials", trial_id):
-            raise InputError(f"The study has no trial {json.dumps(str(trial_id)[:64])}.")
+    def is_revealed(self, trial_id: str) -> bool:
+        """Return whether the truth of a trial is known."""
+        query = "SELECT 1 FROM results WHERE trial_id = ? AND kind = ?"
+        return self.database.row(query, trial_id, TRUTH) is not None
+
+    def is_deleted(self, trial_id: str) -> bool:
+        query = "SELECT 1 FROM deleted_trials WHERE trial_sha256 = ?"
+        return self.database.row(query, _sha256(trial_id)) is not None
 
     def _check_not_deleted(self, trial_id: str) -> None:
         if self.is_deleted(trial_id):
@@ -301,15 +313,17 @@ class Study:
         table: str,
         record: AbortedTrial | TrialRecord,
         delivered: Mapping[str, Any] | None,
+        **columns: Any,
     ) -> None:
         text = json_text(delivered or record_to_json(record))
         if len(text) > RECORD_LIMIT_BYTES:
             raise InputError("The trial record is larger than 1 MiB, the most that is stored.")
+        self._note_delivery(record)
         if not self.has_trainee(record.trainee):
             self.create_trainee(record.trainee)
-        fields = {name: getattr(record, name, None) for name in TABLES[table].columns}
-        columns = {name: value for name, value in fields.items() if value is not None}
-        self.database.insert(table, trainee=record.trainee, record_json=text, **columns)
+        self.database.insert(
+            table, trainee=record.trainee, trial_id=record.trial_id, record_json=text, **columns
+        )
 
     def undelivered(self) -> Mapping[str, tuple[tuple[int, int], ...]]:
         """Return the first and last numbers of each gap in what arrived, by series.
@@ -331,85 +345,48 @@ class Study:
         target_errors: Mapping[str, TargetError] | None = None,
         score: TrialScore | None = None,
         procedure: ProcedureOutcome | None = None,
+        truth: RevealedTruth | None = None,
     ) -> None:
-        """Add results of a stored trial; the latest results count."""
-        with self.database.writing():
-            self._check_exists(trial_id)
-            for registration in registrations:
-                error = (target_errors or {}).get(registration.kind)
-                stored = record_to_json(StoredRegistration.of(registration, error))
-                self.database.insert(
-                    "registrations",
-                    trial_id=trial_id,
-                    kind=registration.kind,
-                    fre_mm=registration.fre_mm,
-                    registration_json=json_text(stored),
-                )
-            if score is not None:
-                self.database.insert(
-                    "scores",
-                    trial_id=trial_id,
-                    score=score.score,
-                    version=score.version,
-                    score_json=json_text(record_to_json(score, with_defaults=True)),
-                )
-            if procedure is not None:
-                self.database.insert(
-                    "procedure_outcomes",
-                    trial_id=trial_id,
-                    score=procedure.score.score,
-                    version=procedure.score.version,
-                    outcome_json=json_text(record_to_json(procedure, with_defaults=True)),
-                )
+        """Add results of a stored trial; the latest count, and of the truth the first.
 
-    def set_truth(self, trial_id: str, true_tre_mm: float, head_to_world: Sequence[float]) -> None:
-        """Store the truth that the simulator revealed; only the first one counts.
-
-        `head_to_world` is 16 numbers row by row, RAS to `World`, mm.
+        How far the skin had shifted is in the record, and not stored with the truth.
         """
-        what = "What the simulator reveals"
-        error = json_checks.accepted(json_checks.number(0, TRUTH_LIMIT), true_tre_mm, what)
-        pose = json_checks.accepted(json_checks.numbers(16, TRUTH_LIMIT), head_to_world, what)
+        results: list[tuple[str, float, Any]] = [
+            (fit.kind, fit.fre_mm, StoredRegistration.of(fit, (target_errors or {}).get(fit.kind)))
+            for fit in registrations
+        ]
         with self.database.writing():
-            self._check_exists(trial_id)
-            self.database.insert(
-                "truths",
-                is_once=True,
-                trial_id=trial_id,
-                true_tre_mm=error,
-                head_to_world_json=json_text(pose),
-            )
+            if not self.has("trials", trial_id):
+                raise _no_trial(trial_id)
+            if truth is not None and not self.is_revealed(trial_id):
+                results.append((TRUTH, truth.true_tre_mm, replace(truth, skin=UNMOVED)))
+            if score is not None:
+                results.append((SCORE, score.score, score))
+            if procedure is not None:
+                results.append((PROCEDURE, procedure.score.score, procedure))
+            for kind, value, result in results:
+                # A score keeps its version, even the present one.
+                text = json_text(record_to_json(result, with_defaults=kind in (SCORE, PROCEDURE)))
+                self.database.insert(
+                    "results", trial_id=trial_id, kind=kind, value=value, result_json=text
+                )
 
     def record(self, trial_id: str) -> TrialRecord:
         """Return the record of a trial; raise `InputError` if unknown."""
-        with self.database.reading():
-            self._check_exists(trial_id)
-            return self._records("trial_id = ?", trial_id)[0]
+        row = self.database.row("SELECT record_json FROM trials WHERE trial_id = ?", trial_id)
+        if row is None:
+            raise _no_trial(trial_id)
+        return decoded_record(TrialRecord, row[0])
 
     def trial(self, trial_id: str) -> StoredTrial:
         """Return a trial with its latest results; raise `InputError` if unknown."""
         with self.database.reading():
             record = self.record(trial_id)
-            registrations, scores, truths, procedures = (
-                self.database.rows(
-                    f"SELECT {columns} FROM {table} WHERE trial_id = ? "
-                    f"ORDER BY {TABLES[table].order}",
-                    trial_id,
-                )
-                for table, columns in (
-                    ("registrations", "kind, registration_json"),
-                    ("scores", "score_json"),
-                    ("truths", "head_to_world_json, true_tre_mm"),
-                    ("procedure_outcomes", "outcome_json"),
-                )
-            )
-        return StoredTrial(
-            record,
-            {kind: decoded_record(StoredRegistration, text) for kind, text in registrations},
-            decoded_record(TrialScore, scores[-1][0]) if scores else None,
-            RevealedTruth(decoded(truths[0][0], tuple), truths[0][1]) if truths else None,
-            decoded_record(ProcedureOutcome, procedures[-1][0]) if procedures else None,
-        )
+            query = "SELECT kind, result_json FROM results WHERE trial_id = ? ORDER BY id"
+            latest = dict(self.database.rows(query, trial_id))
+        found = {kind: result_of(kind, text) for kind, text in latest.items()}
+        score, procedure, truth = (found.pop(kind, None) for kind in RESULTS)
+        return StoredTrial(record, found, score, truth, procedure)
 
     def history(self, pseudonym: str) -> tuple[StoredTrial, ...]:
         """Return all trials of a trainee in order of starting; unchanged trials are kept."""
@@ -418,8 +395,8 @@ class Study:
             known = self._read_trials
             self._read_trials = {
                 trial_id: known[trial_id]
-                if trial_id in known and known[trial_id][0] == tuple(stamp)
-                else (tuple(stamp), self.trial(trial_id))
+                if trial_id in known and known[trial_id][0] == stamp
+                else (stamp, self.trial(trial_id))
                 for trial_id, *stamp in self.database.rows(_STAMPED_TRIALS, pseudonym)
             }
         return tuple(trial for _stamp, trial in self._read_trials.values())
@@ -431,47 +408,11 @@ class Study:
             rows = self.database.rows(
                 "SELECT record_json, coalesce(step, ''), coalesce(reason, '') "
                 "FROM aborted_trials LEFT JOIN repeats USING (trial_id) "
-                f"WHERE trainee_id = ({TRAINEE_ID}) ORDER BY aborted_trials.rowid",
+                f"WHERE trainee_id = ({TRAINEE_ID}) ORDER BY id",
                 pseudonym,
             )
         found = [StoredAbortedTrial(decoded_record(AbortedTrial, row[0]), *row[1:]) for row in rows]
         return tuple(sorted(found, key=lambda stored: moment(stored.record.started_utc)))
-
-    def past_trials(self, pseudonym: str) -> tuple[PastTrial, ...]:
-        """Return a trainee's scored trials without trial runs, in order of starting."""
-        with self.database.reading():
-            self.trainee(pseudonym)
-            rows = self.database.rows(
-                "SELECT * FROM ("
-                "SELECT trial_id, task, mode, completion_time_s, scenario, started_utc, "
-                f"{METHOD} AS method, ({_latest('scores', 'score_json')}) AS latest, "
-                f"({_latest('procedure_outcomes', 'outcome_json')}), trials.rowid AS stored "
-                f"FROM trials WHERE trainee_id = ({TRAINEE_ID}) AND task != ?"
-                ") AS played WHERE latest IS NOT NULL ORDER BY started_utc, stored",
-                pseudonym,
-                TRIAL_RUN,
-            )
-        past = []
-        for trial, task, mode, time_s, scenario, started_utc, method, scored, done, _stored in rows:
-            score = decoded_record(TrialScore, scored)
-            procedure = None if done is None else decoded_record(ProcedureOutcome, done)
-            past.append(
-                PastTrial(
-                    trial,
-                    task,
-                    mode,
-                    time_s,
-                    score.score,
-                    score.acceptable,
-                    method=RegistrationMethod(method),
-                    scenario=scenario,
-                    started_utc=started_utc,
-                    parts=score.parts,
-                    procedure="" if procedure is None else procedure.analysis.procedure,
-                    procedure_score=None if procedure is None else procedure.score,
-                )
-            )
-        return tuple(past)
 
     def attempts(self, pseudonym: str) -> tuple[PastTrial, ...]:
         """Return the trials from which progress is computed, as started: scored and failed.
@@ -480,52 +421,51 @@ class Study:
         truth is known. Trial runs are left out.
         """
         with self.database.reading():
-            scored = self.past_trials(pseudonym)
             aborted = [stored.record for stored in self.aborted(pseudonym)]
-            unscored = self._records(
-                f"trainee_id = ({TRAINEE_ID}) AND task != ? "
-                "AND trial_id IN (SELECT trial_id FROM truths) "
-                "AND trial_id NOT IN (SELECT trial_id FROM scores)",
-                pseudonym,
-                TRIAL_RUN,
+            rows = self.database.rows(_ATTEMPTS, pseudonym, TRIAL_RUN)
+        found = []
+        for trial_id, task, mode, seconds, scenario, utc, method, scored, done, is_revealed in rows:
+            score = None if scored is None else result_of(SCORE, scored)
+            procedure = None if done is None else result_of(PROCEDURE, done)
+            if score is None and not is_revealed:
+                continue
+            found.append(
+                PastTrial(
+                    *(trial_id, task, mode, seconds),
+                    score=0.0 if score is None else score.score,
+                    acceptable=score is not None and score.acceptable,
+                    is_aborted=score is None,
+                    method=RegistrationMethod(method),
+                    scenario=scenario,
+                    started_utc=utc,
+                    parts={} if score is None else score.parts,
+                    procedure="" if procedure is None else procedure.analysis.procedure,
+                    procedure_score=None if procedure is None else procedure.score,
+                )
             )
-        failed = [PastTrial.failed(record) for record in aborted if record.counts_as_failed]
-        trials = (*scored, *failed, *map(PastTrial.failed, unscored))
-        return tuple(sorted(trials, key=lambda trial: moment(trial.started_utc)))
+        found += [PastTrial.failed(record) for record in aborted if record.counts_as_failed]
+        return tuple(sorted(found, key=lambda trial: moment(trial.started_utc)))
 
     def unrevealed(self) -> tuple[TrialRecord, ...]:
-        return self._records("trial_id NOT IN (SELECT trial_id FROM truths)")
-
-    def _records(self, condition: str, *parameters: Any) -> tuple[TrialRecord, ...]:
-        query = f"SELECT record_json FROM trials WHERE {condition} ORDER BY rowid"
-        rows = self.database.rows(query, *parameters)
+        rows = self.database.rows(
+            "SELECT record_json FROM trials WHERE trial_id NOT IN "
+            "(SELECT trial_id FROM results WHERE kind = ?) ORDER BY id",
+            TRUTH,
+        )
         return tuple(decoded_record(TrialRecord, text) for (text,) in rows)
 
     def outcomes(self, task: str, mode: str) -> tuple[TrialOutcome, ...]:
         """Return the outcomes of all trials of a task and mode, in order of storing."""
-        rows = self.database.rows(
-            f"""
-            SELECT trials.trial_id, pseudonym, completion_time_s,
-                ({_latest("scores", "score")}), {METHOD}, true_tre_mm
-            FROM trials
-            JOIN trainees ON trainees.id = trainee_id
-            LEFT JOIN truths ON truths.trial_id = trials.trial_id
-            WHERE task = ? AND mode = ?
-            ORDER BY trials.rowid
-            """,
-            task,
-            mode,
-        )
+        rows = self.database.rows(_OUTCOMES, task, mode)
         return tuple(TrialOutcome(*row) for row in rows)
-
-
-def _latest(table: str, column: str) -> str:
-    own = f"WHERE {table}.trial_id = trials.trial_id ORDER BY {table}.id DESC LIMIT 1"
-    return f"SELECT {column} FROM {table} {own}"
 
 
 def _trainee(pseudonym: str, consent: int, archived: int, created_utc: str) -> Trainee:
     return Trainee(pseudonym, bool(consent), bool(archived), created_utc)
+
+
+def _no_trial(trial_id: str) -> InputError:
+    return InputError(f"The study has no trial {json.dumps(str(trial_id)[:64])}.")
 
 
 def _other_trial(trial_id: str) -> InputError:

@@ -76,9 +76,14 @@ def decoded_record(kind: type[Value], written: str) -> Value:
     return decoded(written, partial(record_from_json, kind))
 
 
+def result_of(kind: str, written: str) -> Any:
+    """Return a stored result; every kind outside `RESULTS` is a registration's."""
+    return decoded_record(RESULTS.get(kind, StoredRegistration), written)
+
+
 @dataclass(frozen=True)
 class Trainee:
-    """A trainee, known only by a pseudonym; archived ones are hidden from the list."""
+    """A trainee, known only by a pseudonym; the list hides archived trainees."""
 
     pseudonym: str
     consent: bool
@@ -161,3 +166,8 @@ class StoredAbortedTrial:
     record: AbortedTrial
     step: str = ""
     repeat_reason: str = ""
+
+
+SCORE, PROCEDURE, TRUTH = "score", "procedure", "truth"
+RESULTS = {SCORE: TrialScore, PROCEDURE: ProcedureOutcome, TRUTH: RevealedTruth}
+"""The kinds of results other than registrations."""

@@ -1,57 +1,68 @@
-"""Questionnaires: items, allowed answers and scores; the catalog with SUS, raw NASA-TLX and SSQ."""
+"""Questionnaires: items, allowed answers and scores; SUS, raw NASA-TLX and SSQ.
+
+Their items and scales are in `questionnaires.json`, by their topics: the published wording is its
+authors', and a lab shows it from its own licensed or printed form.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import json
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
 
 from rastrainer.errors import InputError
+from rastrainer.json_checks import number, texts, whole_number
+from rastrainer.json_records import record_from_json
+
+_Mark = Annotated[int, whole_number(0, 100)]
 
 
 @dataclass(frozen=True)
 class QuestionnaireItem:
     """One item: a name for data files, and its topic.
 
-    The published wording is its authors'; a lab shows it from its own licensed or printed form. The
-    anchors are the meaning of the smallest and the largest answer, if it has its own.
+    Attributes:
+        anchors: The meaning of the smallest and the largest answer, if the item has its own.
+        groups: First letters of the SSQ's scales that include the symptom.
     """
 
     name: str
     topic: str
-    anchors: tuple[str, str] | tuple[()] = ()
+    anchors: Annotated[tuple[str, ...], texts(2, 2)] = ()
+    groups: str = ""
 
 
 @dataclass(frozen=True)
 class Scale:
-    """A score: name, title, range, and whether more is better (1) or worse (-1)."""
+    """A score from `lowest` to `highest`, where more is better (1) or worse (-1)."""
 
     name: str
     title: str
-    lowest: float
-    highest: float
-    better: int
+    highest: Annotated[float, number(0, 1000)]
+    better: Annotated[int, whole_number(-1, 1)]
+    lowest: Annotated[float, number(0, 0)] = 0.0
 
 
 @dataclass(frozen=True)
 class Questionnaire:
-    """A questionnaire and its scoring.
+    """A questionnaire.
 
     Attributes:
         name: For files and protocols, such as "sus".
-        formula: From the checked answers to a score for each scale.
         marks_apart: Distance of the marks in a form; answers between them are valid too.
     """
 
     name: str
     title: str
-    items: tuple[QuestionnaireItem, ...]
-    lowest: int
-    highest: int
-    anchors: tuple[str, str]
-    scales: tuple[Scale, ...]
     source: str
-    formula: Callable[[Sequence[int]], tuple[float, ...]]
-    marks_apart: int = 1
+    lowest: _Mark
+    highest: _Mark
+    anchors: Annotated[tuple[str, ...], texts(2, 2)]
+    items: tuple[QuestionnaireItem, ...]
+    scales: tuple[Scale, ...]
+    marks_apart: _Mark = 1
 
     @property
     def marks(self) -> range:
@@ -59,7 +70,7 @@ class Questionnaire:
         return range(self.lowest, self.highest + 1, self.marks_apart)
 
     def score(self, answers: Sequence[int] | Mapping[str, int]) -> dict[str, float]:
-        values = self.formula(self.checked(answers))
+        values = _SCORES[self.name](self.checked(answers))
         return {scale.name: value for scale, value in zip(self.scales, values, strict=True)}
 
     def checked(self, answers: Sequence[int] | Mapping[str, int]) -> tuple[int, ...]:
@@ -81,145 +92,37 @@ class Questionnaire:
         return tuple(answers)
 
 
-_SUS_TOPICS = (
-    "like to use it often",
-    "needlessly complex",
-    "easy to use",
-    "need a technical person's help",
-    "functions well integrated",
-    "too much inconsistency",
-    "most people learn it quickly",
-    "cumbersome",
-    "felt confident",
-    "had to learn a lot first",
-)
-
-
 def _sus_scores(answers: Sequence[int]) -> tuple[float, ...]:
-    """Odd items are positive and count answer − 1, even ones negative and count 5 − answer."""
+    """Odd items are positive and count answer − 1, even items negative and count 5 − answer."""
     points = [a - 1 if number % 2 else 5 - a for number, a in enumerate(answers, start=1)]
     return (2.5 * sum(points),)
 
 
-SUS = Questionnaire(
-    name="sus",
-    title="SUS",
-    items=tuple(
-        QuestionnaireItem(f"sus_{i}", topic) for i, topic in enumerate(_SUS_TOPICS, start=1)
-    ),
-    lowest=1,
-    highest=5,
-    anchors=("strongly disagree", "strongly agree"),
-    scales=(Scale("sus", "SUS", 0.0, 100.0, 1),),
-    source="Brooke 1996, SUS: a quick and dirty usability scale",
-    formula=_sus_scores,
-)
-
-
-# The six scales have 21 marks, 0 to 100 in steps of 5; the raw score, without the weighting step,
-# is their mean. Performance runs from perfect (0) to failure (100), so that on every scale more is
-# more workload; none is reversed for the mean.
-_TLX_SCALES = (
-    ("mental", "Mental demand"),
-    ("physical", "Physical demand"),
-    ("temporal", "Temporal demand"),
-    ("performance", "Performance"),
-    ("effort", "Effort"),
-    ("frustration", "Frustration"),
-)
-_TLX_ANCHORS = {"performance": ("perfect", "failure")}
-"""Performance does not run from very low to very high."""
-
-
 def _tlx_scores(answers: Sequence[int]) -> tuple[float, ...]:
+    """Return the raw score, the mean without the weighting step, and each answer.
+
+    Performance runs from perfect (0) to failure (100), so that on every scale more is more
+    workload; none is reversed for the mean.
+    """
     return (sum(answers) / len(answers), *map(float, answers))
 
 
-def _tlx_title(name: str, title: str) -> str:
-    """Return the title of a scale, with its own anchors if it has any."""
-    title = f"TLX {title.lower()}"
-    if name not in _TLX_ANCHORS:
-        return title
-    low, high = _TLX_ANCHORS[name]
-    return f"{title} (0 is {low}, 100 is {high})"
-
-
-NASA_TLX = Questionnaire(
-    name="nasa-tlx",
-    title="NASA-TLX (raw)",
-    items=tuple(
-        QuestionnaireItem(f"tlx_{name}", title, _TLX_ANCHORS.get(name, ()))
-        for name, title in _TLX_SCALES
-    ),
-    lowest=0,
-    highest=100,
-    anchors=("very low", "very high"),
-    scales=(
-        Scale("tlx_raw", "Workload (raw NASA-TLX)", 0.0, 100.0, -1),
-        *(
-            Scale(f"tlx_{name}", _tlx_title(name, title), 0.0, 100.0, -1)
-            for name, title in _TLX_SCALES
-        ),
-    ),
-    source="Hart and Staveland 1988; raw: Hart 2006",
-    formula=_tlx_scores,
-    marks_apart=5,
-)
-
-
-NAUSEA, OCULOMOTOR, DISORIENTATION = "N", "O", "D"
-WEIGHTS = {NAUSEA: 9.54, OCULOMOTOR: 7.58, DISORIENTATION: 13.92}
+WEIGHTS = {"N": 9.54, "O": 7.58, "D": 13.92}
+"""The weights of nausea, oculomotor symptoms and disorientation."""
 TOTAL_WEIGHT = 3.74
-
-_SSQ_SYMPTOMS = (
-    ("discomfort", "General discomfort", "NO"),
-    ("fatigue", "Fatigue", "O"),
-    ("headache", "Headache", "O"),
-    ("eyestrain", "Eyestrain", "O"),
-    ("focusing", "Difficulty focusing", "OD"),
-    ("salivation", "Increased salivation", "N"),
-    ("sweating", "Sweating", "N"),
-    ("nausea", "Nausea", "ND"),
-    ("concentrating", "Difficulty concentrating", "NO"),
-    ("fullness", "Fullness of head", "D"),
-    ("blurred", "Blurred vision", "OD"),
-    ("dizzy_open", "Dizzy, eyes open", "D"),
-    ("dizzy_closed", "Dizzy, eyes closed", "D"),
-    ("vertigo", "Vertigo", "D"),
-    ("stomach", "Stomach awareness", "N"),
-    ("burping", "Burping", "N"),
-)
 
 
 def _ssq_scores(answers: Sequence[int]) -> tuple[float, ...]:
-    sums = {
-        group: sum(
-            a for a, (_, _, groups) in zip(answers, _SSQ_SYMPTOMS, strict=True) if group in groups
-        )
-        for group in WEIGHTS
-    }
+    given = list(zip(answers, SSQ.items, strict=True))
+    sums = {group: sum(a for a, item in given if group in item.groups) for group in WEIGHTS}
     parts = (WEIGHTS[group] * total for group, total in sums.items())
     return (TOTAL_WEIGHT * sum(sums.values()), *parts)
 
 
-SSQ = Questionnaire(
-    name="ssq",
-    title="SSQ",
-    items=tuple(QuestionnaireItem(f"ssq_{name}", title) for name, title, _ in _SSQ_SYMPTOMS),
-    lowest=0,
-    highest=3,
-    anchors=("none", "severe"),
-    scales=(
-        Scale("ssq_total", "Simulator sickness (SSQ)", 0.0, 63 * TOTAL_WEIGHT, -1),
-        Scale("ssq_nausea", "SSQ nausea", 0.0, 21 * WEIGHTS[NAUSEA], -1),
-        Scale("ssq_oculomotor", "SSQ oculomotor", 0.0, 21 * WEIGHTS[OCULOMOTOR], -1),
-        Scale("ssq_disorientation", "SSQ disorientation", 0.0, 21 * WEIGHTS[DISORIENTATION], -1),
-    ),
-    source="Kennedy, Lane, Berbaum and Lilienthal 1993",
-    formula=_ssq_scores,
-)
-
-
+_SCORES = {"sus": _sus_scores, "nasa-tlx": _tlx_scores, "ssq": _ssq_scores}
+"""Formulas: they map the checked answers to a score for each scale."""
+_FILE = Path(__file__).with_name("questionnaires.json").read_text(encoding="utf-8")
+SUS, NASA_TLX, SSQ = (record_from_json(Questionnaire, each) for each in json.loads(_FILE))
 QUESTIONNAIRES = {q.name: q for q in (SUS, NASA_TLX, SSQ)}
 
 

@@ -70,10 +70,7 @@ class StepProgress:
 
     def minutes_elapsed(self, now: datetime) -> float:
         """Return the elapsed time of a trial run or break, min."""
-        step = self.next_step
-        if step is None or step.kind not in (StepKind.TRIAL_RUN, StepKind.BREAK):
-            return 0.0
-        if step.kind == StepKind.TRIAL_RUN:
+        if self.break_end is None:
             return self.practiced_s / 60.0
         return max(0.0, (now - datetime.fromisoformat(self.since_utc)).total_seconds() / 60.0)
 
@@ -130,52 +127,43 @@ class StepProgress:
     def check_start(self, mode: str, task: str) -> StudyStep:
         """Return the step of a trial to be started."""
         step = self.due()
-        if step.kind not in (StepKind.TRIAL, StepKind.TRIAL_RUN) or (step.mode, step.task) != (
-            mode,
-            task,
-        ):
+        if not step.is_played or (step.mode, step.task) != (mode, task):
             raise InputError(f"Not yet: the study asks for something else first. {self.sentence}")
         if self.unexplained:
             raise InputError(self.repeat_sentence)
         return step
 
-    def check_done(self, step: StudyStep, details: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the details to store when a step is done; raise `InputError` if incomplete."""
-        if step.kind == StepKind.QUESTIONNAIRE:
-            if "answers" not in details:
-                raise InputError("A questionnaire is complete only with its answers.")
-            questionnaire = find_questionnaire(step.questionnaire)
-            return {"answers": list(questionnaire.checked(details["answers"]))}
-        if step.kind == StepKind.TRIAL:
-            if not isinstance(details.get("trialId"), str):
-                raise InputError(
-                    "A step with a trial is complete only with the UUID of the stored trial."
-                )
-            return {"trialId": details["trialId"]}
-        minutes = details.get("minutes")
-        if not is_number(minutes) or not step.minutes <= minutes < float("inf"):
-            what = "The trial run" if step.kind == StepKind.TRIAL_RUN else "The break"
-            took = f"{minutes:.1f}" if is_number(minutes) else "none"
-            raise InputError(
-                f"{what} takes {step.minutes:g} minutes, of which {took} have passed; to continue "
-                "earlier, skip it and give a reason."
-            )
-        return {"minutes": float(minutes)}
-
-    def due(self) -> StudyStep:
-        if self.next_step is None:
+    def due(self, step_name: str = "") -> StudyStep:
+        """Return the next step; raise `InputError` if it has another name than a given one."""
+        step = self.next_step
+        if step is None:
             raise InputError("All steps of the study are done; nothing comes after them.")
-        return self.next_step
-
-    def expected(self, step_name: str) -> StudyStep:
-        """Return the next step; raise `InputError` unless it has this name."""
-        step = self.due()
-        if step.name != step_name:
+        if step_name not in ("", step.name):
             raise InputError(
                 f"The next step is {step.name}, not {step_name[:80]}. Steps are done in "
                 "order; to leave one out, skip it and give a reason."
             )
         return step
+
+
+def checked_details(step: StudyStep, details: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the details to store when a step is done; raise `InputError` if incomplete."""
+    if step.kind == StepKind.QUESTIONNAIRE:
+        if "answers" not in details:
+            raise InputError("A questionnaire is complete only with its answers.")
+        questionnaire = find_questionnaire(step.questionnaire)
+        return {"answers": list(questionnaire.checked(details["answers"]))}
+    if step.kind == StepKind.TRIAL:
+        raise InputError("A step with a trial is done by a stored trial that counts for it.")
+    minutes = details.get("minutes")
+    if not is_number(minutes) or not step.minutes <= minutes < float("inf"):
+        what = "The trial run" if step.kind == StepKind.TRIAL_RUN else "The break"
+        took = f"{minutes:.1f}" if is_number(minutes) else "none"
+        raise InputError(
+            f"{what} takes {step.minutes:g} minutes, of which {took} have passed; to continue "
+            "earlier, skip it and give a reason."
+        )
+    return {"minutes": float(minutes)}
 
 
 def checked_reason(reason: Any, what: str) -> str:

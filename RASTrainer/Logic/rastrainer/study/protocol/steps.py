@@ -6,9 +6,9 @@ Slicer sends the next step (`StudyStep`); the simulator answers (`StepAnswered`)
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated
 
-from rastrainer.json_checks import whole_number
+from rastrainer.json_checks import list_of, whole_number
 from rastrainer.protocol import Guidance, Mode, RegistrationMethod, StepKind
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES, find_questionnaire
 from rastrainer.study_messages import StudyStep
@@ -58,12 +58,6 @@ def trial_title(task: str, mode: str, method: str, procedure: str) -> str:
     return f"{name}{_BY_METHOD.get(method, '')}{then}{where}"
 
 
-def _list(value: Any) -> Any:
-    if not isinstance(value, (list, tuple)):
-        raise ValueError("a list of whole numbers")
-    return tuple(value)
-
-
 @dataclass(frozen=True)
 class StepAnswers:
     """The answers to the questionnaire of a step, one for each item, in order."""
@@ -71,7 +65,7 @@ class StepAnswers:
     trainee: str
     number: Annotated[int, whole_number(1, MAX_STEPS)]
     questionnaire: str
-    answers: Annotated[tuple[int, ...], _list]
+    answers: Annotated[tuple[Annotated[int, whole_number(0, 100)], ...], list_of(0, 100)]
 
     def __post_init__(self) -> None:
         find_questionnaire(self.questionnaire).checked(self.answers)

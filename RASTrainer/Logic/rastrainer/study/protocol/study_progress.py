@@ -15,14 +15,15 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.protocol import StepKind
 from rastrainer.study.database.schema import TRAINEE_ID
-from rastrainer.study.database.study import METHOD, Study
-from rastrainer.study.database.values import decoded, json_text, moment
+from rastrainer.study.database.study import Study
+from rastrainer.study.database.values import TRUTH, decoded, decoded_record, json_text, moment
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study.protocol.step_progress import (
     DONE,
     SKIPPED,
     StepEntry,
     StepProgress,
+    checked_details,
     checked_reason,
 )
 from rastrainer.study.protocol.steps import objections_to
@@ -32,6 +33,7 @@ from rastrainer.study.protocol.study_protocol import (
 )
 from rastrainer.study_messages import StudyStep
 from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.record import TrialRecord
 
 
 @dataclass(frozen=True)
@@ -143,16 +145,13 @@ class StudyProgress:
     ) -> StepProgress:
         """Store that the next step was done, with details of `StepEntry`; return the progress."""
         with self._database.writing():
-            progress = self.progress(pseudonym)
-            expected = progress.expected(step)
-            checked = progress.check_done(expected, details or {})
-            if expected.kind == StepKind.TRIAL:
-                self._check_trial(pseudonym, progress, expected, checked["trialId"])
+            due = self.progress(pseudonym).due(step)
+            checked = checked_details(due, details or {})
             return self._store(pseudonym, step, DONE, checked)
 
     def skip(self, pseudonym: str, step: str, reason: str) -> StepProgress:
         with self._database.writing():
-            self.progress(pseudonym).expected(step)
+            self.progress(pseudonym).due(step)
             checked = checked_reason(reason, "A step can be skipped")
             return self._store(pseudonym, step, SKIPPED, {"reason": checked})
 
@@ -233,31 +232,6 @@ class StudyProgress:
                     found.append(QuestionnaireAnswers(name, step, given, scores, utc))
         return tuple(found)
 
-    def _check_trial(
-        self, pseudonym: str, progress: StepProgress, step: StudyStep, trial_id: str
-    ) -> None:
-        record = self._study.record(trial_id)
-        played = (record.trainee, record.mode, record.task, record.method.value)
-        if played != (pseudonym, step.mode, step.task, step.method):
-            raise InputError(
-                f"The trial {trial_id} is not the one that the step {step.name} asks for: it was "
-                f"{record.task} in the mode {record.mode}, registered by {record.method.value}."
-            )
-        skin = record.skin
-        if not step.is_played_on(skin.shift_mm, skin.indentation_mm):
-            raise InputError(
-                f"The trial {trial_id} is not the one that the step {step.name} asks for: its skin "
-                f"had shifted by {skin.shift_mm:g} mm and was indented by "
-                f"{skin.indentation_mm:g} mm."
-            )
-        if objections := objections_to(step, record):
-            raise InputError(
-                f"The trial {trial_id} does not count for the step {step.name}: "
-                f"{'; '.join(objections)}."
-            )
-        if trial_id in progress.counted_trials:
-            raise InputError(f"The trial {trial_id} already counts for an earlier step.")
-
     def _played_next(self, pseudonym: str, progress: StepProgress) -> list[StepEntry]:
         """Return the entries of next steps whose trials are stored but not counted yet."""
         entries = []
@@ -275,46 +249,36 @@ class StudyProgress:
         """Return the entry of the next step's trial, or None; a repeat needs a reason to count."""
         if step.kind != StepKind.TRIAL:
             return None
-        counted, since = progress.counted_trials, self._since(pseudonym, progress)
-        for when, trial, stored_utc, *played, shift, indentation in self._trials_of(pseudonym):
+        rows = self._database.rows(
+            "SELECT record_json, stored_utc FROM trials "
+            f"WHERE trainee_id = ({TRAINEE_ID}) AND mode = ? AND task = ? AND method = ? "
+            "AND trial_id IN (SELECT trial_id FROM results WHERE kind != ?)",
+            *(pseudonym, step.mode, step.task, step.method, TRUTH),
+        )
+        since = self._since(pseudonym, progress)
+        played = [(decoded_record(TrialRecord, text), utc) for text, utc in rows]
+        for record, stored_utc in sorted(played, key=lambda each: moment(each[0].started_utc)):
+            procedure = "" if record.procedure is None else record.procedure.procedure
             if (
-                played == [step.mode, step.task, step.procedure, step.method]
-                and step.is_played_on(shift, indentation)
-                and trial not in counted
-                and when >= since
-                and not objections_to(step, self._study.record(trial))
-                and any(self._study.has(table, trial) for table in ("registrations", "scores"))
+                procedure == step.procedure
+                and step.is_played_on(record.skin.shift_mm, record.skin.indentation_mm)
+                and record.trial_id not in progress.counted_trials
+                and moment(record.started_utc) >= since
+                and not objections_to(step, record)
             ):
                 aborted = self._aborted_before(pseudonym, progress)
-                if any(moment(record.started_utc) <= when for record in aborted):
+                if any(moment(a.started_utc) <= moment(record.started_utc) for a in aborted):
                     return None
-                return StepEntry(step.name, DONE, {"trialId": trial}, stored_utc)
+                return StepEntry(step.name, DONE, {"trialId": record.trial_id}, stored_utc)
         return None
-
-    def _trials_of(self, pseudonym: str) -> list[tuple[Any, ...]]:
-        """Return a trainee's finished trials, in order.
-
-        Each is its start, UUID, time of storing, mode, task, procedure and method, and how far its
-        skin had shifted and was indented, mm.
-        """
-        rows = self._database.rows(
-            "SELECT started_utc, trial_id, stored_utc, mode, task, "
-            f"coalesce(json_extract(record_json, '$.procedure.procedure'), ''), {METHOD}, "
-            "coalesce(json_extract(record_json, '$.skin.shiftMm'), ''), "
-            "coalesce(json_extract(record_json, '$.skin.indentationMm'), '') "
-            f"FROM trials WHERE trainee_id = ({TRAINEE_ID})",
-            pseudonym,
-        )
-        return sorted(
-            (moment(started), *others, *(decoded(str(each or 0), float) for each in skin))
-            for started, *others, shift, indentation in rows
-            for skin in ((shift, indentation),)
-        )
 
     def _since(self, pseudonym: str, progress: StepProgress) -> datetime:
         """Return the earliest start of the next step's trial."""
+        rows = self._database.rows(
+            f"SELECT trial_id, started_utc FROM trials WHERE trainee_id = ({TRAINEE_ID})", pseudonym
+        )
         counted = progress.counted_trials
-        after = [when for when, trial, *_ in self._trials_of(pseudonym) if trial in counted]
+        after = [moment(started_utc) for trial_id, started_utc in rows if trial_id in counted]
         return max([*after, moment(progress.enrolled_utc)])
 
     def _aborted_before(self, pseudonym: str, progress: StepProgress) -> tuple[AbortedTrial, ...]:

@@ -1,7 +1,4 @@
-"""The methods of registration side by side: residual, expected and true target error.
-
-It also shows the effect of a shift of the skin: the true errors with and without it.
-"""
+"""Expected and true target errors: calibration, methods of registration, shifted skin."""
 
 from __future__ import annotations
 
@@ -15,17 +12,17 @@ from markupsafe import Markup
 
 from rastrainer.number_text import fixed
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.study.outcomes import Outcome
+from rastrainer.registration.target_error import INTERVAL_NOTE
+from rastrainer.study.outcomes import Outcome, mode_title, short_mode_title
 from rastrainer.study.study_data import StudyData, TrialRow, values_of
+from rastrainer.study.tre_calibration import calibration_of
 from rastrainer_simulator.report import charts
 from rastrainer_simulator.report.comparisons import (
     ModeComparison,
     compare_modes,
-    tested,
     with_adjusted_p,
 )
 from rastrainer_simulator.report.page import interval_text, render
-from rastrainer_simulator.report.paired_statistics import what_it_shows
 from rastrainer_simulator.statistics.intervals import mean
 
 TITLES = {
@@ -38,6 +35,23 @@ RESIDUAL = Outcome("rmse_mm", "Residual", unit="mm")
 EXPECTED = Outcome("expected_tre_mm", "Expected target error", unit="mm", better=-1)
 TRUE = Outcome("true_tre_mm", "True target error", unit="mm", better=-1)
 COLORS = {RESIDUAL: "#6b7785", EXPECTED: "#0b6fa4", TRUE: "#d1661b"}
+
+
+def calibration(data: StudyData) -> Markup:
+    """Return how well errors were expected; "" if no target errors are known."""
+    found = calibration_of(data.trials)
+    if not found.points and not found.without_truth:
+        return Markup()
+    colors = {
+        mode: (short_mode_title(mode), charts.mode_color(mode, index))
+        for index, mode in enumerate(data.modes)
+        if found.of_mode(mode).points
+    }
+    parted = {mode_title(mode): found.of_mode(mode) for mode in colors}
+    if len(parted) > 1:
+        parted["all"] = found
+    chart = charts.calibration_chart(found.points, colors) if found.points else None
+    return render("calibration", found=found, parted=parted, chart=chart, note=INTERVAL_NOTE)
 
 
 def method_comparison(data: StudyData) -> Markup:
@@ -55,33 +69,13 @@ def method_comparison(data: StudyData) -> Markup:
         for outcome, color in COLORS.items()
     ]
     names = [TITLES[method] for method in methods]
-    pairs = compare_methods(by_method)
     return render(
         "methods_of_registration",
         titles=TITLES,
         rows=[_row(by_method, method) for method in methods],
         chart=charts.grouped_bars("Residual and target error, mm", names, series, "method"),
-        pairs=pairs,
-        findings=method_findings(pairs),
+        pairs=compare_methods(by_method),
     )
-
-
-def method_findings(pairs: Sequence[ModeComparison]) -> list[str]:
-    """Return a sentence on the true errors of each two methods that are tested."""
-    return [
-        what_it_shows(
-            f"{TRUE.title} ({TITLES[one.first].lower()} and {TITLES[one.second].lower()})",
-            TRUE.unit,
-            TITLES[one.first].lower(),
-            TITLES[one.second].lower(),
-            result,
-            one.adjusted_p,
-            TRUE.digits,
-            "pairs of methods",
-        )
-        for one, result in tested(pairs)
-        if one.adjusted_p is not None
-    ]
 
 
 def as_conditions(data: StudyData) -> StudyData:
@@ -129,11 +123,11 @@ def _mean_text(trials: Sequence[TrialRow], outcome: Outcome) -> str:
     if len(means) < 2:
         return outcome.text(means[0]) if len(means) else "–"
     estimate = mean(means)
-    return interval_text(estimate.value, estimate.interval, outcome.digits)
+    return interval_text(estimate, outcome.digits)
 
 
 def shifted_skin(data: StudyData) -> Markup:
-    """Return the section; "" where the skin lay as in the images in all trials."""
+    """Return the section; "" if the skin was never shifted."""
     groups: dict[tuple[float, float, str], list[TrialRow]] = defaultdict(list)
     for trial in data.trials:
         if "skin_shift_mm" in trial.values:

@@ -1,38 +1,15 @@
-"""Commands, and functions that several of them share."""
+"""What several commands share: reading a study, and printing tables and JSON."""
 
 from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
-
-from rastrainer_simulator.cli.arg import Argument, add_all
 
 if TYPE_CHECKING:
     from rastrainer.study.study_data import StudyData
-
-
-@dataclass(frozen=True)
-class Subcommand:
-    """A command of `rastrainer`, or an action of one; `run` returns the exit status."""
-
-    name: str
-    help: str
-    run: Callable[[argparse.Namespace], int] | None = None
-    arguments: Sequence[Argument] = ()
-    description: str | None = None
-    actions: Sequence[Subcommand] = ()
-
-    def add_to(self, subparsers: argparse._SubParsersAction) -> None:
-        parser = subparsers.add_parser(self.name, help=self.help, description=self.description)
-        add_all(parser, self.arguments)
-        parser.set_defaults(run=self.run)
-        if self.actions:
-            of_actions = parser.add_subparsers(title="what to do", required=True, metavar="ACTION")
-            for action in self.actions:
-                action.add_to(of_actions)
 
 
 def read_known_study(arguments: argparse.Namespace) -> StudyData:

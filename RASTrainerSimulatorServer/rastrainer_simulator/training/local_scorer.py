@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
@@ -50,23 +50,8 @@ _rest = partial(time.sleep, 0.001)
 _log = logging.getLogger(__name__)
 
 
-class _Job(NamedTuple):
-    """A job done without Slicer: scoring a trial, or registering its n-th attempt."""
-
-    trial_id: str
-    phase: Phase
-    attempt: int
-
-
-def _job(training: TrainingState, is_in_study: bool) -> _Job | None:
-    procedure = training.procedure
-    if training.phase is Phase.REGISTERED and not is_in_study:
-        return _Job(training.trial_id, training.phase, 0)
-    if training.phase is not Phase.VERIFYING or procedure is None:
-        return None
-    if procedure.registration is not None:
-        return None
-    return _Job(training.trial_id, training.phase, len(procedure.attempts))
+Job = tuple[str, Phase, int]
+"""Work done without Slicer: scoring a trial, or registering its n-th attempt."""
 
 
 class LocalScorer:
@@ -94,7 +79,7 @@ class LocalScorer:
         self._attempts_of = attempts_of
         self._had_slicer = False
         self._alone_s = 0.0
-        self._begun: _Job | None = None
+        self._begun: Job | None = None
         self._thread: threading.Thread | None = None
 
     def advance(
@@ -105,7 +90,12 @@ class LocalScorer:
         A trial that is registered is scored, outside of a study. The touches of one with a
         procedure are registered so that it can continue: that reveals nothing.
         """
-        job = _job(training, is_in_study)
+        job: Job | None = None
+        procedure, phase = training.procedure, training.phase
+        if phase is Phase.REGISTERED and not is_in_study:
+            job = training.trial_id, phase, 0
+        elif phase is Phase.VERIFYING and procedure and procedure.registration is None:
+            job = training.trial_id, phase, len(procedure.attempts)
         if self._is_slicer_connected() or job is None:
             self._had_slicer = self._had_slicer or self._is_slicer_connected()
             self._alone_s, self._begun, self.problem = 0.0, None, ""
@@ -116,31 +106,31 @@ class LocalScorer:
         if is_busy or may_return or self._begun == job:
             return
         self._begun = job
-        earlier = [t for t in self._attempts_of(training.trainee) if t.trial_id != job.trial_id]
+        earlier = [t for t in self._attempts_of(training.trainee) if t.trial_id != job[0]]
         self._thread = threading.Thread(
             target=self._do, args=(job, scenario, earlier), name="score", daemon=True
         )
         self._thread.start()
 
-    def _do(self, job: _Job, scenario: Scenario, earlier: Sequence[PastTrial]) -> None:
+    def _do(self, job: Job, scenario: Scenario, earlier: Sequence[PastTrial]) -> None:
+        trial_id, phase, _attempt = job
         try:
-            if job.phase is Phase.VERIFYING:
+            if phase is Phase.VERIFYING:
                 # The procedure continues with that.
-                answer = self._ask(CommandName.GET_TRIAL, {"trialId": job.trial_id})
+                answer = self._ask(CommandName.GET_TRIAL, {"trialId": trial_id})
                 registered = register_trial(GivenPoints.of_answer(answer), scenario, pause=_rest)
-                self._ask(CommandName.USE_REGISTRATION, registered.arguments(job.trial_id))
+                self._ask(CommandName.USE_REGISTRATION, registered.arguments(trial_id))
                 return
-            analysis = registered_alone(self._ask, job.trial_id, scenario)
+            analysis = registered_alone(self._ask, trial_id, scenario)
             if not self._is_slicer_connected():
                 score_alone(self._ask, analysis, scenario, earlier, self._records)
         except InputError as error:
-            done = "scored" if job.phase is Phase.REGISTERED else "registered"
-            _log.warning("The trial %s was not %s: %s", job.trial_id, done, error)
+            done = "scored" if phase is Phase.REGISTERED else "registered"
+            _log.warning("The trial %s was not %s: %s", trial_id, done, error)
             if self._begun == job:
                 self.problem = str(error)
 
     def _ask(self, command: str, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Have a command carried out after the checks that a client's has to pass."""
         checked = check_arguments(command, arguments)
         answer = self._submit(command, checked, SENDER).result(ANSWER_S)
         if not answer.ok:
