@@ -11,7 +11,7 @@ A field's annotation holds its check, and its key is its name in camel case:
 A plain `str` is a text of `json_checks.text()`. `bool`, enums, `Literal`, other records, and of
 these `X | None`, `tuple[X, ...]` and `Mapping[str, X]` need no check; all else does. A check sees
 the decoded JSON, and limits the length of lists and objects (`list_of`, `object_of`); the value is
-made of what it accepts. For rules of several fields, `__post_init__` raises `InputError`.
+made from its result. For rules of several fields, `__post_init__` raises `InputError`.
 """
 
 from __future__ import annotations
@@ -154,7 +154,7 @@ def _kind_and_checks(hint: Any) -> tuple[Any, list[Callable[[Any], Any]]]:
 
 
 def _builder(kind: Any, name: str) -> Reader | None:
-    """Return what makes a value of a type; None where the accepted value is that value."""
+    """Return the reader of a type's values; None if the accepted value is the value itself."""
     origin, parts = get_origin(kind), get_args(kind)
     if isinstance(kind, type) and is_dataclass(kind):
         return lambda value, place, only_known: (

@@ -49,7 +49,7 @@ class CsvTable:
     ) -> list[tuple[int, dict[str, str]]]:
         """Return the line number and the named cells of each row.
 
-        The header may have other columns, in any order. Decimal commas in the required ones become
+        The header may have other columns, in any order. Decimal commas in required columns become
         points.
         """
         wanted = [*optional, *required]

@@ -39,7 +39,7 @@ _TYPES = {
 }
 
 Column = np.ndarray | list[np.ndarray]
-"""The numbers of a property, (n,); of one that holds lists, (n, k) if all are equally long."""
+"""The numbers of a property, (n,); (n, k) of lists that are all equally long."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Read untrusted files: only regular ones of limited size, as text, JSON or XML."""
+"""Read untrusted files as text, JSON or XML: only regular files of limited size."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ def failure_reason(error: Exception) -> str:
 
 
 def printable_name(path: object) -> str:
-    """Return a path for a sentence, escaped where it holds what cannot be printed."""
+    """Return a path for a sentence; characters that cannot be printed are escaped."""
     return ascii(str(path)) if not str(path).isprintable() else str(path)
 
 

@@ -39,8 +39,8 @@ class LineMeasures:
         skull_angle_deg: to the skull's normal where the line meets it; None if it does not.
         no_go_mm: from the surface of the instrument to each no-go structure, by name; below 0 it
             overlaps the structure.
-        nearest_line_mm: between the surfaces of both instruments; None where there is no other.
-        is_held: whether the robot can hold the guide on the line; None where that was not tried.
+        nearest_line_mm: between the surfaces of both instruments; None if there is no other.
+        is_held: whether the robot can hold the guide on the line; None if that was not tried.
     """
 
     name: Annotated[str, text(60)]
@@ -132,14 +132,15 @@ def measure_lines(procedure: Procedure, meshes: ProcedureMeshes) -> list[LineMea
 
 
 ENTRY_OFF_SKIN_MM = 10.0
-"""Many plan the entry on the bone, below some 7 mm of scalp, or click a little beside the skin."""
+"""Many plan the entry on the bone, below some 7 mm of scalp, or click a little off the skin."""
 CHECKPOINT_OFF_SKIN_MM = 1.0
 MAX_LENGTH_MM = 150.0
-"""From entry to target; drill and instrument reach 250 mm beyond the guide."""
+"""Longest line from entry to target; drill and instrument reach 250 mm beyond the guide."""
 MAX_SKULL_ANGLE_DEG = 40.0
-"""To the skull's normal; a drill that meets bone at a flatter angle slips. Our own convention."""
+"""Largest angle to the skull's normal; a drill that meets bone at a flatter angle slips. Our own
+convention."""
 APART_MM = 1.0
-"""Between the surfaces of two instruments. Our own convention."""
+"""Least distance between the surfaces of two instruments. Our own convention."""
 
 
 def check_procedure(procedure: Procedure, head: HeadMesh, meshes: ProcedureMeshes) -> list[str]:

@@ -1,6 +1,6 @@
 """Quantiles of the squared length of an error, for intervals.
 
-Of scipy, `import scipy` imports nearly nothing: each part is imported when it is first used.
+`import scipy` imports nearly nothing: each part of it is imported when it is first used.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ DIRECTIONS = 12
 def ratio_quantile(probability: float, weights: np.ndarray, dof: float) -> float:
     """Return the quantile of Σ wₖ zₖ² / (χ²/dof), zₖ standard normal, all independent.
 
-    With equal weights it is a multiple of the F distribution; with unequal ones it is the squared
-    length of a vector of anisotropic variance whose size was estimated from `dof` residuals.
+    Equal weights give a multiple of the F distribution. Unequal weights describe the squared length
+    of a vector of anisotropic variance whose size was estimated from `dof` residuals.
 
     P(Σ wₖ zₖ² − value·χ²/dof ≤ 0) follows from Imhof's inversion formula (1961). The integral runs
     over u = exp(s), where the trapezoidal rule converges exponentially.
@@ -57,7 +57,7 @@ def widened_quantile(probability: float, weights: np.ndarray, dof: float, added:
         probability: Between 0 and 1.
         weights: (3,) float, not below 0.
         dof: Degrees of freedom of the χ² variable; infinite where the size is known.
-        added: The known variance of each coordinate, above 0 where the weights are not.
+        added: The known variance of each coordinate, above 0 if the weights are 0.
     """
     probability_up_to = widened_distribution(weights, dof, added)
     return _quantile(probability_up_to, probability, float(np.sum(weights)) + 3.0 * added, 1e-7)

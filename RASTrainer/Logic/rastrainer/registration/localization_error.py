@@ -1,7 +1,7 @@
 """The fiducial localization error (FLE) that explains the residuals of a registration.
 
-By default it is isotropic. Where the tip is stopped by the skin, the error across the skin may
-differ from that along it; with known surface normals both are estimated from the residuals. This
+It is isotropic by default. The skin stops the tip, so the error across the skin may differ from the
+error along it; with known surface normals both are estimated from the residuals. This
 matters: for fiducials on one side of a head, the errors across the skin determine its tilt.
 """
 
@@ -52,8 +52,8 @@ def isotropic_error(registration: Registration) -> LocalizationError:
     """Return the error that is the same in all directions and explains the FRE.
 
     From E[FRE²] = (1 − p/3N) E[FLE²] with p parameters: 1 − 2/N rigid (Sibson 1979),
-    1 − 7/(3N) similarity, 1 − 4/N affine. Of a weighted fit the variance of each point is taken as
-    inverse to its weight, s²/wᵢ a coordinate, where E[Σ wᵢ|rᵢ|²] = (3N − p)·s².
+    1 − 7/(3N) similarity, 1 − 4/N affine. A weighted fit takes the variance of each point as
+    inverse to its weight, s²/wᵢ per coordinate, with E[Σ wᵢ|rᵢ|²] = (3N − p)·s².
     """
     dof = degrees_of_freedom(registration)
     count = len(registration.labels)
@@ -100,10 +100,10 @@ def error_along_surface(registration: Registration, normals: np.ndarray) -> Loca
 
     With M what the fit leaves of the errors, B the projection of each error onto its part, and e
     the residuals, E[eᵀBe] = Σ σ² tr(M B M B') over both parts: two equations for two variances
-    (method of moments; a negative one counts as zero). The degrees of freedom are those of the χ²
-    with the mean and variance of eᵀe (Satterthwaite 1946). It is for fits without weights.
+    (method of moments; a negative one counts as zero). The degrees of freedom belong to the χ² with
+    the mean and variance of eᵀe (Satterthwaite 1946). It is for fits without weights.
 
-    The unit normals (n, 3) are those of the surface at the fixed points.
+    `normals` are the surface's unit normals (n, 3) at the fixed points.
     """
     count = len(registration.labels)
     degrees_of_freedom(registration)
@@ -129,7 +129,7 @@ def error_along_surface(registration: Registration, normals: np.ndarray) -> Loca
 def fit_of_errors(registration: Registration) -> np.ndarray:
     """Return what the errors of the fiducials do to the fit, (parameters, n, 3) float.
 
-    Of a weighted fit, (Σ wᵢ JᵢᵀJᵢ)⁻¹ wᵢJᵢᵀ with Jᵢ the motions of point i.
+    A weighted fit has (Σ wᵢ JᵢᵀJᵢ)⁻¹ wᵢJᵢᵀ with Jᵢ the motions of point i.
     """
     _, fit = _normal_equations(registration)
     return fit.reshape(len(fit), -1, 3)

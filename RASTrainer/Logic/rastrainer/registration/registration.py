@@ -41,7 +41,7 @@ class Registration:
         residual_vectors_mm: (n, 3) float, T(m) − f.
         residuals_mm: (n,) float, their lengths.
         warnings: What looks wrong with the points, judged as if all were localized equally well.
-        weights: (n,) float, of the points in the fit; None where all count alike.
+        weights: (n,) float, of the points in the fit; None if all count alike.
     """
 
     kind: str
@@ -61,7 +61,7 @@ class Registration:
         return float(np.sqrt(np.average(self.residuals_mm**2, weights=self.weights)))
 
     def without(self, *labels: str) -> Registration:
-        """Return the registration of the same points without those of the given labels."""
+        """Return the registration without the points of the given labels."""
         for label in labels:
             if label not in self.labels:
                 raise InputError(
@@ -142,9 +142,9 @@ def register_all_kinds(
     labels: Sequence[str] | None = None,
     weights: np.ndarray | None = None,
 ) -> dict[str, Registration]:
-    """Return the fits by kind: the rigid one, and the similarity and affine ones that are possible.
+    """Return the fits by kind: rigid, and similarity and affine if they are possible.
 
-    Only the rigid one has weights.
+    Only the rigid fit has weights.
     """
     fits = {RIGID: register(moving, fixed, RIGID, labels, weights)}
     for kind in (SIMILARITY, AFFINE):
@@ -158,7 +158,7 @@ POINT_LIMIT = 1000
 WEIGHT_SPAN = 1e12
 """The largest weight against the smallest: localization errors from 1 µm to 1 m."""
 FLAT = 1e-3
-"""A set is taken for a line (a plane) when its extent across is this small against that along."""
+"""A set counts as a line (a plane) if the ratio of its extents across and along is this small."""
 
 
 def check_points(

@@ -37,7 +37,7 @@ class MatchMeasures:
         best_starts: How many of the starts ended in the best minimum.
         spread_mm: Largest distance at the head's center between the best and where another start
             ended.
-        rivals: Number of minima elsewhere whose cost is at most twice that of the best one.
+        rivals: Number of minima elsewhere whose cost is at most twice the best minimum's.
         slide: The direction in which the trace determines the head least.
     """
 
@@ -186,7 +186,7 @@ LEAST_NOISE_MM, ALIKE_MM = 1.0, 20.0
 """Standard deviation of what all points within a cube of so many mm are off alike, as skin is
 pressed and drawn along. Residuals do not show it, and more points in one place do not reduce it."""
 TARGETS_ASIDE_MM = 30.0
-"""Of the places in the brain where a slide is measured, from the head's middle along each axis."""
+"""Distance of the places where a slide is measured from the head's middle, along each axis."""
 NORMAL_95 = 1.96
 _LOOSEST_MM = 100.0
 _DIRECTIONS = ("left or right", "forward or back", "up or down")

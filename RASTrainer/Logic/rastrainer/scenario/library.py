@@ -1,6 +1,6 @@
 """The available scenarios, of RASTrainer and in the user's folder: listed, packed and unpacked.
 
-A package is a zip file; one that is unpacked is untrusted.
+A package is a zip file, and untrusted when it is unpacked.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from rastrainer.work_progress import Progress, no_progress
 
 MAX_SCENARIOS = 200
 MAX_PICTURE_BYTES, MAX_PICTURE_PIXELS = 4_000_000, 2048
-"""Of a picture in a list, along each side: what views decode at once, wherever it comes from."""
+"""Limits of a picture in a list, pixels along each side: every view can decode it at once."""
 
 _PNG_START = struct.Struct(">8s4x4sII")
 
@@ -65,8 +65,8 @@ def list_scenarios(
 ) -> list[ListedScenario]:
     """Return the scenarios in the subfolders of these folders, by title.
 
-    Unusable ones are listed with their problem. Of two with the same name, the first folder's is
-    listed. `list_one` lists the scenario of a folder; by default `list_folder`.
+    Unusable scenarios are listed with their problem. The first folder's is listed if two have the
+    same name. `list_one` lists the scenario of a folder; by default `list_folder`.
     """
     listed: dict[str, ListedScenario] = {}
     for library in libraries:
@@ -237,8 +237,8 @@ def _read_archive(package: Path, folder: Path, progress: Progress) -> None:
 def _members(package: Path, archive: zipfile.ZipFile) -> dict[str, zipfile.ZipInfo]:
     """Return the files of a scenario in a package, by their paths in the scenario's folder.
 
-    The folder may lie in others. Whoever packs it by hand also packs notes, and what the system
-    keeps in it: files with other names than ours are left where they are.
+    The folder may be inside other folders. People who pack it by hand also pack notes and system
+    files: files with other names than ours are left out.
     """
     infos = [info for info in archive.infolist() if not info.is_dir()]
     # Some programs for Windows part folders by backslashes.

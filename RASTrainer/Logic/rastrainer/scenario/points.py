@@ -1,7 +1,6 @@
 """The points of a scenario: tasks of fifteen fiducials, targets, a trajectory, landmarks.
 
-Of landmarks it is checked whether they can be used: how many, on the skin, on the right side,
-spread.
+Landmarks are checked for their number, their distance to the skin, their side and their spread.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ LABELS = tuple(str(number) for number in range(1, FIDUCIAL_COUNT + 1))
 
 @dataclass(frozen=True)
 class Task:
-    """A task for trainees, as `scenario.json` has it, and its fiducials from a file of its own.
+    """A task for trainees, as in `scenario.json`, and its fiducials from a separate file.
 
     Attributes:
         name: such as "trial-run" or "task-1", for commands and records.
@@ -132,7 +131,7 @@ FACE_LANDMARKS = (
     "Left tragus",
     NOSE_TIP,
 )
-"""The usual ones; right and left are the patient's."""
+"""The usual landmarks; right and left are the patient's."""
 SNAP_MM = 5.0
 """A landmark nearer to the skin than this is moved onto it; one farther off is wrong."""
 APART_MM = 10.0
@@ -200,7 +199,7 @@ def _area(three: Sequence[Landmark]) -> float:
 
 
 def _on_other_side(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> list[str]:
-    """Return the landmarks on the opposite side to the one they are named for; +R is right."""
+    """Return a sentence for each landmark on the wrong side by its name; +R is right."""
     places = {landmark.name: landmark.position_ras for landmark in landmarks}
     middle = float((mesh.vertices[:, 0].max() + mesh.vertices[:, 0].min()) / 2.0)
     swapped, wrong = [], []

@@ -3,8 +3,8 @@
 A scenario is a folder with `scenario.json`, the head's mesh, one `.mrk.json` file per task and,
 optionally, the images of the head.
 
-A trial that is registered without fiducials belongs to a task all the same: to its number in the
-study, and to what is compared with it.
+A trial that is registered without fiducials also belongs to a task: to its number in the study, and
+to the trials it is compared with.
 """
 
 from __future__ import annotations

@@ -98,8 +98,8 @@ class TrialAnalysis(TouchRegistration):
         """Return the analysis with the truth and its score.
 
         The score uses the true error of the rigid registration and, of a trial by fiducials, the
-        common bias of its touches. A landmark has no exact place, and a trace no bias. The
-        arguments are those of `analyze_trial`.
+        common bias of its touches. A landmark has no exact place, and a trace no bias.
+        `analyze_trial` describes the arguments.
         """
         record = self.record
         tre_mm = region_of(scenario).tre_mm(self.rigid.matrix, truth.matrix)
@@ -161,9 +161,9 @@ def analyze_trial(
     """Register a trial by its method, its touches paired by label; score it by its truth.
 
     Args:
-        cohort: trials that CTPS compares with; those of the trial's own mode count.
-        references: of the score, by task, as a study's protocol sets them; those of the scenario
-            for tasks that it leaves out.
+        cohort: trials that CTPS compares with, if they have the trial's mode.
+        references: of the score, by task, as a study's protocol sets them; other tasks have the
+            scenario's.
         trajectory: of the trial, from its journal; it explains why a touch was off.
         truth: what the simulator has revealed; without it there is no score.
         pause: called between the steps, every 10 ms or so; a worker may wait in it.
@@ -203,7 +203,7 @@ def score_arguments(analysis: TrialAnalysis) -> dict[str, Any]:
     """Return the arguments of TrialScored for a trial with truth and score, ready for JSON."""
     score, progress = analysis.score, analysis.feedback.progress
     procedure = {} if analysis.procedure is None else {"procedure": analysis.procedure.summary()}
-    # What was analyzed with its truth has a score.
+    # An analysis with the truth has a score.
     assert score is not None
     published, measures = analysis.published_score, score.measures
     # A trial run has no progress, and no mark; null is a study's without a mark for this method.

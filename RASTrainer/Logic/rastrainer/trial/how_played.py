@@ -43,7 +43,7 @@ class MovedBy(str, Enum):
 
 
 class Allowance(str, Enum):
-    """Exceptions that a protocol may allow; without them, such a trial counts for no step."""
+    """Exceptions that a protocol may allow; otherwise, no step of a study accepts such a trial."""
 
     COMMANDS = "commands"
     CHOSEN_SEED = "chosen seed"
@@ -88,7 +88,7 @@ class HowPlayed:
         return self.way_mm.get(MovedBy.COMMANDS.value, 0.0) / way if way else 0.0
 
     def objections(self, mode: str, allows: Collection[str]) -> tuple[str, ...]:
-        """Return why the trial does not count for a step of a study, in words."""
+        """Return the reasons why a step of a study does not accept the trial, in words."""
         return tuple(why for what, why in self._objections(mode) if what.value not in allows)
 
     def _objections(self, mode: str) -> Iterator[tuple[Allowance, str]]:
@@ -174,7 +174,7 @@ class PlayRecording:
         )
 
     def _add_time(self, entry: Mapping[str, Any]) -> None:
-        """Add what has passed since the last entry, except in a pause and after the last point."""
+        """Add the time since the last entry, except in a pause and after the last point."""
         kind, times = entry["kind"], (entry["simTimeS"], entry["monotonicS"])
         is_paused = self._phase == Phase.PAUSED.value
         if self._times is not None and kind != "continued" and not is_paused:

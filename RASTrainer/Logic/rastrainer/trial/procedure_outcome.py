@@ -1,9 +1,9 @@
 """The outcome of a trial's procedure: its true errors, and a score of 0 to 100.
 
-Errors, drilling, distances kept and time have strictly decreasing desirabilities, as those of
-`rastrainer.trial.scoring`, and the score is 100 times the geometric mean of all. Beyond a limit,
-and where a no-go structure is hit or bone is missed, the procedure is not acceptable and its score
-falls below that of every acceptable one: neither speed nor anything else makes up for it.
+Errors, drilling, distances kept and time have strictly decreasing desirabilities, as in
+`rastrainer.trial.scoring`, and the score is 100 times the geometric mean of all. Beyond a limit, or
+if it hits a no-go structure or misses bone, a procedure is not acceptable and scores below every
+acceptable procedure: speed cannot make up for it.
 Checkpoints, FRE and expected TRE play no part: none of them sees an offset common to all touches.
 
 The values of half and limit are our own convention, near published figures: clinical target point
@@ -56,12 +56,12 @@ STAND_OFF_MM, INSERTION_MM_S = 30.0, 8.0
 
 @dataclass(frozen=True)
 class ProcedureMeasures:
-    """The measures of a procedure that count for its score.
+    """The measures of a procedure that its score is computed from.
 
     Attributes:
         duration_s: from the start of the trial to the last release, without pauses; above 0.
-        target_mm, entry_mm, angle_deg: root mean squares of the true errors; beside each, the
-            largest of them.
+        target_mm, entry_mm, angle_deg: root mean squares of the true errors; each with the largest
+            error.
         plunge_mm: the deepest that the drill was past an inner table.
         intrusion_mm: how far an instrument is within its safety distance to a no-go structure.
         hits: how many times an instrument and a no-go structure meet.

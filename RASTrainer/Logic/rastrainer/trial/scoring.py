@@ -70,7 +70,7 @@ class ScoreReference:
 
 @dataclass(frozen=True)
 class ScoreMeasures:
-    """The measures of a trial that count for its score.
+    """The measures of a trial that its score is computed from.
 
     Attributes:
         tre_mm: RMS true TRE over the region.
@@ -177,8 +177,8 @@ def score_trial(
 ) -> TrialScore:
     """Return the score of a trial.
 
-    Methods have references of their own and, but for fiducials, no common bias: their scores are
-    compared with those of the same method alone.
+    Each method has its own references, and only fiducials have a common bias: scores are compared
+        within one method.
     """
     measures.check(has_bias=method is RegistrationMethod.FIDUCIALS)
     bias_mm = measures.common_bias_mm

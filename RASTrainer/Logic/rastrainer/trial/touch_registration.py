@@ -1,11 +1,11 @@
 """The registration of a trial, open or finished, by its touches and its trace: one for all methods.
 
-A trace is matched to the surface of the scenario's head, from where the landmarks put it. What
-counts of such a registration is its matrix: its residuals are those of the landmarks, which it does
-not make least, and its FRE is the root mean square of the trace's inliers to the surface.
+A trace is matched to the surface of the scenario's head, from where the landmarks put it. Such a
+registration is used for its matrix: its residuals belong to the landmarks, which the fit does not
+minimize, and its FRE is the root mean square distance of the trace's inliers to the surface.
 
-Where the skin lay otherwise than in the images, the points are also put back and registered again:
-that shows what the shift did.
+If the skin had shifted from its place in the images, the points are also put back and registered
+again, which shows the effect of the shift.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ class GivenPoints:
     ) -> GivenPoints:
         """Return the points in an answer to GetTrial about an open trial.
 
-        Of a trace, `least_traced` points are needed: as many as register it, or fewer to show it.
+        A trace needs `least_traced` points: enough to register it, or fewer to show it.
         """
         what = "The trial"
         given = record_from_json(_TrialAnswer, answer, what)
@@ -121,7 +121,7 @@ class FollowedTrace:
 
 
 class TraceFollower:
-    """Follows the trace of one trial; only what is new is computed.
+    """Follows the trace of one trial and computes only the new part.
 
     The true pose of the head stays unknown: the landmarks that were touched stand for it.
     """
@@ -190,7 +190,7 @@ class TouchRegistration:
 def register_trial(
     given: GivenPoints, scenario: Scenario, pause: Callable[[], None] = lambda: None
 ) -> TouchRegistration:
-    """Register what was touched and traced in a trial, by the trial's method.
+    """Register the touches and the trace of a trial by its method.
 
     The touches are paired by label with the fiducials of the task, or the landmarks. `pause` is
     called between the steps, every 10 ms or so; a worker may wait in it.
@@ -243,7 +243,7 @@ def normals_at(
 ) -> np.ndarray:
     """Return the outward normals of the skin at points of a task by a method, (n, 3) float, RAS.
 
-    `labels` are those of the n points.
+    `labels` name the n points.
     """
     task = task_by_method(scenario, task_name, method)
     rows = [task.labels.index(label) for label in labels]
@@ -256,7 +256,7 @@ def unshifted_tre_mm(
     """Return the true TRE that a trial would have had with the skin as in the images, mm.
 
     Its touches and its trace are put back to where they would have been measured, and registered
-    again. None if the skin lay as in the images, or where the points cannot be registered so.
+    again. None if the skin was not shifted, or if the points cannot be registered then.
     """
     if skin.is_none:
         return None
@@ -279,7 +279,7 @@ def unshifted_tre_mm(
 def skin_sentences(
     skin: SkinShift, true_tre_mm: float, unshifted_mm: float | None
 ) -> tuple[Sentence, ...]:
-    """Return what the trainee reads after a trial; none if the skin lay as in the images."""
+    """Return the sentences for the trainee after a trial; none if the skin was not shifted."""
     if skin.is_none:
         return ()
     amounts = {"shift": skin.shift_mm, "indentation": skin.indentation_mm, "tre": true_tre_mm}
