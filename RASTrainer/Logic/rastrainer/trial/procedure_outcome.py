@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Annotated, Any
 
 import numpy as np
@@ -32,6 +32,7 @@ from rastrainer.trial.scoring import (
     TIME_FLOOR,
     Desirability,
     ScoreReference,
+    check_measures,
     falling,
     of_time,
 )
@@ -102,16 +103,6 @@ class ProcedureMeasures:
             missed_bone=len(analysis.missed_bone),
         )
 
-    def check(self) -> None:
-        """Raise `InputError` unless all are numbers of a procedure."""
-        for field in fields(self):
-            if not 0 <= getattr(self, field.name) <= MAX_MEASURE:
-                raise InputError(
-                    f"The procedure's {field.name} must be a number from 0 to {MAX_MEASURE:g}."
-                )
-        if self.duration_s <= 0:
-            raise InputError("The procedure's duration must be a number of seconds above 0.")
-
     @property
     def is_accurate(self) -> bool:
         """Whether every error is within its limit, and every instrument in the skull."""
@@ -167,7 +158,9 @@ def reference_duration_s(touching_s: float, procedure: Procedure, self_aligned: 
 
 def score_procedure(measures: ProcedureMeasures, reference_s: float) -> ProcedureScore:
     """Return the score of a procedure."""
-    measures.check()
+    check_measures(measures, "The procedure's measures")
+    if measures.duration_s == 0:
+        raise InputError("The procedure's duration must be above 0 s.")
     desirabilities = {
         "time": of_time(measures.duration_s, reference_s),
         **_accuracy(measures.target_mm, measures.entry_mm, measures.angle_deg),

@@ -104,21 +104,6 @@ class ScoreMeasures:
             ) from None
         return cls(completion_time_s, tre_mm, time_s, path_mm, depth_mm, common_bias_mm)
 
-    def check(self, has_bias: bool) -> None:
-        """Raise `InputError` unless all are numbers of a trial, with a common bias or without."""
-        bias_mm = self.common_bias_mm if has_bias else 0.0
-        if not 0 < self.completion_time_s <= MAX_MEASURE:
-            raise InputError("The completion time must be a number of seconds above 0.")
-        for value, what in (
-            (self.tre_mm, "true target error must be a number of mm"),
-            (self.contact_time_s, "time of unintended contact must be a number of seconds"),
-            (self.contact_path_mm, "path of unintended contact must be a number of mm"),
-            (self.pressing_depth_mm, "pressing depth must be a number of mm"),
-            (bias_mm, "common bias of the touches must be a number of mm"),
-        ):
-            if value is None or not 0 <= value <= MAX_MEASURE:
-                raise InputError(f"The {what}, 0 or above.")
-
 
 SAFETY_METRICS = ("unintended_contact_time_s", "unintended_contact_path_mm", "pressing_depth_mm")
 """Motion metrics of `rastrainer.motion` that are scored."""
@@ -165,6 +150,13 @@ class TrialScore:
         return {**parts, "safety": self.safety_desirability}
 
 
+def check_measures(measures: object, what: str) -> None:
+    """Check that all fields of a dataclass are measures; `what` starts the error."""
+    for name, value in vars(measures).items():
+        if value is not None and not 0 <= value <= MAX_MEASURE:
+            raise InputError(f"{what}: {name} must be a number from 0 to {MAX_MEASURE:g}.")
+
+
 def passes(score: float, acceptable: bool, pass_mark: float) -> bool:
     """Return whether a trial reaches the mark and is within all limits."""
     return acceptable and score >= pass_mark
@@ -180,8 +172,12 @@ def score_trial(
     Each method has its own references, and only fiducials have a common bias: scores are compared
         within one method.
     """
-    measures.check(has_bias=method is RegistrationMethod.FIDUCIALS)
+    check_measures(measures, "The trial's measures")
     bias_mm = measures.common_bias_mm
+    if measures.completion_time_s == 0:
+        raise InputError("The trial's completion time must be above 0 s.")
+    if bias_mm is None and method is RegistrationMethod.FIDUCIALS:
+        raise InputError("The common bias of a trial by fiducials must be a number of mm.")
     time = of_time(measures.completion_time_s, reference.time_s)
     accuracy = _accuracy(measures.tre_mm, bias_mm, reference)
     safety = _safety(measures.contact_time_s, measures.contact_path_mm, measures.pressing_depth_mm)
