@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import re
 import struct
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -145,9 +146,8 @@ def _columns(elements: list[_Element], body: bytes, order: str) -> dict[str, dic
             raise ValueError
         if order:
             return np.frombuffer(body[start:at], order + type_)
-        return np.array(
-            [(float if type_ in "fd" else int)(word) for word in words[start:at]], type_
-        )
+        number = float if type_ in "fd" else int
+        return np.array([number(word) for word in words[start:at]], type_)
 
     read: dict[str, dict[str, Column]] = {}
     for element in elements:
@@ -159,20 +159,26 @@ def _columns(elements: list[_Element], body: bytes, order: str) -> dict[str, dic
                 column.name: table[f"values{number}"] for number, column in enumerate(properties)
             }
             continue
-        cells: list[list] = [[] for _ in properties]
-        for _ in range(element.rows):
-            for column, values in zip(properties, cells, strict=True):
-                if column.length:
-                    values.append(take(column.type, int(take(column.length, 1)[0])))
-                else:
-                    values.append(take(column.type, 1)[0])
-        read[element.name] = {}
-        for column, values in zip(properties, cells, strict=True):
-            is_even = not column.length or len({len(value) for value in values}) == 1
-            read[element.name][column.name] = np.array(values, column.type) if is_even else values
+        read[element.name] = _uneven_columns(element, take)
     if body[at:].strip() if order else words[at:]:
         raise ValueError
     return read
+
+
+def _uneven_columns(element: _Element, take: Callable[[str, int], np.ndarray]) -> dict[str, Column]:
+    """Return the columns of an element, read row by row."""
+    columns: dict[str, Column] = {}
+    cells: list[list] = [[] for _ in element.properties]
+    for _ in range(element.rows):
+        for column, values in zip(element.properties, cells, strict=True):
+            if column.length:
+                values.append(take(column.type, int(take(column.length, 1)[0])))
+            else:
+                values.append(take(column.type, 1)[0])
+    for column, values in zip(element.properties, cells, strict=True):
+        is_even = not column.length or len({len(value) for value in values}) == 1
+        columns[column.name] = np.array(values, column.type) if is_even else values
+    return columns
 
 
 def _even_table(element: _Element, body: bytes, at: int, order: str) -> np.ndarray | None:
