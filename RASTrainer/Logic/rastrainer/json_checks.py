@@ -271,8 +271,6 @@ def object_of(
 
 
 def one_of(*choices: str) -> Callable[[Any], str]:
-    """Accept one of the given words."""
-
     def check(value: Any) -> str:
         if not isinstance(value, str) or value not in choices:
             raise ValueError("one of " + ", ".join(choices))
@@ -305,7 +303,6 @@ def texts(
 
 
 def yes_or_no(value: Any) -> bool:
-    """Accept true or false."""
     if not isinstance(value, bool):
         raise ValueError("true or false")
     return value

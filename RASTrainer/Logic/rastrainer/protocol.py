@@ -46,8 +46,6 @@ class Rate:
 
 
 class Phase(str, Enum):
-    """The state of a trial."""
-
     IDLE = "idle"
     RUNNING = "running"
     PAUSED = "paused"
@@ -157,8 +155,6 @@ class TutorialRule(str, Enum):
 
 
 class StepKind(str, Enum):
-    """Kind of a step in a study."""
-
     QUESTIONNAIRE = "questionnaire"
     TRIAL_RUN = "trial-run"
     TRIAL = "trial"

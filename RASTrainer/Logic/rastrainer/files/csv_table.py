@@ -145,7 +145,6 @@ def _remarks(lines: list[str]) -> tuple[dict[str, str], int]:
 def number_in(
     path: object, line: int, cells: dict[str, str], column: str, minimum: float, maximum: float
 ) -> float:
-    """Return the number in a cell."""
     try:
         value = float(cells[column])
     except ValueError:

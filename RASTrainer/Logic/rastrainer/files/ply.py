@@ -80,7 +80,6 @@ class _Element:
 
 
 def read_ply(path: str | os.PathLike[str]) -> PlyFile:
-    """Return the content of a PLY file."""
     content = read_bytes(path, LIMIT_BYTES)
     header = _HEADER.match(content, 0, _HEADER_BYTES)
     try:
@@ -139,7 +138,6 @@ def _columns(elements: list[_Element], body: bytes, order: str) -> dict[str, dic
     at = 0
 
     def take(type_: str, count: int) -> np.ndarray:
-        """Return the next numbers of a type."""
         nonlocal at
         start, at = at, at + count * (struct.calcsize(type_) if order else 1)
         if not start <= at <= len(body if order else words):

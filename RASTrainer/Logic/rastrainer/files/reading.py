@@ -18,7 +18,6 @@ T = TypeVar("T")
 
 
 def read_bytes(path: str | os.PathLike[str], limit_bytes: int) -> bytes:
-    """Return the content of a file."""
     try:
         # Opening a pipe would wait for its writer.
         flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
@@ -115,7 +114,6 @@ def path_beside(file: Path, relative: Path, key: str) -> Path:
 
 
 def failure_reason(error: Exception) -> str:
-    """Return the system's description of a failure."""
     strerror = getattr(error, "strerror", None)
     return strerror.lower() if strerror else "its name is not valid"
 

@@ -77,7 +77,6 @@ def list_scenarios(
 
 
 def list_folder(folder: Path) -> ListedScenario:
-    """Return the entry of a folder, with its problem if unusable."""
     try:
         scenario = load_scenario(folder)
     except InputError as error:

@@ -141,8 +141,6 @@ class Provenance:
 
 @dataclass(frozen=True)
 class SkullFile:
-    """The mesh of a skull."""
-
     file: Annotated[Path, relative_path]
     kind: SkullKind
 
@@ -189,18 +187,15 @@ class Scenario:
 
     @property
     def preview(self) -> Path | None:
-        """The picture for lists, or None."""
         path = self.folder / PREVIEW_NAME
         return path if path.is_file() and not path.is_symlink() else None
 
     @property
     def skull_path(self) -> Path:
-        """Path of the skull's mesh, which a scenario with procedures has."""
         assert self.skull is not None, "a scenario with procedures has a skull"
         return self.skull.file
 
     def task(self, name: str) -> Task:
-        """Return the task of this name."""
         for task in self.tasks:
             if task.name == name:
                 return task
@@ -208,7 +203,6 @@ class Scenario:
         raise InputError(f"The scenario {self.name} has no such task; it has {names}.")
 
     def procedure(self, name: str) -> Procedure:
-        """Return the procedure of this name."""
         for procedure in self.procedures:
             if procedure.name == name:
                 return procedure
@@ -224,7 +218,6 @@ class Scenario:
 
 
 def load_scenario(folder: Path | str) -> Scenario:
-    """Read a scenario's folder."""
     try:
         return _load(Path(folder))
     except OSError as error:
@@ -260,7 +253,6 @@ def _load(folder: Path) -> Scenario:
 
 
 def _check_fields(scenario: Scenario, path: Path) -> None:
-    """Raise `InputError` if fields do not fit each other."""
     wrong = ""
     for name, camera in scenario.cameras.items():
         sight = camera.focal_point_mm - camera.position_mm

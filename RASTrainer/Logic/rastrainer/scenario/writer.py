@@ -37,7 +37,6 @@ VOLUME_NAME = Path("volume.nrrd")
 
 
 def require_new(folder: Path) -> None:
-    """Check that a folder can be made."""
     if folder.is_symlink() or folder.is_file() or (folder.is_dir() and any(folder.iterdir())):
         raise InputError(f"{folder} already exists; name a new or empty folder.")
 
@@ -156,7 +155,6 @@ class HeadDraft:
 
 
 def write_draft(folder: Path, draft: HeadDraft) -> None:
-    """Write a draft into an existing folder."""
     volume = draft.volume
     write_head_mesh(folder / HEAD_NAME, draft.head)
     if draft.skull is not None:
@@ -168,7 +166,6 @@ def write_draft(folder: Path, draft: HeadDraft) -> None:
 
 
 def read_draft(folder: Path) -> HeadDraft:
-    """Read a draft."""
     path = folder / DRAFT_NAME
     file = read_record(DraftFile, path)
     volume = file.volume

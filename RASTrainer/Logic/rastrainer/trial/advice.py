@@ -26,8 +26,6 @@ TREMOR_RADIUS_MM = 5.0
 
 
 class Reason(str, Enum):
-    """Why a touch was inaccurate."""
-
     DEPTH = "depth"
     ASIDE = "aside"
     HURRY = "hurry"
@@ -59,7 +57,6 @@ class TouchFinding:
 
     @property
     def sentence(self) -> Sentence:
-        """The finding in words, for the trainee."""
         where: Sentence | str = ""
         if self.depth_mm is not None and Reason.DEPTH in self.reasons:
             side = "touch above" if self.depth_mm > 0 else "touch below"

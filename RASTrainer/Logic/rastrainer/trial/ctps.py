@@ -235,5 +235,4 @@ class StudyNotes:
 
 
 def read_notes(path: Path) -> StudyNotes | None:
-    """Read a file of notes; None if it does not exist."""
     return read_record(StudyNotes, path) if path.exists() else None

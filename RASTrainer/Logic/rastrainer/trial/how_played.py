@@ -134,7 +134,6 @@ class PlayRecording:
         self._tip: tuple[float, ...] | None = None
 
     def add(self, entry: Mapping[str, Any]) -> None:
-        """Add the next entry."""
         self._add_time(entry)
         kind = entry["kind"]
         if kind in ("header", "continued"):
@@ -161,7 +160,6 @@ class PlayRecording:
             self._view_s[entry["view"]] += 1
 
     def played(self) -> HowPlayed:
-        """Return how the trial was played so far."""
         return HowPlayed(
             started_by=self._started_by,
             seed_source=self._seed_source,

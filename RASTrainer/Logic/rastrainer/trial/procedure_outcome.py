@@ -138,7 +138,6 @@ class ProcedureScore:
 
     @property
     def acceptable(self) -> bool:
-        """Whether the procedure is within all limits."""
         return self.is_accurate and self.is_safe
 
 
@@ -157,7 +156,6 @@ def reference_duration_s(touching_s: float, procedure: Procedure, self_aligned: 
 
 
 def score_procedure(measures: ProcedureMeasures, reference_s: float) -> ProcedureScore:
-    """Return the score of a procedure."""
     check_measures(measures, "The procedure's measures")
     if measures.duration_s == 0:
         raise InputError("The procedure's duration must be above 0 s.")

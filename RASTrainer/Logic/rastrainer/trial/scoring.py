@@ -137,7 +137,6 @@ class TrialScore:
 
     @property
     def acceptable(self) -> bool:
-        """Whether the trial is within all limits."""
         return self.is_accurate and self.is_unbiased is not False and self.is_safe
 
     @property
@@ -158,7 +157,6 @@ def check_measures(measures: object, what: str) -> None:
 
 
 def passes(score: float, acceptable: bool, pass_mark: float) -> bool:
-    """Return whether a trial reaches the mark and is within all limits."""
     return acceptable and score >= pass_mark
 
 

@@ -207,7 +207,6 @@ class TrialFeedback:
 
     @property
     def score_sentences(self) -> tuple[str, ...]:
-        """The score and its parts, as far as known."""
         score, sentences = self.score, []
         if score is not None:
             beyond = "." if score.acceptable else ": not acceptable."
@@ -235,7 +234,6 @@ class TrialFeedback:
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """All sentences in display order."""
         progress = () if self.progress is None else self.progress.sentences
         improve = tuple(f"{i}. {a.sentence}" for i, a in enumerate(self.advice, start=1))
         scored = (*self.score_sentences, *self.skin)
