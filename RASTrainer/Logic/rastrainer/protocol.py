@@ -46,6 +46,8 @@ class Rate:
 
 
 class Phase(str, Enum):
+    """The state of a trial."""
+
     IDLE = "idle"
     RUNNING = "running"
     PAUSED = "paused"
@@ -155,6 +157,8 @@ class TutorialRule(str, Enum):
 
 
 class StepKind(str, Enum):
+    """Kind of a step in a study."""
+
     QUESTIONNAIRE = "questionnaire"
     TRIAL_RUN = "trial-run"
     TRIAL = "trial"

@@ -30,9 +30,9 @@ def vtk_matrix(moving, fixed, kind):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_thousand_random_sets_map_as_vtk_landmark_transform_maps_them(kind, touched_head):
+def test_random_sets_map_as_vtk_landmark_transform_maps_them(kind, touched_head):
     worst_mm = 0.0
-    for seed in range(1000):
+    for seed in range(200):
         moving, fixed, rng = touched_head(seed, count=4 + seed % 27)
         if seed % 3 == 0:
             moving = moving * rng.uniform(0.5, 2.0, 3)
@@ -77,7 +77,7 @@ def test_fre_is_the_root_mean_square_of_the_residual_vectors(touched_head):
 
 
 def test_more_freedom_never_fits_worse_than_rigid(touched_head):
-    for seed in range(50):
+    for seed in range(10):
         moving, fixed, _ = touched_head(seed)
         rigid, affine = (register(moving, fixed, kind).fre_mm for kind in ("rigid", "affine"))
         assert affine <= rigid

@@ -152,7 +152,7 @@ def test_vtk_finds_the_same_minimum_and_none_better(head, face):
     assert np.linalg.norm(apart, axis=1).max() < 0.05
 
 
-@pytest.mark.parametrize("seed", [1, 3, 5, 28])
+@pytest.mark.parametrize("seed", [3, 28])
 def test_the_lowest_of_several_close_minima_is_chosen(head, seed):
     """Each of these had a lower one a few hundredths of a millimeter away, when it was followed."""
     random = np.random.default_rng([seed, 7])

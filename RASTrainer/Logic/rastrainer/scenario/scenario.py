@@ -141,6 +141,8 @@ class Provenance:
 
 @dataclass(frozen=True)
 class SkullFile:
+    """The mesh of a skull."""
+
     file: Annotated[Path, relative_path]
     kind: SkullKind
 

@@ -26,6 +26,8 @@ TREMOR_RADIUS_MM = 5.0
 
 
 class Reason(str, Enum):
+    """Why a touch was inaccurate."""
+
     DEPTH = "depth"
     ASIDE = "aside"
     HURRY = "hurry"
