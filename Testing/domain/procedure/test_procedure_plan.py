@@ -1,4 +1,4 @@
-"""Procedures in a scenario's files: what is written is read again, and errors are reported."""
+"""Procedures in a scenario's files are read as they were written, and errors are reported."""
 
 import json
 import shutil

@@ -38,7 +38,7 @@ from Testing.simulator.authoring.heads import deformed, small
 
 NOISE_MM = 0.5
 ASIDE = np.array([[10.0, -20.0, 5.0], [-25.0, 10.0, 20.0], [25.0, -30.0, -10.0]])
-"""Of targets, from the middle of the head, mm."""
+"""Distance of targets from the middle of the head, mm."""
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""Tasks of fifteen fiducials, landmarks and what is checked of them."""
+"""Tasks of fifteen fiducials, landmarks and their checks."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ def test_a_simulator_that_is_held_up_is_slow_by_the_clock():
     held_up = {"kind": "reach", "simTimeS": 2.0, "monotonicS": 4.0}
     found = played(session(), start(), held_up)
     assert (found.speed, found.pace) == (1.0, 0.5)
-    # What passes until a trial is resumed is no part of it.
+    # The time until a trial is resumed is no part of it.
     assert played(session(), session("continued") | {"monotonicS": 900.0}).pace == 1.0
 
 

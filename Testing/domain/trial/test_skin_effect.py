@@ -31,7 +31,7 @@ def scenario():
 
 
 def touched(scenario, skin):
-    """Return a trial whose fiducials were touched exactly, on skin that lay so, and its pose."""
+    """Return a trial whose fiducials were touched exactly on such skin, and its pose."""
     pose, task = scenario.perturbed_head_to_world(8), scenario.task("task-1")
     places = skin.measured(task.fiducials, read_head_mesh(scenario.head))
     points = tuple(

@@ -33,7 +33,7 @@ def scenario():
 
 @pytest.fixture(scope="module")
 def traced(scenario):
-    """Return what was given by a trainee who misses the landmarks and traces exactly."""
+    """Return the points of a trainee who misses the landmarks and traces exactly."""
     head, pose = read_head_mesh(scenario.head), scenario.perturbed_head_to_world(8)
     trace = np.concatenate([on_skin(head, corners, 2.0) for corners in OVER_THE_FACE])
     missed = np.random.default_rng(4).normal(0.0, SLIP_MM / np.sqrt(3), (3, 3))
