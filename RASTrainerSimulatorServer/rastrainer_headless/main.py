@@ -166,11 +166,11 @@ def writeOutput(
     caption = [
         "Ball and number: fiducial in the MRI and its residual in mm. Arrow: toward where the "
         f"registration puts the touch, {magnification(rigid):g} times as long.",
-        f"At the target ({scenario.target_name}): expected TRE {expected.expected_mm:.2f} mm "
+        f"At the target ({scenario.target.name}): expected TRE {expected.expected_mm:.2f} mm "
         f"(95 %: {low:.2f} to {high:.2f} mm){true}. "
         "FRE does not predict TRE case by case.",
     ]
-    head = read_head_mesh(scenario.head_mesh)
+    head = read_head_mesh(scenario.head)
     writeResidualPicture(files["picture"], head, rigid, title, caption)
     return {name: str(path) for name, path in files.items()}
 

@@ -57,7 +57,7 @@ class Lab(LinkedLab):
         if self.refusal is not None:
             return self.refusal
         head_to_world = self.scenario.perturbed_head_to_world(SEED)
-        target = self.scenario.target_position
+        target = self.scenario.target.position_ras
         found = np.reshape(arguments["matrix"], (4, 4)) @ head_to_world
         return {
             "headToWorld": head_to_world.ravel().tolist(),

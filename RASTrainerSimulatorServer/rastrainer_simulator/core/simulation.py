@@ -79,9 +79,9 @@ class Simulation:
         self._camera_axes = {name: axes_of(camera) for name, camera in cameras.items()}
         self._planned_target: PlanInWorld | None = None
         self._teleoperation = Teleoperation(settings.teleoperation)
-        head = read_head_mesh(setup.scenario.head_mesh)
+        head = read_head_mesh(setup.scenario.head)
         self._head_base = head.base / MM_PER_M
-        self._collision = head_collision(setup.shape, head, setup.scenario.furniture)
+        self._collision = head_collision(setup.shape, head, setup.scenario)
         kinematics = make_kinematics(setup.robot)
         self.kinematics_name = type(kinematics).__name__
         self._contact = Contact(self._collision, kinematics)

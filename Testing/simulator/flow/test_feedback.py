@@ -10,7 +10,6 @@ import pytest
 
 from rastrainer.journal.entries import CameraChange, ProximityChange
 from rastrainer.protocol import Phase, Proximity, TouchRule
-from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.presentation.feedback_event import (

@@ -45,7 +45,6 @@ from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.analysis import (
     RevealedTruth,
     TrialAnalysis,
-    registration_arguments,
     score_arguments,
 )
 from rastrainer.trial.ctps import Trial
@@ -317,7 +316,7 @@ class TrialLogic(DeliveryQueue):
         connection, with the same outcome.
         """
         trialId, ask = analysis.record.trial_id, partial(Question, timeoutS=ANSWER_TIMEOUT_S)
-        answer = yield ask(CommandName.SUBMIT_REGISTRATION, registration_arguments(analysis))
+        answer = yield ask(CommandName.SUBMIT_REGISTRATION, analysis.arguments(trialId))
         truth = record_from_json(RevealedTruth, answer, "The simulator's answer")
 
         def storeTruth(study: Study) -> None:

@@ -23,8 +23,8 @@ from rastrainer_simulator.flow.tutorial.steps import (
     steps_for,
 )
 from rastrainer_simulator.input.inputs import SourceKind
-from rastrainer_simulator.record.trial_context import GUIDED_TOUCHES, TutorialOutcome
-from rastrainer_simulator.state import OperatorCommand, SimulationState, TouchStage, TrainingState
+from rastrainer_simulator.record.trial_context import TutorialOutcome
+from rastrainer_simulator.state import OperatorCommand, SimulationState, TouchStage
 from rastrainer_simulator.training.rules import TouchMoment, touch_stage
 from rastrainer_simulator.training.training import Training, TrainingReply
 from rastrainer_simulator.vectors import ZERO, Vector, distance, in_meters, in_millimeters, vector

@@ -18,7 +18,7 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.volume import read_nrrd
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.scenario.scenario import Scenario, task_by_method
+from rastrainer.scenario.scenario import Scenario, SkullKind, task_by_method
 from rastrainer.slicer.background_work import BackgroundWork, CallLater, callNow
 from rastrainer.slicer.polydata import meshPolyData, vtkArray
 from rastrainer.slicer.scene.nodes import (
@@ -95,17 +95,18 @@ def taskKey(scenarioName: str, taskName: str) -> str:
 
 def _showHead(scene: Any, scenario: Scenario) -> None:
     node = findOrAddNode(scene, MODEL, Role.HEAD_MODEL, "Head")
-    opacity = 1.0 if scenario.skull_mesh is None else SKIN_OPACITY_OVER_SKULL
-    _requestMesh(node, scenario, scenario.head_mesh, SKIN_COLOR, opacity)
+    opacity = 1.0 if scenario.skull is None else SKIN_OPACITY_OVER_SKULL
+    _requestMesh(node, scenario, scenario.head, SKIN_COLOR, opacity)
 
 
 def _showSkull(scene: Any, scenario: Scenario) -> None:
-    if scenario.skull_mesh is None:
+    if scenario.skull is None:
         removeNode(scene, MODEL, Role.SKULL)
         return
     node = findOrAddNode(scene, MODEL, Role.SKULL, "Skull")
-    if _requestMesh(node, scenario, scenario.skull_mesh, SKULL_COLOR, 1.0):
-        node.SetName("Skull (approximation)" if scenario.is_skull_approximate else "Skull")
+    if _requestMesh(node, scenario, scenario.skull.file, SKULL_COLOR, 1.0):
+        isApproximate = scenario.skull.kind is SkullKind.APPROXIMATION
+        node.SetName("Skull (approximation)" if isApproximate else "Skull")
 
 
 def _requestMesh(
@@ -130,8 +131,8 @@ def _requestMesh(
 
 def _showTargets(scene: Any, scenario: Scenario) -> None:
     node = findOrAddNode(scene, "vtkMRMLMarkupsFiducialNode", Role.TARGET, "Targets")
-    names = [scenario.target_name, *(target.name for target in scenario.targets)]
-    places = [scenario.target_position, *(target.position_ras for target in scenario.targets)]
+    names = [scenario.target.name, *(target.name for target in scenario.targets)]
+    places = [scenario.target.position_ras, *(target.position_ras for target in scenario.targets)]
     setPoints(node, names, np.array(places, dtype=float))
     showAsPlanned(node)
 
