@@ -183,9 +183,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--host", default=DEFAULT_HOST, help="where the simulator runs")
     parser.add_argument("--port", type=int, default=DEFAULT_PORT, help="its OpenIGTLink port")
-    parser.add_argument(
-        "--listen", action="store_true", help="wait for a simulator started with --connect"
-    )
     parser.add_argument("--scenario", default="colin27", metavar="NAME")
     parser.add_argument("--output", type=Path, required=True, metavar="DIR")
     parser.add_argument("--trials", type=int, default=1, metavar="N", help="trials to wait for")
@@ -215,15 +212,12 @@ def _run(arguments: argparse.Namespace) -> None:
     output, scene = arguments.output, HeadlessScene()
     session = openSession(scene, output, arguments.assets)
     try:
-        # What is wrong with it is reported before anyone plays.
+        # Problems are reported before anyone plays.
         scenario = session.scenarios.find(arguments.scenario)
         session.openStudyPatiently().close()
         printer = TrialPrinter(session, output / RESULTS)
         showScenario(scene.scene, scenario)
-        if arguments.listen:
-            session.link.listenOn(arguments.port)
-        else:
-            session.link.connectTo(arguments.host, arguments.port)
+        session.link.connectTo(arguments.host, arguments.port)
         end = time.monotonic() + arguments.timeout
         while printer.scored < arguments.trials:
             if time.monotonic() > end:
