@@ -74,12 +74,11 @@ class TrialPrinter:
         session.link.statusChanged.connect(lambda status: printEvent("status", **asdict(status)))
         session.link.pointsChanged.connect(self._printPoints)
         session.trials.trialScored.connect(self._printTrial)
-        session.aborted.kept.connect(
+        session.trials.abortedKept.connect(
             lambda trial: printEvent("aborted", trialId=trial.trial_id, reason=trial.reason)
         )
         for problems in (
             session.trials.problemFound,
-            session.aborted.problemFound,
             session.files.problemFound,
             session.procedure.answered,
         ):
