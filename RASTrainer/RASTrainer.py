@@ -14,7 +14,7 @@ from slicer.util import VTKObservationMixin
 from slicer.parameterNodeWrapper import parameterNodeWrapper
 
 if TYPE_CHECKING:
-    from rastrainer.panels.panel_stack import PanelStack
+    from rastrainer.sections.panel_stack import PanelStack
     from rastrainer.slicer.turns import Turns
 
 #
@@ -68,8 +68,9 @@ class RASTrainer(ScriptedLoadableModule):
 
 
 def registerSampleData():
-    from rastrainer.panels.sample_data import assetsFolder
-    from rastrainer.panels.sample_data import registerSampleData as register
+    """Add the MRI that comes with this module to the module Sample Data."""
+    from rastrainer.sections.sample_data import assetsFolder
+    from rastrainer.sections.sample_data import registerSampleData as register
 
     register(assetsFolder(Path(__file__)))
 
@@ -81,7 +82,7 @@ def registerSampleData():
 
 @parameterNodeWrapper
 class RASTrainerParameterNode:
-    """The user's choices of nodes, which are saved with the scene.
+    """Nodes that the user has chosen, saved with the scene.
 
     What else is chosen stays with the user: see `rastrainer.slicer.settings`.
 
@@ -103,7 +104,7 @@ class RASTrainerParameterNode:
 
 
 class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
-    """Wires the panels to the logic; they are in `rastrainer.panels`."""
+    """Wires the panels to the logic; they are in `rastrainer.sections`."""
 
     SOON_MS = 100
 
@@ -123,7 +124,7 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
 
     @property
     def logic(self) -> Optional["RASTrainerLogic"]:
-        """The logic; reading it finishes building the panel."""
+        """The logic; asking for it has the panel built at once, if it is not yet."""
         if self._building is not None:
             self._building.finish()
         return self._logic
@@ -140,9 +141,9 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
     def _build(self):
         from rastrainer.slicer.turns import importInTurns
 
-        yield from importInTurns("rastrainer.panels.panel_stack")
-        from rastrainer.panels.application import isAnythingVisible
-        from rastrainer.panels.panel_stack import PanelStack
+        yield from importInTurns("rastrainer.sections.panel_stack")
+        from rastrainer.sections.application import isAnythingVisible
+        from rastrainer.sections.panel_stack import PanelStack
         from rastrainer.slicer.background_work import PERIOD_MS
 
         scene = slicer.mrmlScene
@@ -248,12 +249,12 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
 
 
 class RASTrainerLogic(ScriptedLoadableModuleLogic):
-    """The module's functions without its widgets; the parts are in `rastrainer.slicer`."""
+    """All work of the module without its widgets; the parts are in `rastrainer.sections`."""
 
     def __init__(self) -> None:
-        from rastrainer.panels.application import callSoon, findPlaces
+        from rastrainer.sections.application import callSoon, findPlaces
         from rastrainer.slicer.link.connection import desktopKit
-        from rastrainer.slicer.logic.module_session import ModuleSession
+        from rastrainer.sections.module_session import ModuleSession
         from rastrainer.slicer.settings import Settings
 
         ScriptedLoadableModuleLogic.__init__(self)
@@ -328,6 +329,6 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
             self.assertGreater(len(fixture.ui.registrationText.text), 20)
 
     def fixture(self):
-        from rastrainer.panels.self_test_fixture import SelfTestFixture
+        from rastrainer.sections.self_test_fixture import SelfTestFixture
 
         return SelfTestFixture(Path(slicer.modules.rastrainer.path))

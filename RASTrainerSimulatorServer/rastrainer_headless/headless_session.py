@@ -5,8 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from rastrainer.slicer.logic.module_paths import ModulePaths
-from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.sections.module_session import ModulePaths, ModuleSession
 from rastrainer.slicer.program.child_process import runHere
 from rastrainer.slicer.program.simulator_package import SimulatorPackage
 from rastrainer.study.database.database import PostgresAddress

@@ -36,7 +36,7 @@ from rastrainer.json_records import record_to_json
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
 from rastrainer.registration.fits import RIGID
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.sections.module_session import ModuleSession
 from rastrainer.slicer.scene.error_colors import magnification
 from rastrainer.slicer.scene.nodes import labelsOf
 from rastrainer.slicer.scene.scenario_nodes import showScenario
@@ -74,12 +74,11 @@ class TrialPrinter:
         session.link.statusChanged.connect(lambda status: printEvent("status", **asdict(status)))
         session.link.pointsChanged.connect(self._printPoints)
         session.trials.trialScored.connect(self._printTrial)
-        session.aborted.kept.connect(
+        session.trials.abortedKept.connect(
             lambda trial: printEvent("aborted", trialId=trial.trial_id, reason=trial.reason)
         )
         for problems in (
             session.trials.problemFound,
-            session.aborted.problemFound,
             session.files.problemFound,
             session.procedure.answered,
         ):
@@ -166,11 +165,11 @@ def writeOutput(
     caption = [
         "Ball and number: fiducial in the MRI and its residual in mm. Arrow: toward where the "
         f"registration puts the touch, {magnification(rigid):g} times as long.",
-        f"At the target ({scenario.target_name}): expected TRE {expected.expected_mm:.2f} mm "
+        f"At the target ({scenario.target.name}): expected TRE {expected.expected_mm:.2f} mm "
         f"(95 %: {low:.2f} to {high:.2f} mm){true}. "
         "FRE does not predict TRE case by case.",
     ]
-    head = read_head_mesh(scenario.head_mesh)
+    head = read_head_mesh(scenario.head)
     writeResidualPicture(files["picture"], head, rigid, title, caption)
     return {name: str(path) for name, path in files.items()}
 

@@ -4,7 +4,7 @@ from rastrainer_headless.peer_socket import crashes
 
 
 def take_crashes():
-    """Return the crashes since the last call."""
+    """Return the crashes recorded since the last call."""
     taken = crashes[:]
     crashes.clear()
     return taken

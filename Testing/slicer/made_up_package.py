@@ -21,7 +21,7 @@ OURS = (
     "slicer/program/__init__.py",
     "slicer/program/trim_packages.py",
 )
-"""Files of the real wheel that run a program on the packages of its folder, and trim them."""
+"""Parts of the real wheel: they run a program on the packages of its folder, and trim them."""
 
 
 def write_wheel(folder: Path, name: str, version: str, files: Mapping[str, str]) -> Path:

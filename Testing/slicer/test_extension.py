@@ -21,7 +21,7 @@ RESOURCES = sorted(
 )
 """Without the simulator's wheel, which a release builds."""
 
-# Importable in Slicer: its own modules and its Python's packages.
+# Importable in Slicer: its modules, and packages of its Python.
 BUNDLED = {"slicer", "vtk", "qt", "ctk", "numpy", "scipy", "requests", "PIL", "SampleData"}
 
 
@@ -123,7 +123,7 @@ def test_the_title_does_not_say_ras_which_means_right_anterior_superior_to_slice
 
 def test_the_panels_use_only_widgets_that_the_ui_file_has():
     used = set()
-    for path in (MODULE / "Logic" / "rastrainer" / "panels").glob("*.py"):
+    for path in (MODULE / "Logic" / "rastrainer" / "sections").glob("*.py"):
         used |= set(re.findall(r"\bui\.(\w+)", path.read_text()))
     assert used
     assert used <= set(widgets())
@@ -136,7 +136,7 @@ def test_no_two_widgets_share_a_name():
 
 
 def test_every_panel_has_a_ui_file_with_its_name():
-    source = (MODULE / "Logic" / "rastrainer" / "panels" / "panel_stack.py").read_text()
+    source = (MODULE / "Logic" / "rastrainer" / "sections" / "panel_stack.py").read_text()
     panels = ["NextStepPanel", *re.findall(r"^    (\w+Panel),$", source, re.MULTILINE)]
     files = [path.stem for path in UI_FILES if path.stem != "RASTrainer"]
     assert sorted(f"RASTrainer{name}" for name in panels) == sorted(files)

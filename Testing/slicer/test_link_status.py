@@ -1,4 +1,4 @@
-"""The status line describes the link, and a remedy."""
+"""The status line about the link, with its advice."""
 
 from dataclasses import replace
 

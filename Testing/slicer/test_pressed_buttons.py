@@ -1,5 +1,4 @@
-"""A button does what its label said when it was pressed, even if the label changes before its
-release."""
+"""A button acts by its label when it was pressed, no matter what happens before its release."""
 
 import json
 import uuid

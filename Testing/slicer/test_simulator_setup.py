@@ -112,7 +112,7 @@ def run_setup(setup, **source):
 
 
 def left_beside(setup):
-    """Return the contents of the parent of the private folder, once the removal has finished."""
+    """Return the names next to the private folder, once the removal has finished."""
     kept = setup.folder.parent
     wait_until(lambda: not any(".removed-" in path.name for path in kept.iterdir()), lambda: None)
     return [path.name for path in kept.iterdir()]

@@ -1,4 +1,4 @@
-"""Only bytes that no loader reads are cut off from libraries."""
+"""Only those parts are cut off from libraries that no loader reads."""
 
 import ctypes
 import shutil

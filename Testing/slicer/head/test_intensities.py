@@ -1,4 +1,4 @@
-"""Fills by programs are not mistaken for the patient; CT and MRI are distinguished."""
+"""Values that a program has put into an image are not tissue; CT differs from MRI."""
 
 import numpy as np
 import pytest
@@ -70,7 +70,7 @@ def test_a_ct_is_one_of_air_around_a_head_whatever_was_put_around_it(make):
     values = cleaned(make())[0].values
     assert isHounsfield(values)
     assert np.mean(values < -900.0) > 0.3
-    # No block of a fill: all tissue is in one head, away from the image's upper corners.
+    # No block of a fill: all tissue belongs to one head, away from the image's upper corners.
     assert (values[:3, :3, -3:] < -900.0).all()
     assert (values[-3:, -3:, -3:] < -900.0).all()
     middle = tuple(n // 2 for n in values.shape)

@@ -13,7 +13,7 @@ OFFSCREEN_REMARK = "This plugin does not support propagateSizeHints()"
 
 
 def application() -> QtWidgets.QApplication:
-    """Return the QApplication of this process."""
+    """Return this process's QApplication."""
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
     running = QtWidgets.QApplication.instance()
     if running is not None:

@@ -1,6 +1,6 @@
 """The members of real Slicer's classes, which panels may use.
 
-`slicer_members.json` holds the measurement in Slicer 5.13 (Qt 5.15, PythonQt), by listing each
+`slicer_members.json` holds the members measured in Slicer 5.13 (Qt 5.15, PythonQt), by listing each
 class's meta-object and `dir()`; `python -m Testing.slicer.host.members full.json` makes it of the
 full measurement. `UNMEASURED` adds the few classes that the measurement left out.
 """

@@ -1,4 +1,4 @@
-"""Finds the processes that open trials' journals: Slicer's own, or its Python's."""
+"""The processes that open trials' journals: Slicer itself, or children of its Python."""
 
 from __future__ import annotations
 

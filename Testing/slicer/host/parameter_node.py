@@ -1,6 +1,6 @@
 """`slicer.parameterNodeWrapper`: typed parameters over a node of the scene.
 
-Only documented and used types: str, int, float, bool, Path, Enum and nodes (one class, or an
+Only documented types that are used: str, int, float, bool, Path, Enum and nodes (one class, or an
 `Optional[Union[...]]` of several), `Annotated` with a default or a check, and widgets bound by
 their property `SlicerParameterName`. It refuses what Slicer refuses (measured in 5.13): a node
 class that is abstract, as soon as a widget is bound to it, and a `Union` without room for None.

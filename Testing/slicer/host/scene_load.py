@@ -1,7 +1,7 @@
 """Counts what the module hands to the scene in each turn: each call by a click or a timer.
 
 The host cannot measure how long Slicer's views work on that, as they are not drawn here. But they
-work in proportion to it, and before the next turn: so all changes of one turn make a stall.
+work in proportion to it, and before the next turn: so all changes in one turn make one stall.
 """
 
 from __future__ import annotations

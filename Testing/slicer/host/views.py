@@ -38,7 +38,7 @@ SLICE_MANAGERS = (
     "vtkMRMLLinearTransformsDisplayableManager",
     "vtkMRMLSegmentationsDisplayableManager2D",
 )
-"""Displayable managers of Slicer's own views, and of its modules whose nodes ours uses."""
+"""Displayable managers of Slicer's views, and of modules whose nodes our module uses."""
 SLICES = {"Red": "Axial", "Green": "Coronal", "Yellow": "Sagittal"}
 SLICE_COLORS = {
     "Red": (0.95, 0.29, 0.20),
@@ -204,7 +204,7 @@ class SliceView(View):
         self._actor.GetProperty().SetDisplayLocationToBackground()
 
     def picture(self, width: int, height: int) -> QtGui.QImage:
-        """Return the view's picture: the slice, as large as fits, and its content."""
+        """Return the picture of the view: the slice, as large as fits, and its content."""
         self._open_window()
         # Markups place their labels by the window's size.
         self.window.SetSize(width, height)

@@ -1,4 +1,4 @@
-"""Steps after a trial is scored: plan, replay, tables, exports, report, scene."""
+"""Work after a trial is scored: plan, replay, tables, exports, report, scene."""
 
 from __future__ import annotations
 

@@ -11,6 +11,7 @@ from scipy import ndimage
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.head.volume import KEPT_MM, HeadVolume
+from rastrainer.scenario.scenario import SkullKind
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer.slicer.head import mask, surface
 from rastrainer.slicer.head.extraction import findHead, skinOf
@@ -73,7 +74,8 @@ def makeDraft(
             method = "Skull: bone of the CT."
         method = f"{draft.method} {method}"
         skull = skullOf(volume, found)
-        draft = replace(draft, method=method, skull=skull, is_skull_approximate=not found.isCt)
+        kind = SkullKind.BONE if found.isCt else SkullKind.APPROXIMATION
+        draft = replace(draft, method=method, skull=skull, skull_kind=kind)
     progress("Done", 1.0)
     return draft, warnings
 

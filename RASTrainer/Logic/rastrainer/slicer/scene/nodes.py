@@ -82,10 +82,30 @@ def findOrAddNode(scene: Any, className: str, role: str, name: str) -> Any:
     """Return the node of the class with the role, added under `name` where there is none."""
     node = findNode(scene, className, role)
     if node is None:
-        node = scene.AddNewNodeByClass(className, name)
-        node.SetAttribute(ROLE_ATTRIBUTE, role)
+        node = addNode(scene, className, role, name)
         if node.IsA("vtkMRMLDisplayableNode"):
             node.CreateDefaultDisplayNodes()
+    return node
+
+
+SELECTION = "vtkMRMLSelectionNodeSingleton"
+INTERACTION = "vtkMRMLInteractionNodeSingleton"
+
+
+def addNode(scene: Any, className: str, role: str, name: str) -> Any:
+    """Add a node of ours, without display.
+
+    Slicer has the next click place a point of the newest list; while the user is placing points,
+    they still go into the user's list.
+    """
+    selection, interaction = scene.GetNodeByID(SELECTION), scene.GetNodeByID(INTERACTION)
+    isPlacing = interaction and interaction.GetCurrentInteractionMode() == interaction.Place
+    active = scene.GetNodeByID(selection.GetActivePlaceNodeID() or "") if isPlacing else None
+    node = scene.AddNewNodeByClass(className, name)
+    node.SetAttribute(ROLE_ATTRIBUTE, role)
+    if active is not None:
+        selection.SetReferenceActivePlaceNodeClassName(active.GetClassName())
+        selection.SetActivePlaceNodeID(active.GetID())
     return node
 
 
@@ -200,7 +220,7 @@ def _node(scene: Any, className: str, role: str, name: str) -> Any:
     """Return the node with the role, else with the name, else a new node."""
     node = findNode(scene, className, role)
     if node is None:
-        node = scene.GetFirstNode(name, className) or scene.AddNewNodeByClass(className, name)
+        node = scene.GetFirstNode(name, className) or addNode(scene, className, role, name)
         node.SetAttribute(ROLE_ATTRIBUTE, role)
     return node
 

@@ -10,7 +10,9 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.scene.nodes import (
+    INTERACTION,
     ROLE_ATTRIBUTE,
+    SELECTION,
     Role,
     findOrAddNode,
     labelOf,
@@ -18,9 +20,6 @@ from rastrainer.slicer.scene.nodes import (
     setPoints,
 )
 from rastrainer.slicer.translation import _
-
-SELECTION = "vtkMRMLSelectionNodeSingleton"
-INTERACTION = "vtkMRMLInteractionNodeSingleton"
 
 
 def startPlacing(scene: Any, node: Any) -> None:

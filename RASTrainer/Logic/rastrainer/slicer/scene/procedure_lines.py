@@ -28,6 +28,7 @@ from rastrainer.slicer.scene.error_colors import arrowPolyData
 from rastrainer.slicer.scene.nodes import (
     ROLE_ATTRIBUTE,
     Role,
+    addNode,
     findOrAddNode,
     nodesOf,
     nodesOfClass,
@@ -218,8 +219,7 @@ def _showLines(scene: Any, role: str, title: str, lines: Mapping[str, Any]) -> N
 
 
 def _newLine(scene: Any, role: str, name: str = "") -> Any:
-    node = scene.AddNewNodeByClass(LINE, name)
-    node.SetAttribute(ROLE_ATTRIBUTE, role)
+    node = addNode(scene, LINE, role, name)
     node.CreateDefaultDisplayNodes()
     display = node.GetDisplayNode()
     display.SetSelectedColor(_COLORS[role])

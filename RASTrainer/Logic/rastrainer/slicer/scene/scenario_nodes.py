@@ -18,7 +18,7 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.volume import read_nrrd
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.scenario.scenario import Scenario, task_by_method
+from rastrainer.scenario.scenario import Scenario, SkullKind, task_by_method
 from rastrainer.slicer.background_work import BackgroundWork, CallLater, callNow
 from rastrainer.slicer.polydata import meshPolyData, vtkArray
 from rastrainer.slicer.scene.nodes import (
@@ -51,13 +51,15 @@ def showScenario(scene: Any, scenario: Scenario, later: CallLater = callNow) -> 
 
     Called again, nothing is made twice. Meshes and images come still later, by a `SceneFileLoader`.
     """
-    skull = "Skull (approximation)" if scenario.is_skull_approximate else "Skull"
-    opacity = 1.0 if scenario.skull_mesh is None else SKIN_OPACITY_OVER_SKULL
-    for role, name, path, color, share in (
-        (Role.HEAD_MODEL, "Head", scenario.head_mesh, SKIN_COLOR, opacity),
-        (Role.SKULL, skull, scenario.skull_mesh, SKULL_COLOR, 1.0),
+    skull, name = scenario.skull, "Skull"
+    if skull is not None and skull.kind is SkullKind.APPROXIMATION:
+        name = "Skull (approximation)"
+    opacity = 1.0 if skull is None else SKIN_OPACITY_OVER_SKULL
+    for role, title, path, color, share in (
+        (Role.HEAD_MODEL, "Head", scenario.head, SKIN_COLOR, opacity),
+        (Role.SKULL, name, None if skull is None else skull.file, SKULL_COLOR, 1.0),
     ):
-        later(partial(_showSurface, scene, scenario, role, name, path, color, share))
+        later(partial(_showSurface, scene, scenario, role, title, path, color, share))
     later(partial(_showPlan, scene, scenario))
     later(partial(requestVolume, scene, scenario))
 
@@ -129,8 +131,8 @@ def _showSurface(
 def _showPlan(scene: Any, scenario: Scenario) -> None:
     """Show the targets, the first of which is where the target error is reported, and the line."""
     targets = findOrAddNode(scene, "vtkMRMLMarkupsFiducialNode", Role.TARGET, "Targets")
-    names = [scenario.target_name, *(target.name for target in scenario.targets)]
-    places = [scenario.target_position, *(target.position_ras for target in scenario.targets)]
+    names = [scenario.target.name, *(target.name for target in scenario.targets)]
+    places = [scenario.target.position_ras, *(target.position_ras for target in scenario.targets)]
     setPoints(targets, names, np.array(places))
     showAsPlanned(targets)
     planned = scenario.trajectory
