@@ -65,7 +65,7 @@ def test_a_pseudonym_is_unique_and_printable(study):
         study.create_trainee("a\n")
 
 
-@pytest.mark.parametrize("name", ["", " ", " T-001", "T-001 ", "T\n1", "T\u202e1", "x" * 65])
+@pytest.mark.parametrize("name", ["", "T-001 ", "T\u202e1", "x" * 65])
 def test_a_trial_with_an_invalid_pseudonym_is_refused(study, name):
     with pytest.raises(InputError):
         study.create_trainee(name)
