@@ -180,11 +180,11 @@ def standings(
     found = []
     for group, members in ((_("own"), own), (_("others"), others)):
         for title, unit, better, name in _COMPARED:
-            value = getattr(this, name)
+            value = this.values.get(name)
             peers = members
             if name == "score":
                 peers = [o for o in members if o.method == this.method]
-            values = [v for v in (getattr(o, name) for o in peers) if v is not None]
+            values = [o.values[name] for o in peers if name in o.values]
             if value is not None and values:
                 found.append(_standing(title, unit, value, group, values, better))
     return found + _comparedWithCohort(trial, cohort)
@@ -254,4 +254,4 @@ _COMPARED = (
     (_("Completion time"), "s", -1, "completion_time_s"),
     (_("True TRE"), "mm", -1, "true_tre_mm"),
 )
-"""Title, unit, 1 where more is better and −1 where less is, and the outcome's attribute."""
+"""Title, unit, 1 where more is better and −1 where less is, and the name of the value."""
