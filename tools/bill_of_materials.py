@@ -1,7 +1,7 @@
 """Write what RASTrainer is made with as CycloneDX: build/rastrainer.cdx.json and the page's.
 
 Made from the lock files alone, so the same locks give the same bills. Needs `cyclonedx-bom` for the
-Python packages and npm for those of the page.
+Python packages and npm for the page's packages.
 """
 
 import json

@@ -1,6 +1,6 @@
 """Write build/third-party-notices.txt: the packages that come with RASTrainer, and their licenses.
 
-It is made from what is installed: the packages that requirements/base.lock names, with their
+It describes the installed packages: those that requirements/base.lock names, with their
 metadata and license files, and the packages that go into the browser page.
 """
 
@@ -18,7 +18,7 @@ WEB = ROOT / "RASTrainerSimulatorServer" / "web"
 OUTPUT = ROOT / "build" / "third-party-notices.txt"
 LONGEST_FILE = 200_000
 MAX_FILES = 24
-"""Of one package; those nearest to its top have its license."""
+"""Per package; the files nearest to its top have its license."""
 RULE = "=" * 100
 INTRODUCTION = """RASTrainer is under the MIT license (LICENSE.txt).
 It is installed with the packages below, each under its own license; none is in its repository.

@@ -158,7 +158,7 @@ def _aborted(header: JournalHeader, lines: tuple[Line, ...]) -> AbortedTrial:
     )
     phases = [line.entry.phase for line in lines if isinstance(line.entry, PhaseChange | Continued)]
     stage = next((phase for phase in reversed(phases) if phase is not Phase.PAUSED), None)
-    # A procedure that is paused is aborted in what it was paused in.
+    # A paused procedure is aborted in the phase before the pause.
     phase = stage if stage in PROCEDURE_PHASES else phases[-1]
     if phase is Phase.COMPLETE:
         elapsed_s = trajectory.intended[-1].time_s
@@ -208,9 +208,9 @@ class TrialArchive:
             self._load(path)
 
     def unacknowledged(self) -> tuple[AbortedTrial | TrialRecord, ...]:
-        """Return the records that no client has acknowledged: aborted trials, then finished ones.
+        """Return the records that no client has acknowledged: aborted trials, then finished trials.
 
-        Of each kind the oldest come first.
+        The oldest of each kind come first.
         """
         waiting = [trial for trial, _ in list(self._kept.values()) if not trial.acknowledged]
         waiting.sort(key=lambda trial: isinstance(trial, ArchivedTrial))

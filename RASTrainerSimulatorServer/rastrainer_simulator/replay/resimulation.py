@@ -1,4 +1,4 @@
-"""Play a trial again from its journal and compare every number with what was recorded."""
+"""Simulate a trial again from its journal and compare every number with the recorded number."""
 
 from __future__ import annotations
 
@@ -76,8 +76,8 @@ def replay(
 ) -> ReplayReport:
     """Simulate a trial again from its recorded inputs.
 
-    The computed entries are compared with the recorded ones: events, touches, 50 postures a second,
-    and the hash over the posture of every tick. `watch` is called with each simulated step.
+    The computed entries are compared with the recorded entries: events, touches, 50 postures a
+    second, and the hash over the posture of every tick. `watch` is called with each simulated step.
     """
     with refusing_malformed(f"{reading.path} cannot be replayed: an entry is not as it should be"):
         return _replay(reading, setup, watch)
