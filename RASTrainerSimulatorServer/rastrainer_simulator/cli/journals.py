@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 
 from rastrainer.errors import InputError
@@ -16,13 +17,12 @@ from rastrainer_simulator.cli.printing import json_text, text_table
 
 
 def verify(arguments: argparse.Namespace) -> int:
-    if arguments.study is None:
-        return max([_verify(path) for path in arguments.journal])
-    with Study.open_for_reading(arguments.study) as opened:
+    place = arguments.study
+    with nullcontext() if place is None else Study.open_for_reading(place) as opened:
         return max([_verify(path, opened) for path in arguments.journal])
 
 
-def _verify(path: Path, study: Study | None = None) -> int:
+def _verify(path: Path, study: Study | None) -> int:
     problem = ""
     try:
         reading = read_journal(path)

@@ -77,7 +77,6 @@ class RatingPresenter(ReplayPresenter):
         self._refresh()
 
     def load(self, go: Callable[[], object]) -> None:
-        """Go to another replay and load it."""
         go()
         self._loading = self._load(self.work.trial_id)
         self.pages.show(LoadingPage(self, self._loading))
@@ -216,6 +215,7 @@ class RatingPage(Page):
         self.actions = actions
 
     def say(self, key: str, **values: object) -> str:
+        """Return a sentence with the replay's number."""
         return self.actions.say(key, **values)
 
     def rows(self, *names: str) -> tuple[PageRow, ...]:
@@ -258,7 +258,6 @@ class DomainPage(RatingPage):
         return PageContent(said, rows=(*marks, *others), title=title, first="watch")
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """Store a typed mark."""
         if device is not InputDevice.KEYBOARD or name not in _KEYS:
             return False
         self._give(_KEYS[name])

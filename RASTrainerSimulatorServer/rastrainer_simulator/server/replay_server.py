@@ -93,7 +93,7 @@ def trials_to_show(study: Study, records: Path) -> tuple[str, ...]:
 
     Trial runs are practice, and are left out.
     """
-    everyone = (*study.trainees(), *study.trainees(archived=True))
+    everyone = study.trainees(archived=None)
     found = tuple(
         stored.record.trial_id
         for trainee in everyone

@@ -28,10 +28,16 @@ DOWN = OperatorInput(translation=(0.0, 0.0, -1.0), fine=True)
 UP = OperatorInput(translation=(0.0, 0.0, 1.0), fine=True)
 
 
+@pytest.fixture(scope="module")
+def shared(setup):
+    return Simulation(setup, 12)
+
+
 @pytest.fixture
-def simulation(setup):
+def simulation(shared):
     """Return a trial whose tip rests on top of the head."""
-    simulation = Simulation(setup, 12)
+    simulation = shared
+    do(simulation, CommandName.ABORT)
     do(simulation, CommandName.START_TASK, task="task-1", trainee="P01", seed=12)
     truth = simulation.truth
     move(simulation, truth.in_world(truth.target_ras) + np.array([0.0, 0.0, 130.0]))
@@ -85,7 +91,10 @@ def test_a_jog_presses_by_its_velocity_times_its_duration(simulation):
 
 
 def test_a_stick_held_down_presses_to_the_limit_and_no_farther(simulation):
-    depths = [simulation.step(DT, DOWN).state.depth for _ in range(3000)]
+    do(simulation, CommandName.JOG, velocityMmS=[0, 0, -50], durationS=0.18)
+    rest(simulation, 60)
+    assert 0.0 < simulation.state.depth < DEEPEST
+    depths = [simulation.step(DT, DOWN).state.depth for _ in range(600)]
     assert depths == sorted(depths)
     assert depths[-1] == DEEPEST
 
@@ -124,9 +133,10 @@ def test_a_new_trial_starts_with_zero_depth(simulation):
     assert simulation.state.depth == 0.0
 
 
-def test_the_motion_does_not_depend_on_the_depth(setup, monkeypatch):
+def test_the_motion_does_not_depend_on_the_depth(shared, monkeypatch):
     def played():
-        simulation = Simulation(setup, 12)
+        simulation = shared
+        do(simulation, CommandName.ABORT)
         do(simulation, CommandName.START_TASK, task="task-1", trainee="P01", seed=12)
         truth = simulation.truth
         move(simulation, truth.in_world(truth.target_ras))

@@ -20,7 +20,7 @@ from Testing.simulator.planned_procedures import INNER_MM, OUTER_MM
 
 SEED = 4
 IDENTITY = Rotation.identity()
-MANY_LINES = 20
+MANY_LINES = 6
 RIGHT = OperatorInput(translation=(1.0, 0.0, 0.0), operator="gamepad")
 TURN = OperatorInput(rotation=(1.0, 0.0), operator="gamepad")
 IN = OperatorInput(translation=(0.0, 0.0, -1.0), operator="gamepad")
@@ -201,7 +201,7 @@ def test_the_robot_does_not_align_the_guide_where_the_setting_forbids_it(planned
 
 
 def test_a_line_on_which_the_robot_cannot_hold_the_guide_is_refused_at_once(surgeon):
-    # By this registration the head is half a meter farther away.
+    # This registration puts the head half a meter farther away.
     surgeon.to(Phase.ALIGNING, shift_mm=(500.0, 0.0, 0.0))
     answer = surgeon.do(CommandName.ALIGN_GUIDE, standOffMm=30.0)
     assert "with a stand-off of 30 mm" in answer.message
@@ -228,10 +228,10 @@ def test_the_distances_ahead_are_those_of_the_true_surfaces(surgeon):
         )
 
     for depth, radius in ((ahead.outer, OUTER_MM), (ahead.inner, INNER_MM)):
-        away = np.linalg.norm(in_head(depth) - scenario.target_position)
+        away = np.linalg.norm(in_head(depth) - scenario.target.position_ras)
         # The made-up skull is a polyhedron in these spheres.
         assert radius - 0.5 <= away <= radius
-    skin = read_head_mesh(scenario.head_mesh)
+    skin = read_head_mesh(scenario.head)
     nearest = np.linalg.norm(skin.vertices - in_head(ahead.skin), axis=1).min()
     assert nearest < 3.0
     assert 0.0 < ahead.skin < ahead.outer < ahead.inner

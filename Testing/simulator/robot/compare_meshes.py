@@ -5,7 +5,7 @@
 FOLDER holds link_0.stl … link_7.stl, in meters, all in the base frame at q = 0 (or a folder
 `collision` with them). Points are drawn evenly over each robot's surface at q = 0 and kept where
 they can be seen from outside: not on the ground, and with at least one in twenty of the directions
-over the point open. From each of these the distance to the nearest point of the other robot is
+over the point open. The distance from each of these to the nearest point of the other robot is
 taken. The tool is left out: it is ours.
 """
 

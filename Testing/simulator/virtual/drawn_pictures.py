@@ -11,8 +11,8 @@ import numpy as np
 from rastrainer.head.mesh import HeadMesh, outward_normals, read_head_mesh
 from rastrainer.scenario.points import Task
 from rastrainer.transforms import MM_PER_M, apply
+from rastrainer_simulator.collision.clearance import LineOfSight
 from rastrainer_simulator.collision.collision import head_collision
-from rastrainer_simulator.collision.line_of_sight import LineOfSight
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.scene.skin import Skin
@@ -100,8 +100,8 @@ class DrawnPictures:
 
     def __init__(self, setup: SimulationSetup, seed: int) -> None:
         self._setup = setup
-        self._head: HeadMesh = read_head_mesh(setup.scenario.head_mesh)
-        self._collision = head_collision(setup.shape, self._head, setup.scenario.furniture)
+        self._head: HeadMesh = read_head_mesh(setup.scenario.head)
+        self._collision = head_collision(setup.shape, self._head, setup.scenario)
         self._kinematics = make_kinematics(setup.robot)
         self._random = np.random.default_rng(seed)
         self._marks: dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}

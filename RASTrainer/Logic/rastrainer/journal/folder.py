@@ -108,7 +108,8 @@ def read_open_holder(descriptor: int) -> FolderHolder:
 
 SUFFIX = ".journal"
 TUTORIAL_SUFFIX = ".tutorial"
-"""The ending of tutorials' files: each is one line with the trainee, like a journal's first."""
+"""Ends the names of tutorials' files: each is one line that names the trainee, like a journal's
+first."""
 _ZEROS = bytes(1 << 20)
 
 
@@ -189,7 +190,7 @@ _NUMBER = re.compile(
 
 @dataclass(frozen=True, order=True)
 class JournalNumber:
-    """The number of a trial in its folder; earlier trials have smaller numbers.
+    """The number of a trial within its folder; earlier trials have smaller numbers.
 
     Attributes:
         number: from 1; 0 if it is unknown.

@@ -48,7 +48,7 @@ _SAME = {"much too far": "too far"}
 def told(sentence: str) -> str:
     """Return a trial's sentence in English, without the distances that the trainee reads.
 
-    With the exact pose of the tip, they would give the secret pose of the head
+    They would give the secret pose of the head together with the exact pose of the tip
     (`Testing/security/pose_leak.py`).
     """
     if not isinstance(sentence, LocalizedText):
