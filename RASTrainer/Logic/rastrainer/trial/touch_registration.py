@@ -39,7 +39,6 @@ from rastrainer.registration.registration import Registration, register, registe
 from rastrainer.registration.surface_error import (
     TraceGuide,
     knowledge_of,
-    nearest_traced_mm,
     surface_target_error,
 )
 from rastrainer.registration.surface_match import SurfaceMatch, match_surface
@@ -110,8 +109,7 @@ class FollowedTrace:
 
     Attributes:
         places: (n, 3) float, RAS mm.
-        away_mm: (v,) float, from each vertex of the head to the nearest of them; infinite before
-            the first.
+        away_mm: as in `TraceGuide`.
         next_place: (3,) float, RAS mm, where the next points would help most; None without one.
     """
 
@@ -120,33 +118,18 @@ class FollowedTrace:
     next_place: np.ndarray | None
 
 
-class TraceFollower:
-    """Follows the trace of one trial and computes only the new part.
+def follow_trace(
+    guide: TraceGuide, scenario: Scenario, given: GivenPoints, is_drawing: bool
+) -> FollowedTrace:
+    """Return the trace so far; `is_drawing` says whether a stroke is being drawn.
 
     The true pose of the head stays unknown: the landmarks that were touched stand for it.
     """
-
-    def __init__(self, scenario: Scenario) -> None:
-        self._scenario = scenario
-        self._mesh = read_head_mesh(scenario.head)
-        self._guide = trace_guide(scenario, self._mesh)
-        self._traced = np.zeros((0, 3))
-        self._matrix = np.eye(4)
-        self._away = np.full(len(self._mesh.vertices), np.inf)
-
-    def follow(self, given: GivenPoints, is_drawing: bool) -> FollowedTrace:
-        """Return the trace so far; `is_drawing` says whether a stroke is being drawn."""
-        task = task_by_method(self._scenario, given.task, given.method)
-        labels, moving, fixed = pair(given.touches, PointList(task.labels, task.fiducials))
-        matrix, known = register(moving, fixed, RIGID, labels).matrix, len(self._traced)
-        is_longer = np.array_equal(given.trace_mm[:known], self._traced)
-        if not is_longer or not np.array_equal(matrix, self._matrix):
-            known, self._away = 0, np.full(len(self._mesh.vertices), np.inf)
-        places = transforms.apply(matrix, given.trace_mm)
-        self._away = nearest_traced_mm(self._mesh.vertices, places[known:], self._away)
-        self._traced, self._matrix = given.trace_mm, matrix
-        found = self._guide.next_place(places, is_drawing)
-        return FollowedTrace(places, self._away, None if found is None else found.position)
+    task = task_by_method(scenario, given.task, given.method)
+    labels, moving, fixed = pair(given.touches, PointList(task.labels, task.fiducials))
+    places = transforms.apply(register(moving, fixed, RIGID, labels).matrix, given.trace_mm)
+    found = guide.next_place(places, is_drawing)
+    return FollowedTrace(places, guide.away_mm, None if found is None else found.position)
 
 
 def trace_guide(scenario: Scenario, mesh: HeadMesh) -> TraceGuide:
