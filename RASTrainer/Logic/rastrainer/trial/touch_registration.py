@@ -12,8 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
-from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
@@ -21,7 +19,7 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, pair
-from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.head.mesh import HeadMesh
 from rastrainer.head.trial_head import SkinShift
 from rastrainer.json_checks import list_of
 from rastrainer.json_records import record_from_json
@@ -45,7 +43,7 @@ from rastrainer.registration.surface_match import SurfaceMatch, match_surface
 from rastrainer.registration.target_error import TargetError, target_error, true_errors
 from rastrainer.scenario.scenario import Scenario, task_by_method
 from rastrainer.trial.record import PlayedMethod, TracePoint, TrialRecord, trace_points
-from rastrainer.trial.score_reference import point_normals
+from rastrainer.trial.score_reference import head_of, point_normals
 from rastrainer.trial.wording import Sentence, say
 
 
@@ -208,17 +206,6 @@ def register_trial(
         errors[kind] = target_error(fit, scenario.target.position_ras, localization)
     pause()
     return TouchRegistration(fits, errors)
-
-
-def head_of(scenario: Scenario) -> HeadMesh:
-    """Return the scenario's head, which is read once while its file is unchanged."""
-    path = scenario.head
-    return _read_head(path, path.stat().st_mtime_ns if path.is_file() else 0)
-
-
-@lru_cache(maxsize=1)
-def _read_head(path: Path, _changed: int) -> HeadMesh:
-    return read_head_mesh(path)
 
 
 def normals_at(
