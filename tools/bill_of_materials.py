@@ -5,7 +5,6 @@ Python packages and npm for those of the page.
 """
 
 import json
-import os
 import subprocess
 import sys
 import tempfile
@@ -35,7 +34,6 @@ def write_page_bill(output: Path = PAGE_BILL) -> int:
     """Write the bill of what goes into the page and return how many packages it names."""
     output.parent.mkdir(parents=True, exist_ok=True)
     node, npm = build_page.node_and_npm()
-    path = os.pathsep.join([str(Path(node).parent), os.environ.get("PATH", "")])
     words = ["sbom", "--package-lock-only", "--omit=dev", "--sbom-format=cyclonedx"]
     with tempfile.TemporaryDirectory() as temporary:
         # Its name is part of the bill.
@@ -48,7 +46,7 @@ def write_page_bill(output: Path = PAGE_BILL) -> int:
             if "packages" in content:
                 content["packages"][""]["version"] = NO_VERSION
             (folder / name).write_text(json.dumps(content), encoding="utf-8")
-        text = _run([*npm, *words], cwd=folder, env={**os.environ, "PATH": path})
+        text = _run([*npm, *words], cwd=folder, env=build_page.node_environment(node))
     bill = json.loads(text)
     # Differs from run to run.
     bill.pop("serialNumber", None)

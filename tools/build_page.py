@@ -68,10 +68,14 @@ def node_and_npm() -> tuple[str, list[str]]:
     return str(node), [str(node), str(modules / "npm" / "bin" / "npm-cli.js")]
 
 
-def _run(node: str, command: list[str]) -> None:
+def node_environment(node: str) -> dict[str, str]:
+    """Return the environment in which npm finds that Node.js."""
     folders = [str(Path(node).parent), os.environ.get("PATH", "")]
-    environment = {**os.environ, "PATH": os.pathsep.join(folders)}
-    if subprocess.run(command, cwd=WEB, env=environment).returncode != 0:
+    return {**os.environ, "PATH": os.pathsep.join(folders)}
+
+
+def _run(node: str, command: list[str]) -> None:
+    if subprocess.run(command, cwd=WEB, env=node_environment(node)).returncode != 0:
         raise RuntimeError(f"{' '.join(command)} has failed: see above.")
 
 

@@ -61,7 +61,7 @@ from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.slicer.turns import importInTurns
 ours = lambda: sum(name.split(".")[0] == "rastrainer" for name in sys.modules)
 turns, was, before = [], time.process_time(), ours()
-for _ in importInTurns("rastrainer.panels.panel_stack"):
+for _ in importInTurns("rastrainer.sections.panel_stack"):
     turns.append((1e3 * (time.process_time() - was), ours() - before))
     was, before = time.process_time(), ours()
 milliseconds, modules = zip(*turns)

@@ -13,7 +13,7 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.scenario.scenario import SkullKind, load_scenario
 from rastrainer.scenario.writer import HeadDraft, new_folder, write_scenario
-from rastrainer.slicer.logic.scenario_maker import HEAD_SHARE, planScenario
+from rastrainer.sections.new_scenario_logic import HEAD_SHARE, planScenario
 from rastrainer_simulator.authoring.make import head_process
 from rastrainer_simulator.cli.main import main
 from Testing.domain.head.spheres import sphere_mesh

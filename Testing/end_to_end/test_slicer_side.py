@@ -12,12 +12,12 @@ from slicer.util import arrayFromMarkupsControlPoints
 from rastrainer import transforms
 from rastrainer.igtl.client import Client
 from rastrainer.scenario.scenario import load_scenario
+from rastrainer.sections.scenario_cache import ScenarioCache
+from rastrainer.sections.trial_logic import TrialLogic
+from rastrainer.sections.trial_services import TrialServices
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.link.link_status import LinkState
-from rastrainer.slicer.logic.scenario_cache import ScenarioCache
-from rastrainer.slicer.logic.trial_logic import TrialLogic
-from rastrainer.slicer.logic.trial_services import TrialServices
 from rastrainer.study.database.study import Study
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.scene import HeadlessScene

@@ -14,8 +14,8 @@ from rastrainer.registration.localization_error import error_along_surface
 from rastrainer.registration.registration import register, register_all_kinds
 from rastrainer.registration.target_error import expected_tre, target_error
 from rastrainer.scenario.points import LABELS
+from rastrainer.sections.registration_logic import RegistrationLogic
 from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.logic.registration_logic import RegistrationLogic
 from rastrainer.slicer.scene.error_colors import TRE_SCALARS
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints, worldPoints
 from rastrainer.slicer.scene.registration_input import Choices
@@ -327,7 +327,7 @@ def test_without_a_registration_no_arrows_of_an_old_one_are_shown(table):
 
 @pytest.fixture
 def threads(monkeypatch):
-    """Returns the threads in which fits and normals are computed, by what is computed."""
+    """Returns the threads in which fits and normals are computed, by function."""
     found = {}
 
     def watch(place, function):
@@ -335,12 +335,12 @@ def threads(monkeypatch):
             found.setdefault(function.__name__, set()).add(threading.get_ident())
             return function(*arguments)
 
-        monkeypatch.setattr(f"rastrainer.slicer.{place}.{function.__name__}", watched)
+        monkeypatch.setattr(f"rastrainer.{place}.{function.__name__}", watched)
 
-    watch("scene.registration_input", nearest_on_mesh)
-    watch("logic.registration_comparison", register_all_kinds)
-    watch("logic.registration_comparison", target_error)
-    watch("logic.registration_comparison", expected_tre)
+    watch("slicer.scene.registration_input", nearest_on_mesh)
+    watch("sections.registration_logic", register_all_kinds)
+    watch("sections.registration_logic", target_error)
+    watch("sections.registration_logic", expected_tre)
     return found
 
 

@@ -177,7 +177,7 @@ def check_tasks(planning: PlanningSetup, tasks: Iterable[Task], first_seed: int 
     for task in tasks:
         wrong += _wrong_places(planning, task) or [
             *(_untouchable(planning, task, first_seed) or _unseen(planning, task)),
-            *([] if planning.views.placement(task).has_room else [f"{task.title}: {NO_ROOM}"]),
+            *([] if planning.views.on_skin(task)[1].has_room else [f"{task.title}: {NO_ROOM}"]),
             *_wrong_measures(task, measured(planning, task)),
         ]
     for easier, harder in pairwise(tasks):

@@ -81,7 +81,7 @@ def _reader(name: str, limits: str) -> Callable[[str], object]:
                 raise argparse.ArgumentTypeError(str(error)) from None
         try:
             value = kind(text)
-            if not is_range or kind(least) <= value <= float(most or math.inf):
+            if not is_range or kind(least) <= value <= (kind(most) if most else math.inf):
                 return value
         except (ValueError, OverflowError):
             pass

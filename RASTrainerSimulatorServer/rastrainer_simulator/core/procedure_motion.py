@@ -9,13 +9,14 @@ from typing import NamedTuple
 import numpy as np
 
 from rastrainer.head.mesh import HeadMesh, mesh_crossings, read_head_mesh
+from rastrainer.journal.entries import FeedChange
 from rastrainer.procedure.checks import planned_bone
 from rastrainer.procedure.geometry import BoneAhead, bone_ahead
 from rastrainer.protocol import Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.state import Event, EventKind, OperatorInput
+from rastrainer_simulator.state import Event, OperatorInput
 from rastrainer_simulator.teleoperation.commanded_motion import FollowingPath
 from rastrainer_simulator.texts.texts import LocalizedText, say
 from rastrainer_simulator.training.feed import LONGEST_FEED_M, NO_FEED, Feed, FeedDrive, HeadAhead
@@ -114,10 +115,8 @@ class ProcedureMotion:
         has_moved = self.feed.depth != before.depth
         if layer is before.layer(phase):
             return Fed(has_moved, way.is_by_stick)
-        depth_mm = MM_PER_M * self.feed.depth
-        data = {"phase": phase.value, "layer": layer.value, "feedMm": depth_mm}
-        event = Event(EventKind.FEED, sim_time, data)
-        return Fed(has_moved, way.is_by_stick, (event,))
+        entry = FeedChange(phase, layer.value, MM_PER_M * self.feed.depth)
+        return Fed(has_moved, way.is_by_stick, (Event(sim_time, entry),))
 
     def way(
         self, guide: GuideAxis, procedure: ProcedureState | None, stand_off_mm: float

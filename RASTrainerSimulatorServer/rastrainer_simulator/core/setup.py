@@ -10,6 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
+from rastrainer.journal.entries import JournalHeader, RecordedContent, RecordedMethod, RecordedSetup
+from rastrainer.json_records import record_to_json
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import FILE_NAME, Scenario, load_scenario
 from rastrainer_simulator.assets import asset_path
@@ -18,33 +20,6 @@ from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.robot.model import RobotModel, load_robot
 
 DEFAULT_SCENARIO = ("scenarios", "colin27")
-
-
-@dataclass(frozen=True)
-class RecordedContent:
-    """Name and hash of a scenario or a procedure."""
-
-    name: str
-    sha256: str
-
-
-@dataclass(frozen=True)
-class RecordedMethod:
-    """The method of a trial without fiducials, and the hash of the scenario's landmarks."""
-
-    name: str
-    landmarks_sha256: str
-
-
-@dataclass(frozen=True)
-class RecordedSetup:
-    """Identifies a setup in the header of a journal."""
-
-    scenario: RecordedContent
-    robot: str
-    settings: SimulationSettings
-    procedure: RecordedContent | None = None
-    method: RecordedMethod | None = None
 
 
 @dataclass(frozen=True)
@@ -70,14 +45,14 @@ class SimulationSetup:
         return RecordedSetup(
             RecordedContent(self.scenario.name, self.scenario_sha256),
             self.robot.name,
-            self.settings,
+            record_to_json(self.settings, with_defaults=True),
             RecordedContent(procedure, self.procedure_sha256.get(procedure, ""))
             if procedure
             else None,
-            RecordedMethod(method.value, self.landmarks_sha256) if by_landmarks else None,
+            RecordedMethod(method, self.landmarks_sha256) if by_landmarks else None,
         )
 
-    def difference(self, recorded: RecordedSetup) -> str:
+    def difference(self, recorded: RecordedSetup | JournalHeader) -> str:
         """Return what a trial was recorded with that is not the same here, "" for nothing."""
         procedure, method = recorded.procedure, recorded.method
         if recorded.scenario.sha256 != self.scenario_sha256:

@@ -20,8 +20,8 @@ from pathlib import Path
 
 from rastrainer.errors import RASTrainerError
 from rastrainer.files.writing import make_private_folder, open_private
+from rastrainer.journal.entries import iso
 from rastrainer.journal.folder import lock
-from rastrainer.journal.journal_file import iso
 
 LARGEST_FILE = 1_000_000
 OLDER_FILES = 5

@@ -9,7 +9,7 @@ from __future__ import annotations
 import contextlib
 import os
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from datetime import datetime, timezone
 from pathlib import Path
@@ -17,6 +17,7 @@ from typing import Any
 
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.files.writing import keep_others_out, make_private_folder, open_private
+from rastrainer.journal.entries import Entry, Line, Stamp
 from rastrainer.journal.folder import (
     LOCK_NAME,
     STARTED_BY,
@@ -107,9 +108,12 @@ class Journal:
         self._count, self.last_hash, self._size = count, last_hash, size + len(data)
         self._unwritten.clear()
 
-    def append(self, entry: Mapping[str, Any]) -> None:
+    def write_lines(self, lines: Iterable[Line], sync: bool) -> None:
+        self.write([line.to_json() for line in lines], sync)
+
+    def append(self, at: Stamp, entry: Entry) -> None:
         try:
-            self.write([entry], sync=True)
+            self.write_lines([Line(at, entry)], sync=True)
         finally:
             self.close()
 

@@ -14,13 +14,25 @@ import numpy as np
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError, RASTrainerError
-from rastrainer.journal.folder import SUFFIX, JournalNumber, journals_of
-from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal, stamp
+from rastrainer.journal.entries import (
+    AcceptedTouch,
+    Acknowledged,
+    Attempt,
+    Continued,
+    FinalRegistration,
+    JournalHeader,
+    Line,
+    PhaseChange,
+    Scored,
+    Stamp,
+    read_line,
+)
+from rastrainer.journal.folder import SUFFIX, journals_of
+from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
 from rastrainer.journal.recording import WholeRecording
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.procedure.record import UsedRegistration
 from rastrainer.protocol import PROCEDURE_PHASES, AbortReason, Phase
-from rastrainer.scenario.scenario import method_of
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TouchedPoint, TrialRecord
 from rastrainer_simulator.core.interrupted_trial import (
@@ -31,7 +43,6 @@ from rastrainer_simulator.core.interrupted_trial import (
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training.head_pose import Truth
-from rastrainer_simulator.vectors import vector
 
 FIRST_REACH = 1 << 16
 """Bytes at the end of a journal that are read first."""
@@ -81,14 +92,16 @@ class ArchivedTrial:
         touches = zip(self.record.labels, self.record.positions_mm, strict=True)
         return self.truth.revealed(matrix, touches)
 
-    def after(self, command: str, arguments: Mapping[str, Any]) -> tuple[str, ArchivedTrial]:
-        """Return the trial after a command, and the kind of its entry; "" if nothing changes.
+    def after(
+        self, command: str, arguments: Mapping[str, Any]
+    ) -> tuple[type[FinalRegistration | Scored] | None, ArchivedTrial]:
+        """Return the trial after a command, and its kind of entry; None if nothing changes.
 
         A registration is final, because it reveals the truth.
         """
         if command == CommandName.SUBMIT_REGISTRATION:
             if self.registration is None:
-                return "registration", replace(self, registration=arguments)
+                return FinalRegistration, replace(self, registration=arguments)
             kept, given = map(UsedRegistration.from_arguments, (self.registration, arguments))
             if not kept.agrees_with(given):
                 raise InputError(say("registration is final"))
@@ -96,8 +109,8 @@ class ArchivedTrial:
             if self.registration is None:
                 raise InputError(say("no registration"))
             if self.scored != arguments:
-                return "scored", replace(self, scored=arguments)
-        return "", self
+                return Scored, replace(self, scored=arguments)
+        return None, self
 
 
 @dataclass(frozen=True)
@@ -117,65 +130,61 @@ class ArchivedAttempt:
         }
 
 
-def attempt_entry(record: AbortedTrial, times: Mapping[str, Any]) -> dict[str, Any]:
-    return {"kind": "attempt", **times, "record": record_to_json(record)}
-
-
 def interrupted_attempt(reading: JournalReading) -> AbortedTrial | None:
     """Return the record of the trial of an open journal; None if the trial is over.
 
     A trial that was interrupted by the end of the simulator and never resumed counts as aborted:
     otherwise ending the simulator would be a way to discard a bad trial.
     """
-    if not reading.entries or InterruptedTrial.of(reading.entries) is None:
+    lines = tuple(reading.lines())
+    if not lines or InterruptedTrial.of(lines) is None:
         return None
     with refusing_malformed(MALFORMED):
-        return _aborted(reading.entries)
+        return _aborted(reading.header, lines)
 
 
-def _aborted(entries: tuple[Mapping[str, Any], ...]) -> AbortedTrial:
-    header, trajectory = entries[0], WholeRecording.of(entries).trajectory()
-    touches = {entry["label"]: entry for entry in entries if entry["kind"] == "touch"}
+def _aborted(header: JournalHeader, lines: tuple[Line, ...]) -> AbortedTrial:
+    trajectory = WholeRecording.of(lines).trajectory()
+    touches = {entry.label: (at, entry) for at, entry in lines if isinstance(entry, AcceptedTouch)}
     points = tuple(
         TouchedPoint(
-            label=touch["label"],
+            label=label,
             # Where the tip was, unless the skin had shifted.
-            position_mm=vector(touch.get("measuredMm", touch["positionMm"])),
-            sim_time_s=touch["simTimeS"] - header["tickS"],
-            utc=touch["utc"],
+            position_mm=touch.measured_mm or touch.position_mm,
+            sim_time_s=at.sim_time_s - header.tick_s,
+            utc=at.utc,
         )
-        for touch in (touches[each.label] for each in trajectory.touches)
+        for label, (at, touch) in ((each.label, touches[each.label]) for each in trajectory.touches)
     )
-    phases = [entry["phase"] for entry in entries if entry["kind"] in ("phase", "continued")]
-    stage = next((phase for phase in reversed(phases) if phase != Phase.PAUSED.value), "")
+    phases = [line.entry.phase for line in lines if isinstance(line.entry, PhaseChange | Continued)]
+    stage = next((phase for phase in reversed(phases) if phase is not Phase.PAUSED), None)
     # A procedure that is paused is aborted in what it was paused in.
-    phase = stage if stage in {phase.value for phase in PROCEDURE_PHASES} else phases[-1]
-    if phase == Phase.COMPLETE.value:
+    phase = stage if stage in PROCEDURE_PHASES else phases[-1]
+    if phase is Phase.COMPLETE:
         elapsed_s = trajectory.intended[-1].time_s
     else:
         # Samples are taken while the trial's time runs.
         elapsed_s = float(trajectory.times_s[-1]) if len(trajectory.times_s) else 0.0
-    number = record_from_json(JournalNumber, header)
     record = AbortedTrial(
-        trial_id=header["trialId"],
-        trainee=header["trainee"],
-        task=header["task"],
-        mode=header["mode"],
-        scenario=header["scenario"]["name"],
-        started_utc=header["utc"],
-        aborted_utc=entries[-1]["utc"],
+        trial_id=header.trial_id,
+        trainee=header.trainee,
+        task=header.task,
+        mode=header.mode,
+        scenario=header.scenario.name,
+        started_utc=lines[0].at.utc,
+        aborted_utc=lines[-1].at.utc,
         elapsed_s=elapsed_s,
-        phase=phase,
+        phase=phase.value,
         reason=AbortReason.ABANDONED.value,
         points=points,
         rejected_touches=len(trajectory.refused),
         undone_touches=trajectory.undone,
-        versions=header["versions"],
-        touch_rule=header["settings"]["training"]["touchRule"],
-        method=method_of(header["method"]["name"] if "method" in header else None),
+        versions=header.versions,
+        touch_rule=header.settings["training"]["touchRule"],
+        method=header.registration_method,
         traced=len(trajectory.traced),
-        number=number.number,
-        series=number.series,
+        number=header.number,
+        series=header.series,
     )
     return record_from_json(AbortedTrial, record_to_json(record))
 
@@ -226,20 +235,20 @@ class TrialArchive:
             record = interrupted_attempt(reading)
             if record is None:
                 return
-            journal, last = Journal.reopened(reading), reading.entries[-1]
-            entry = attempt_entry(record, stamp(last["tick"], last["simTimeS"]))
-            journal.append({**entry, "seed": reading.header["seed"]})
+            journal, last = Journal.reopened(reading), read_line(reading.entries[-1]).at
+            attempt = Attempt(record_to_json(record), reading.seed)
+            journal.append(Stamp.now(last.tick, last.sim_time_s), attempt)
         except RASTrainerError as error:
             self.problems.append(str(error))
         else:
             self.add(ArchivedAttempt(record), journal)
 
     def answer(
-        self, command: str, arguments: Mapping[str, Any], times: Mapping[str, Any]
+        self, command: str, arguments: Mapping[str, Any], at: Stamp, sender: str = ""
     ) -> dict[str, Any]:
         """Carry out a command about one of the trials and return the answer's data.
 
-        `times` are the stamps of the entry that is appended to the trial's journal.
+        `at` is for the entry that is appended to the trial's journal.
 
         Raises:
             RecordError: its journal cannot be written.
@@ -250,12 +259,12 @@ class TrialArchive:
         arguments = json.loads(json.dumps(arguments))
         if command == CommandName.ACKNOWLEDGE_TRIAL:
             if not trial.acknowledged:
-                journal.append({"kind": "acknowledged", **times})
+                journal.append(at, Acknowledged(sender))
                 trial = replace(trial, acknowledged=True)
         elif isinstance(trial, ArchivedTrial):
             kind, changed = trial.after(command, arguments)
-            if kind:
-                journal.append({"kind": kind, **times, "arguments": arguments})
+            if kind is not None:
+                journal.append(at, kind(sender, arguments))
                 trial = changed
         elif command != CommandName.GET_TRIAL:
             raise InputError(f"The trial {trial_id} was aborted; it has no score.")
@@ -314,20 +323,20 @@ def archived_trial(reading: JournalReading) -> ArchivedTrial | None:
     """Return the trial of a journal, None if it was never registered."""
     if reading.integrity is Integrity.ALTERED:
         raise InputError(f"{reading.path} is {reading.sentence}; the trial is not delivered.")
+    kinds = ("registered", "registration", "scored", "acknowledged")
+    registered, registrations, scores, acknowledged = map(reading.of_kind, kinds)
+    if not registered:
+        return None
     try:
-        registered, registrations, scores = map(
-            reading.of_kind, ("registered", "registration", "scored")
-        )
-        if not registered:
-            return None
-        record = record_from_json(TrialRecord, registered[-1]["record"])
+        values = registered[-1]
+        record = record_from_json(TrialRecord, values.get("record"))
         trial = ArchivedTrial(
-            record=replace(record, journal_sha256=registered[-1]["sha256"]),
-            truth=record_from_json(Truth, registered[-1]["truth"]),
-            seed=reading.header["seed"],
+            record=replace(record, journal_sha256=values["sha256"]),
+            truth=record_from_json(Truth, values.get("truth")),
+            seed=values["seed"],
             registration=registrations[0]["arguments"] if registrations else None,
             scored=scores[-1]["arguments"] if scores else None,
-            acknowledged=bool(reading.of_kind("acknowledged")),
+            acknowledged=bool(acknowledged),
         )
         # Check that the data of GetTrial and SubmitRegistration can be computed.
         replace(trial, registration=trial.registration or {"matrix": np.eye(4)}).summary()

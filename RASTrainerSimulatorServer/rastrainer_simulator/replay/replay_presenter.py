@@ -17,7 +17,7 @@ from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage
 from rastrainer_simulator.replay.playback import PERIOD_S, Playback
 from rastrainer_simulator.state import SimulationState, StepResult
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label, pair_label
-from rastrainer_simulator.viewpoint.best_view import BestView
+from rastrainer_simulator.viewpoint.best_view import BestView, BestViews
 from rastrainer_simulator.viewpoint.view_control import (
     STILL,
     Pictures,
@@ -25,7 +25,6 @@ from rastrainer_simulator.viewpoint.view_control import (
     camera_pose,
     orbit_to,
 )
-from rastrainer_simulator.viewpoint.view_search import BestViews
 
 STEP_S = 5.0
 SLOWLY = 0.5

@@ -11,21 +11,14 @@ import numpy as np
 
 from rastrainer.scenario.scenario import OperatingTable, Stand
 from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.scene import nodes
 from rastrainer_simulator.scene.nodes import (
-    CABINET,
     DARK,
-    DISPLAY,
-    DOOR,
-    FLOOR,
-    FLOOR_BORDER,
-    LAMP_GLASS,
     MAT,
     STEEL,
     TABLE_TOP,
     TRACE,
-    WALL,
-    WALL_BAND,
-    WALL_SEAM,
+    Material,
     Node,
     Surface,
     merged,
@@ -39,13 +32,7 @@ _SHAPES: dict[str, Callable[..., Surface]] = {
     "post": post,
     "turned": turned,
 }
-_MATERIALS = {
-    material.name: material
-    for material in (
-        *(FLOOR, FLOOR_BORDER, WALL, WALL_BAND, WALL_SEAM, DOOR, CABINET, STEEL),
-        *(DARK, DISPLAY, LAMP_GLASS),
-    )
-}
+_MATERIALS = {each.name: each for each in vars(nodes).values() if isinstance(each, Material)}
 
 
 def room_nodes() -> list[Node]:

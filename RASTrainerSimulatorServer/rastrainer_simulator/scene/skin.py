@@ -200,7 +200,23 @@ def arrows(skin: Skin, points: np.ndarray, longest: float = LENGTHS[0]) -> list[
         start, goal = points[index], points[index + 1]
         others = np.delete(points, (index, index + 1), axis=0)
         made.append(_between(skin, start, goal, others, longest, made))
-    return _kept_apart(made)
+    # Shorten arrows until none comes near another; very short arrows may still meet.
+    while True:
+        close = [
+            (i, j)
+            for j in range(len(made))
+            for i in range(j)
+            if _distance(made[i], made[j]) < APART
+            and max(made[i].length, made[j].length) > SHORTEST
+        ]
+        if not close:
+            return made
+        for pair in close:
+            longer = max(pair, key=lambda index: made[index].length)
+            arrow = made[longer]
+            if arrow.length > SHORTEST:
+                end = max(arrow.end - STEP, arrow.start + SHORTEST)
+                made[longer] = Arrow(arrow.path, arrow.outward, arrow.start, end)
 
 
 def arrow_shape(skin: Skin, arrow: Arrow) -> Shape:
@@ -281,27 +297,6 @@ def _walk(
         path.append(place)
         normals.append(outward)
     return np.array(path), np.array(normals)
-
-
-def _kept_apart(made: list[Arrow]) -> list[Arrow]:
-    """Shorten arrows until none comes near another; very short arrows may still meet."""
-    made = list(made)
-    while True:
-        close = [
-            (i, j)
-            for j in range(len(made))
-            for i in range(j)
-            if _distance(made[i], made[j]) < APART
-            and max(made[i].length, made[j].length) > SHORTEST
-        ]
-        if not close:
-            return made
-        for pair in close:
-            longer = max(pair, key=lambda index: made[index].length)
-            arrow = made[longer]
-            if arrow.length > SHORTEST:
-                end = max(arrow.end - STEP, arrow.start + SHORTEST)
-                made[longer] = Arrow(arrow.path, arrow.outward, arrow.start, end)
 
 
 def _distance(first: Arrow, second: Arrow) -> float:

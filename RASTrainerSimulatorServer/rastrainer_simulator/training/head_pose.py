@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rastrainer.head.mesh import RAS_LIMIT_MM, HeadMesh, read_head_mesh
+from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.trial_head import UNMOVED, SkinShift
-from rastrainer.json_checks import point, transform
+from rastrainer.journal.entries import RecordedTruth
 from rastrainer.json_records import record_to_json
 from rastrainer.registration.target_error import true_errors
 from rastrainer.transforms import MM_PER_M
@@ -24,24 +24,8 @@ if TYPE_CHECKING:
     from rastrainer.scenario.scenario import Scenario
 
 
-_RasPoint = Annotated[np.ndarray, point(RAS_LIMIT_MM)]
-
-
-@dataclass(frozen=True)
-class Truth:
-    """True pose of the head. Hidden from clients until the trial's registration is final.
-
-    Attributes:
-        head_to_world: (4, 4) float, mm, from the MRI's RAS to World.
-        target_ras: (3,) float, mm, where the true error of a registration is reported.
-        fiducials_ras: label → (3,) float, mm, of the trial's task.
-        skin: its shift, compared with the images.
-    """
-
-    head_to_world: Annotated[np.ndarray, transform]
-    target_ras: _RasPoint
-    fiducials_ras: Mapping[str, _RasPoint]
-    skin: SkinShift = UNMOVED
+class Truth(RecordedTruth):
+    """True pose of the head. Hidden from clients until the trial's registration is final."""
 
     @classmethod
     def of(

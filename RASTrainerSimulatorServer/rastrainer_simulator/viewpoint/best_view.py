@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import logging
 import math
 from collections.abc import Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING
@@ -11,14 +13,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rastrainer import transforms
+from rastrainer.errors import RASTrainerError
 from rastrainer.head.mesh import HeadMesh, outward_normals, read_head_mesh
 from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.collision.clearance import LineOfSight
 from rastrainer_simulator.collision.collision import head_collision
-from rastrainer_simulator.collision.line_of_sight import LineOfSight
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.vectors import (
     Vector,
@@ -37,6 +41,8 @@ from rastrainer_simulator.vectors import (
 
 if TYPE_CHECKING:
     from rastrainer_simulator.scene.skin_marks import Placement
+
+_log = logging.getLogger(__name__)
 
 WIDEST_DEG = 60.0
 """Angle between the skin's normal and the line to the eye."""
@@ -98,8 +104,8 @@ class ViewedPoint:
 class PointViews:
     """The views of a fiducial in any posture of the arm.
 
-    From the `eyes` (k, 3), World, m, the best first, head and table leave fiducial and number
-    visible. `planned` is the posture in which it is to be touched, None if the robot cannot.
+    Head and table leave fiducial and number visible from the `eyes` (k, 3), World, m, the best
+    first. `planned` is the posture in which it is to be touched, None if the robot cannot.
     """
 
     point: ViewedPoint
@@ -253,7 +259,7 @@ class TouchViews:
         pose = np.array(head_to_world, dtype=float)
         pose[:3, 3] /= MM_PER_M
         self._collision.set_head_pose(pose)
-        in_head, placement = self._on_skin(task)
+        in_head, placement = self.on_skin(task)
         normals = in_head @ pose[:3, :3].T
         places, numbers = (
             transforms.apply(pose, points / MM_PER_M)
@@ -303,16 +309,13 @@ class TouchViews:
             view = None if views.planned is None else best_view(views, (views.planned,))
             yield label, view if view is not None and view.is_whole else None
 
-    def placement(self, task: Task) -> Placement:
-        return self._on_skin(task)[1]
-
     def _held(self, q: Sequence[float]) -> HeldTool:
         links = self._kinematics.links(q)
         tip = links[self._robot.tip.name]
         sight = self._collision.line_of_sight(links)
         return HeldTool(vector(tip[:3, 3]), vector(tip[:3, 2]), sight)
 
-    def _on_skin(self, task: Task) -> tuple[np.ndarray, Placement]:
+    def on_skin(self, task: Task) -> tuple[np.ndarray, Placement]:
         """Return the skin's normals at a task's fiducials, (n, 3), and where its marks are."""
         key = task.fiducials.tobytes()
         if key not in self._known:
@@ -324,3 +327,56 @@ class TouchViews:
             placement = place_marks(Skin(self._head), task.fiducials, task.labels)
             self._known[key] = normals, placement
         return self._known[key]
+
+
+@dataclass(frozen=True)
+class _ViewedTrial:
+    setup: SimulationSetup
+    task: Task
+    head_to_world: np.ndarray
+
+
+class BestViews:
+    """Finds the views of one trial's touches, in a thread.
+
+    Results for the head and the task are kept for the next trial, as computing them makes ticks
+    late.
+    """
+
+    def __init__(self) -> None:
+        # Set aside while it holds the interpreter, it would make the control loop wait.
+        self._worker = ThreadPoolExecutor(1, "best views", raise_thread_priority)
+        self._trial: _ViewedTrial | None = None
+        self._views: tuple[_ViewedTrial, TouchViews] | None = None
+
+    def look(self, setup: SimulationSetup, task: str, head_to_world: np.ndarray) -> None:
+        """Prepare the searches of a trial; HeadToWorld is the trial's, (4, 4) float, mm."""
+        trial = self._trial = _ViewedTrial(setup, setup.scenario.task(task), head_to_world)
+        for label in trial.task.labels:
+            self._worker.submit(self._find, trial, label)
+
+    def search(self, label: str, q: Sequence[float]) -> Future[BestView | None]:
+        """Look for the best view of a fiducial while the arm has joint angles `q`, rad."""
+        return self._worker.submit(self._find, self._trial, label, q)
+
+    def forget(self) -> None:
+        self._trial = None
+
+    def _find(
+        self, trial: _ViewedTrial | None, label: str, q: Sequence[float] | None = None
+    ) -> BestView | None:
+        """Return the best view; without a posture only what does not depend on it is computed."""
+        if trial is None or trial is not self._trial:
+            return None
+        try:
+            known = self._views
+            is_same_robot = known is not None and known[0].setup is trial.setup
+            views = known[1] if known is not None and is_same_robot else TouchViews(trial.setup)
+            if known is None or known[0] is not trial:
+                views.begin(trial.task, trial.head_to_world)
+                self._views = trial, views
+            views.views(label)
+        except (RASTrainerError, OSError):
+            _log.exception("The best views of %s cannot be found", trial.task.name)
+            return None
+        return None if q is None else views.best(label, q)

@@ -15,7 +15,7 @@ from rastrainer.procedure.plan import read_procedure_meshes
 from rastrainer.procedure.record import UsedRegistration
 from rastrainer.registration.registration import register
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.logic.views import AlongInstrument
+from rastrainer.sections.views import AlongInstrument
 from rastrainer.trial.procedure_outcome import (
     ProcedureMeasures,
     ProcedureOutcome,

@@ -156,6 +156,7 @@ def placed(tmp_path, tasks):
     return replace(WISHES, task_files=(path,))
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_hand_placed_fiducials_become_tasks_and_a_skull_made_meanwhile_is_included(
     tmp_path, tasks, placed
 ):

@@ -8,8 +8,10 @@ import pytest
 from rastrainer.head.trial_head import Perturbation
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.authoring import make
 from rastrainer_simulator.cli.main import command_parser, main
 from rastrainer_simulator.cli.scenario import options_of
+from Testing.domain.scenario.made_up_scenario import png
 
 
 def wished(*words):
@@ -89,7 +91,8 @@ def copied(copy, *words):
     return main(["scenario", "plan", str(COLIN27), "-o", str(copy), *words])
 
 
-def test_a_copy_with_a_trajectory_keeps_head_tasks_target_and_provenance(tmp_path):
+def test_a_copy_with_a_trajectory_keeps_head_tasks_target_and_provenance(tmp_path, monkeypatch):
+    monkeypatch.setattr(make, "draw_preview", lambda path, *_: path.write_bytes(png()))
     words = ("--title", "With a biopsy", "--trajectory", "Biopsy", *ENTRY, *INSIDE)
     assert copied(tmp_path / "copy", *words) == 0
     before, copy = load_scenario(COLIN27), load_scenario(tmp_path / "copy")

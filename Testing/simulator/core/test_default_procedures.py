@@ -22,7 +22,7 @@ SHIFT_MM = (0.6, -0.5, 0.4)
 PAST_INNER_M = 0.0005
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def surgeon(anywhere):
     """A surgeon at the default head."""
     return Surgeon(Simulation(anywhere, SEED))

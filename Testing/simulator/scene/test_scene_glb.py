@@ -64,7 +64,7 @@ def test_the_skin_is_the_scenarios_head_in_meters(glb, scenario):
     head = read_head_mesh(scenario.head)
     vertices = glb.vertices("skin")
     assert vertices[: len(head.vertices)] == pytest.approx(head.vertices / MM_PER_M, abs=1e-6)
-    # Those at the base's sharp rim are there twice: each side of it has a normal of its own.
+    # Vertices at the base's sharp rim are there twice: each side has its normal.
     assert np.isin(vertices[len(head.vertices) :], vertices[: len(head.vertices)]).all()
     assert len(vertices) < 1.05 * len(head.vertices)
 

@@ -17,9 +17,9 @@ from rastrainer_simulator.scene.skin_marks import (
 RADIUS = 80.0
 FRONT = RADIUS * np.array([[0.0, 1.0, 0.0], [0.5, 0.75**0.5, 0.0], [-0.5, 0.75**0.5, 0.0]])
 LABELS = [str(number) for number in range(1, 16)]
-SEEDS = ("random 0", "crowded 3")
-TASKS = ("trial-run", "task-5")
-OTHER_TASKS = ("task-1", "task-2", "task-3", "task-4")
+SEEDS = ("crowded 3",)
+TASKS = ("task-5",)
+OTHER_TASKS = ("trial-run", "task-1", "task-2", "task-3", "task-4")
 
 
 @pytest.fixture(scope="module")

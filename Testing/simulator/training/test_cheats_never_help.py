@@ -41,7 +41,7 @@ def scenario(request, tmp_path_factory):
     random = np.random.default_rng(request.param)
     mesh = egg()
     head = HeadMesh(mesh.vertices * random.uniform(0.85, 1.1, 3), mesh.triangles)
-    # From a patch of skin to all of it.
+    # A patch of skin, and all of it.
     center = random.normal(size=3)
     center[2] = abs(center[2])
     width = random.uniform(60.0, 200.0)
@@ -150,10 +150,10 @@ def test_a_bias_of_two_millimeters_never_helps(scenario, hands):
 
 @pytest.mark.parametrize("height_mm", [2.0, 5.0, 9.0])
 def test_hovering_never_helps(scenario, hands, height_mm):
-    """By less, chance may decide: a height of 1 mm is within the scatter of these hands."""
+    """Chance may decide below that: a height of 1 mm is within the scatter of these hands."""
     normals = fiducial_normals(scenario, "task-1")
     honest = score_of(scenario, hands, settings=ANY_HEIGHT)
-    # Above each fiducial, and off all of them by the same vector.
+    # Touches above each fiducial, and off all fiducials by the same vector.
     for offset in (normals, np.tile(normals.mean(axis=0), (15, 1))):
         # The errors along the skin must not take a touch out of its fiducial's reach.
         away = 0.9 * height_mm * offset / np.linalg.norm(offset, axis=1, keepdims=True)

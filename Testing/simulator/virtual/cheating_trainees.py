@@ -22,6 +22,7 @@ from rastrainer_simulator.collision.robot_shape import sphere_directions
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record.trial_entries import TrialEntries
+from rastrainer_simulator.record.trial_records import with_record
 from rastrainer_simulator.state import (
     NEUTRAL_STICKS,
     Answer,
@@ -160,8 +161,9 @@ class _Notes:
 
     def played(self, simulation: Simulation) -> PlayedTrial:
         record = self._unmeasured.measured()
-        entries = tuple(self._entries.taken())
-        return PlayedTrial(record, Recording.of(entries).trajectory(), simulation.truth, entries)
+        lines = with_record(self._entries.taken(), record)
+        entries = tuple(line.to_json() for line in lines)
+        return PlayedTrial(record, Recording.of(lines).trajectory(), simulation.truth, entries)
 
 
 class Pilot:

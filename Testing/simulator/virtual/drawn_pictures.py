@@ -11,8 +11,8 @@ import numpy as np
 from rastrainer.head.mesh import HeadMesh, outward_normals, read_head_mesh
 from rastrainer.scenario.points import Task
 from rastrainer.transforms import MM_PER_M, apply
+from rastrainer_simulator.collision.clearance import LineOfSight
 from rastrainer_simulator.collision.collision import head_collision
-from rastrainer_simulator.collision.line_of_sight import LineOfSight
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.scene.skin import Skin

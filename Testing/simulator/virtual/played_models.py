@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import t
 
+from rastrainer.journal.entries import AcceptedTouch
 from rastrainer.protocol import Phase, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
@@ -24,7 +25,7 @@ from rastrainer_simulator.flow.running_presenter import RunningPresenter
 from rastrainer_simulator.flow.session.preferences import PREFERENCES_FILE
 from rastrainer_simulator.flow.session.services import FlowServices
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.state import TOUCH_ERRORS, Answer, EventKind, StepResult, TouchStage
+from rastrainer_simulator.state import TOUCH_ERRORS, Answer, StepResult, TouchStage
 from Testing.sdl_virtual_gamepad import VirtualGamepad
 from Testing.simulator.at_once import at_once
 from Testing.simulator.flow.trainee import Trainee
@@ -110,7 +111,7 @@ class WatchedLandings:
             self._is_in_contact = is_in_contact
             self._deepest_mm = max(self._deepest_mm, MM_PER_M * state.depth)
             self._was_red = self._was_red or state.touch in TOUCH_ERRORS
-        if any(event.kind is EventKind.TOUCH for event in result.events):
+        if any(isinstance(event.entry, AcceptedTouch) for event in result.events):
             elapsed = state.elapsed - self._since
             self.seen.append((self._deepest_mm, self._was_red, self._tries, elapsed))
             self._begin(state.elapsed)
