@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.head.mesh import HeadMesh, mesh_crossings, read_head_mesh
 from rastrainer.journal.entries import FeedChange
 from rastrainer.procedure.checks import planned_bone
-from rastrainer.procedure.geometry import BoneAhead, bone_ahead, mesh_crossings
+from rastrainer.procedure.geometry import BoneAhead, bone_ahead
 from rastrainer.protocol import Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.touch_planner import PlanReach
