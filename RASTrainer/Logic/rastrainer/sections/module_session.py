@@ -16,8 +16,8 @@ from rastrainer.sections.new_scenario_logic import ScenarioMaker
 from rastrainer.sections.procedure_logic import ProcedureLogic
 from rastrainer.sections.procedure_plan_logic import ProcedurePlanLogic
 from rastrainer.sections.registration_logic import RegistrationLogic
-from rastrainer.sections.scenario_cache import ScenarioCache
-from rastrainer.sections.scenario_logic import ScenarioFiles, ScenarioLogic
+from rastrainer.sections.scenario_files import ScenarioCache, ScenarioFiles
+from rastrainer.sections.scenario_logic import ScenarioLogic
 from rastrainer.sections.score_logic import ReplayLogic
 from rastrainer.sections.simulator_logic import SimulatorLogic
 from rastrainer.sections.study_logic import StudyLogic
