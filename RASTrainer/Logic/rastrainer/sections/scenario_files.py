@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from itertools import count
 from pathlib import Path
 from typing import Any
@@ -40,16 +40,15 @@ class ScenarioCache:
     """
 
     def __init__(self, *libraries: Path) -> None:
-        self._list = partial(list_scenarios, libraries, self._listOne)
+        self._libraries = libraries
         self._lines: dict[Path, tuple[tuple, ListedScenario]] = {}
         self._listed: tuple[ListedScenario, ...] | None = None
         self._scenarios: dict[str, tuple[tuple[int, int], Scenario]] = {}
 
     def listed(self) -> tuple[ListedScenario, ...]:
         """Return the available scenarios; an unusable one says why."""
-        listed = self._listed
-        if listed is None:
-            self._listed = listed = tuple(self._list())
+        if (listed := self._listed) is None:
+            self._listed = listed = tuple(list_scenarios(self._libraries, self._listOne))
         return listed
 
     def _listOne(self, folder: Path) -> ListedScenario:
@@ -105,11 +104,10 @@ class ScenarioCache:
 
 def _stamp(path: Path) -> tuple[int, int]:
     """Return a value that changes with a file."""
-    try:
+    with contextlib.suppress(OSError):
         status = path.stat()
-    except OSError:
-        return 0, 0
-    return status.st_mtime_ns, status.st_size
+        return status.st_mtime_ns, status.st_size
+    return 0, 0
 
 
 class ScenarioFiles:
