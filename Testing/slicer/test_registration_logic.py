@@ -427,17 +427,6 @@ def test_with_turns_each_part_of_a_registration_is_shown_in_a_separate_turn(
     )
 
 
-def test_with_turns_the_result_is_the_same_as_at_once(table, logic_in_turns, work):
-    table.touch()
-    logic_in_turns.process()
-    in_turns(work)
-    at_once, in_parts = table.logic.comparison, logic_in_turns.comparison
-    for kind in KINDS:
-        np.testing.assert_array_equal(in_parts.fits[kind].matrix, at_once.fits[kind].matrix)
-        assert in_parts.errors[kind] == at_once.errors[kind]
-    np.testing.assert_array_equal(in_parts.leaveOneOut[RIGID], at_once.leaveOneOut[RIGID])
-
-
 def test_lists_that_are_deleted_between_two_turns_are_not_shown(table, logic_in_turns, work):
     setPoints(capturedPointsNode(table.scene), LABELS, table.touched)
     logic_in_turns.process()
