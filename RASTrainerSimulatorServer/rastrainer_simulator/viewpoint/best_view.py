@@ -311,8 +311,7 @@ class TouchViews:
         key = task.fiducials.tobytes()
         if key not in self._known:
             # Here, since an idle simulator does without VTK.
-            from rastrainer_simulator.scene.skin import Skin
-            from rastrainer_simulator.scene.skin_marks import place_marks
+            from rastrainer_simulator.scene.skin_marks import Skin, place_marks
 
             normals = outward_normals(self._head, task.fiducials)
             placement = place_marks(Skin(self._head), task.fiducials, task.labels)
