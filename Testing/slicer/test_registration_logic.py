@@ -14,8 +14,8 @@ from rastrainer.registration.localization_error import error_along_surface
 from rastrainer.registration.registration import register, register_all_kinds
 from rastrainer.registration.target_error import expected_tre, target_error
 from rastrainer.scenario.points import LABELS
+from rastrainer.sections.registration_logic import RegistrationLogic
 from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.logic.registration_logic import RegistrationLogic
 from rastrainer.slicer.scene.error_colors import TRE_SCALARS
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints, worldPoints
 from rastrainer.slicer.scene.registration_input import Choices
@@ -74,7 +74,7 @@ def test_three_fits_are_shown_side_by_side_with_the_expected_error(table):
         assert fit.fre_mm == pytest.approx(again.fre_mm, abs=1e-5)
         normals = again.fixed_mm / np.linalg.norm(again.fixed_mm, axis=1, keepdims=True)
         localization = error_along_surface(again, normals)
-        error = target_error(again, table.scenario.target_position, localization)
+        error = target_error(again, table.scenario.target.position_ras, localization)
         assert table.logic.comparison.errors[kind].expected_mm == pytest.approx(
             error.expected_mm, rel=0.02
         )
@@ -210,7 +210,7 @@ def test_a_stated_localization_error_weights_only_the_rigid_fit_and_can_be_undon
     again = register(table.touched, fixed, "rigid", LABELS, weights)
     np.testing.assert_allclose(weighted.fits["rigid"].matrix, again.matrix, atol=1e-4)
     assert weighted.fits["affine"].fre_mm == plain.fits["affine"].fre_mm
-    expected = target_error(again, table.scenario.target_position)
+    expected = target_error(again, table.scenario.target.position_ras)
     assert weighted.errors["rigid"].expected_mm == pytest.approx(expected.expected_mm, rel=1e-3)
     table.logic.change(table.logic.choices.without(("1", "2")))
     assert len(table.logic.comparison.fits["rigid"].weights) == 13
@@ -289,7 +289,7 @@ def test_color_bars_beside_the_head_are_labeled_in_mm(table):
 def test_points_off_the_head_have_an_isotropic_error(table):
     setPoints(table.fixed, LABELS, 0.5 * table.scenario.task("task-1").fiducials)
     table.touch(transforms.apply(table.scenario.head_to_world, 0.5 * table.touched_on_mri))
-    shown, position = table.logic.comparison.shown, table.scenario.target_position
+    shown, position = table.logic.comparison.shown, table.scenario.target.position_ras
     assert table.logic.comparison.targetError(position) == target_error(shown, position)
 
 
@@ -327,7 +327,7 @@ def test_without_a_registration_no_arrows_of_an_old_one_are_shown(table):
 
 @pytest.fixture
 def threads(monkeypatch):
-    """Returns the threads in which fits and normals are computed, by what is computed."""
+    """Returns the threads in which fits and normals are computed, by function."""
     found = {}
 
     def watch(place, function):
@@ -335,12 +335,12 @@ def threads(monkeypatch):
             found.setdefault(function.__name__, set()).add(threading.get_ident())
             return function(*arguments)
 
-        monkeypatch.setattr(f"rastrainer.slicer.{place}.{function.__name__}", watched)
+        monkeypatch.setattr(f"rastrainer.{place}.{function.__name__}", watched)
 
-    watch("scene.registration_input", nearest_on_mesh)
-    watch("logic.registration_comparison", register_all_kinds)
-    watch("logic.registration_comparison", target_error)
-    watch("logic.registration_comparison", expected_tre)
+    watch("slicer.scene.registration_input", nearest_on_mesh)
+    watch("sections.registration_logic", register_all_kinds)
+    watch("sections.registration_logic", target_error)
+    watch("sections.registration_logic", expected_tre)
     return found
 
 

@@ -12,7 +12,7 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.procedure.plan import ProcedureKind
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.slicer.logic.trainee_logic import TraineeLogic, calibration
+from rastrainer.sections.trainees_logic import TraineeLogic, calibration
 from rastrainer.slicer.scene.nodes import Role, findNode
 from rastrainer.slicer.scene.score_tables import (
     Row,

@@ -19,7 +19,7 @@ from rastrainer.study.database.database import study_place
 from rastrainer.work_progress import allow_any_text
 
 
-class CommandEntry(NamedTuple):
+class CliCommand(NamedTuple):
     """A command as `commands.txt` describes it; `run` is its module and function."""
 
     run: str
@@ -28,7 +28,7 @@ class CommandEntry(NamedTuple):
     arguments: list[str]
 
 
-def read_commands() -> dict[str, CommandEntry]:
+def read_commands() -> dict[str, CliCommand]:
     """Return every command by its name, such as `scenario build`."""
     text = Path(__file__).with_name("commands.txt").read_text(encoding="utf-8")
     shared: dict[str, list[str]] = {}
@@ -46,7 +46,7 @@ def read_commands() -> dict[str, CommandEntry]:
             shared[name] = arguments
         else:
             words, description = (" ".join(each.split()) for each in (*paragraphs, "")[:2])
-            commands[name] = CommandEntry(run, words, description, arguments)
+            commands[name] = CliCommand(run, words, description, arguments)
     return commands
 
 
@@ -81,7 +81,7 @@ def _reader(name: str, limits: str) -> Callable[[str], object]:
                 raise argparse.ArgumentTypeError(str(error)) from None
         try:
             value = kind(text)
-            if not is_range or kind(least) <= value <= float(most or math.inf):
+            if not is_range or kind(least) <= value <= (kind(most) if most else math.inf):
                 return value
         except (ValueError, OverflowError):
             pass

@@ -9,6 +9,8 @@ import pytest
 
 from rastrainer.commands import CommandName, check_arguments
 from rastrainer.head.mesh import read_head_mesh
+from rastrainer.journal import entries
+from rastrainer.journal.entries import StartingPoint
 from rastrainer.protocol import Phase, Proximity, TouchRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.score_reference import fiducial_normals
@@ -17,11 +19,9 @@ from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.robot.goal import FabrikSettings
 from rastrainer_simulator.state import (
     NEUTRAL_STICKS,
-    EventKind,
     Motion,
     OperatorCommand,
     OperatorInput,
-    StartingPoint,
 )
 from rastrainer_simulator.teleoperation.steering import (
     AxesChoice,
@@ -63,11 +63,14 @@ class Driver:
     def start(self, task="task-1", seed=SEED):
         return self.do(CommandName.START_TASK, task=task, trainee="P01", seed=seed)
 
+    def outcomes(self):
+        return [e.entry.outcome for e in self.events if isinstance(e.entry, entries.MotionEnd)]
+
     def move_to(self, position_mm, speed=500.0, most_ticks=2500):
         self.do(CommandName.MOVE_TIP_TO, positionMm=list(position_mm), speedMmS=speed)
         for _ in range(most_ticks):
             if self.state.motion is Motion.NONE:
-                return [e.data["outcome"] for e in self.events if e.kind is EventKind.MOTION][-1]
+                return self.outcomes()[-1]
             self.step()
         raise AssertionError("the move never ended")
 
@@ -207,7 +210,9 @@ def test_proximity_and_contact_begin_and_end_exactly_once_on_the_way_in_and_out(
     up = OperatorInput(translation=(0.0, 0.0, 1.0))
     trial.until(up, lambda state: state.proximity is Proximity.FREE)
     changes = [
-        (e.data["from"], e.data["to"]) for e in trial.events if e.kind is EventKind.PROXIMITY
+        (e.entry.from_, e.entry.to)
+        for e in trial.events
+        if isinstance(e.entry, entries.ProximityChange)
     ]
     assert changes == [
         ("free", "proximity"),
@@ -233,7 +238,7 @@ def test_a_move_into_the_head_stops_at_the_surface_and_reports_that_it_was_block
 
 def test_a_move_out_of_reach_comes_as_near_as_the_arm_can_and_reports_it(trial):
     trial.move_to((1200.0, 0.0, 700.0))
-    assert EventKind.REACH in {event.kind for event in trial.events}
+    assert entries.Reach in {type(event.entry) for event in trial.events}
 
 
 @pytest.mark.parametrize("frame", ["world", "camera", "tool"])
@@ -262,7 +267,7 @@ def test_while_the_trial_is_paused_the_arm_does_not_move_and_motions_are_refused
     assert trial.state.q == q
     assert trial.state.elapsed == elapsed
     assert "resume it first" in trial.do(CommandName.JOG, velocityMmS=[1, 0, 0]).message
-    assert [e.data["outcome"] for e in trial.events if e.kind is EventKind.MOTION] == ["stopped"]
+    assert trial.outcomes() == ["stopped"]
 
 
 def test_tasks_are_listed_with_their_titles(idle, scenario):
@@ -273,7 +278,7 @@ def test_tasks_are_listed_with_their_titles(idle, scenario):
 def test_the_camera_is_switched_and_an_event_reports_it(trial):
     trial.do(CommandName.SET_CAMERA, camera="far")
     assert trial.state.camera == "far"
-    assert trial.events[-1].kind is EventKind.CAMERA
+    assert trial.events[-1].entry == entries.CameraChange("far")
     trial.do(CommandName.SET_CAMERA, camera="close-up")
 
 
@@ -360,7 +365,7 @@ def driver_with(setup, choice):
 def test_in_direction_mode_the_tool_comes_down_along_the_surface_normal(setup):
     driver = driver_with(setup, ToolDirection.NORMAL)
     driver.until(DOWN, lambda state: state.clearance < 0.004)
-    mesh = read_head_mesh(setup.scenario.head_mesh)
+    mesh = read_head_mesh(setup.scenario.head)
     head = driver.simulation.truth.in_head(MM_PER_M * driver.tip)
     nearest = np.linalg.norm(mesh.vertices - head, axis=1).argmin()
     outward = driver.simulation.truth.head_to_world[:3, :3] @ mesh.vertex_normals[nearest]
@@ -393,7 +398,7 @@ def test_the_tolerances_of_the_inverse_kinematics_are_settings_of_the_simulation
     driver = Driver(Simulation(replace(setup, settings=impossible), 1))
     driver.start()
     step = driver.step(DOWN)
-    assert [event.data["isWithinReach"] for event in step.events] == [False]
+    assert [event.entry.is_within_reach for event in step.events] == [False]
 
 
 def hover(truth, label):
