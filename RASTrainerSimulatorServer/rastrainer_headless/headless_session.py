@@ -1,4 +1,4 @@
-"""The session of Slicer's module without Slicer: on a scene and a connector of our own."""
+"""The session of Slicer's module without Slicer, on stand-ins for its scene and connector."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ class Bench:
     def __init__(self) -> None:
         setup = load_setup()
         self.robot, self.scenario = setup.robot, setup.scenario
-        mesh = read_head_mesh(setup.scenario.head_mesh)
+        mesh = read_head_mesh(setup.scenario.head)
         self.vertices, self.triangles = mesh.vertices / MM_PER_M, mesh.triangles
         self.to_world = setup.scenario.head_to_world.copy()
         self.to_world[:3, 3] /= MM_PER_M

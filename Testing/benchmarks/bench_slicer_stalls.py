@@ -184,7 +184,7 @@ class _Steps:
     def _play(self) -> None:
         host = self._host
         self._watch("show_scenario", lambda: host.press("showScenarioButton"))
-        place = self._colin.target_position + 10.0
+        place = self._colin.target.position_ras + 10.0
         slices = host.widget.logic.session.slices
         self._watch("next_point", lambda: slices.show(place))
         self._watch("show_robot", lambda: host.check("robotCheckBox"))
@@ -291,7 +291,7 @@ class _Steps:
         if name != "SubmitRegistration":
             return {}
         head_to_world = self._colin.perturbed_head_to_world(SEED)
-        target = self._colin.target_position
+        target = self._colin.target.position_ras
         found = np.reshape(arguments["matrix"], (4, 4)) @ head_to_world
         error = float(np.linalg.norm(transforms.apply(found, target) - target))
         return {"headToWorld": head_to_world.ravel().tolist(), "trueTreMm": error}

@@ -61,7 +61,7 @@ def _tick(name: str, setup: SimulationSetup, runs: int) -> dict:
 
 def _with_finer_head(setup: SimulationSetup, path: Path) -> SimulationSetup:
     """Return the setup with each triangle of the head cut into four."""
-    mesh = read_head_mesh(setup.scenario.head_mesh)
+    mesh = read_head_mesh(setup.scenario.head)
     edges = np.sort(mesh.sides, axis=1)
     unique, index = np.unique(edges, axis=0, return_inverse=True)
     ab, bc, ca = len(mesh.vertices) + index.reshape(3, -1)
@@ -71,7 +71,7 @@ def _with_finer_head(setup: SimulationSetup, path: Path) -> SimulationSetup:
     )
     vertices = np.concatenate([mesh.vertices, mesh.vertices[unique].mean(axis=1)])
     write_head_mesh(path, HeadMesh(vertices, triangles))
-    return dataclasses.replace(setup, scenario=dataclasses.replace(setup.scenario, head_mesh=path))
+    return dataclasses.replace(setup, scenario=dataclasses.replace(setup.scenario, head=path))
 
 
 def _tick_times(setup: SimulationSetup, runs: int) -> np.ndarray:

@@ -35,7 +35,7 @@ def _write(folder: Path, number: int, scenario) -> str:
     task = scenario.task(TASK)
     truth = Truth(
         scenario.perturbed_head_to_world(number),
-        scenario.target_position,
+        scenario.target.position_ras,
         dict(zip(task.labels, task.fiducials, strict=True)),
     )
     rng = np.random.default_rng(number)

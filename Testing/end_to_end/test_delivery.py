@@ -16,7 +16,7 @@ from rastrainer.journal.entries import Attempt
 from rastrainer.journal.folder import SUFFIX
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.sections.trial_logic import AbortedTrialLogic, TrialLogic
+from rastrainer.sections.trial_logic import TrialLogic
 from rastrainer.study.database.study import Study
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer_simulator.core.setup import load_setup
@@ -142,7 +142,7 @@ TRIALS = 12
 
 
 def slicer_side_for_aborted(path, port):
-    return SlicerSide(path, port, AbortedTrialLogic)
+    return SlicerSide(path, port, TrialLogic)
 
 
 def write_aborted_trials(folder):

@@ -26,7 +26,6 @@ from rastrainer.study.delivered_trial import (
 from rastrainer.trial.analysis import (
     RevealedTruth,
     analyze_trial,
-    registration_arguments,
     score_arguments,
 )
 from rastrainer.trial.ctps import PUBLISHED_STUDY, read_trials
@@ -108,7 +107,7 @@ def test_the_result_without_slicer_is_that_of_slicers_study_on_100_seeded_trials
                 record_to_json(record), study, lambda each: analyze_trial(each, scenario, cohort)
             )
             registration = check_arguments(
-                "SubmitRegistration", registration_arguments(stored.analysis)
+                "SubmitRegistration", stored.analysis.arguments(stored.analysis.record.trial_id)
             )
             answer = archive.answer("SubmitRegistration", registration, Stamp.now(0, 0.0))
             truth = record_from_json(RevealedTruth, answer)

@@ -60,12 +60,6 @@ def found(peer):
             f"version {PROTOCOL_VERSION + 1} of the protocol",
             "Update the module",
         ),
-        (
-            replace(WELL, isOpen=False, isListening=True),
-            LinkState.ABSENT,
-            "No simulator has connected",
-            "connects to this computer",
-        ),
         (replace(WELL, hasHeartbeat=False), LinkState.GREETING, "waiting for its first", ""),
         (replace(WELL, silenceS=5.2), LinkState.STALE, "silent for 5 s", "restart"),
         (

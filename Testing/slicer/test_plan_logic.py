@@ -97,7 +97,7 @@ def test_each_planned_target_of_a_scenario_is_a_plan_and_so_is_its_trajectory(sc
     assert targetsOf(targets) == ("center", "Tumor")
     first, second = (room.logic.read(targets, row) for row in (0, 1))
     assert (first.name, second.name) == ("center", "Tumor")
-    np.testing.assert_allclose([*first.ends, *second.ends], [scenario.target_position, TUMOR])
+    np.testing.assert_allclose([*first.ends, *second.ends], [scenario.target.position_ras, TUMOR])
     assert second.expected == room.registration.comparison.targetError(TUMOR)
     line = findNode(scene, "vtkMRMLMarkupsLineNode", Role.TRAJECTORY)
     assert targetsOf(line) == ()

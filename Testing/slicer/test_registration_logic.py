@@ -74,7 +74,7 @@ def test_three_fits_are_shown_side_by_side_with_the_expected_error(table):
         assert fit.fre_mm == pytest.approx(again.fre_mm, abs=1e-5)
         normals = again.fixed_mm / np.linalg.norm(again.fixed_mm, axis=1, keepdims=True)
         localization = error_along_surface(again, normals)
-        error = target_error(again, table.scenario.target_position, localization)
+        error = target_error(again, table.scenario.target.position_ras, localization)
         assert table.logic.comparison.errors[kind].expected_mm == pytest.approx(
             error.expected_mm, rel=0.02
         )
@@ -210,7 +210,7 @@ def test_a_stated_localization_error_weights_only_the_rigid_fit_and_can_be_undon
     again = register(table.touched, fixed, "rigid", LABELS, weights)
     np.testing.assert_allclose(weighted.fits["rigid"].matrix, again.matrix, atol=1e-4)
     assert weighted.fits["affine"].fre_mm == plain.fits["affine"].fre_mm
-    expected = target_error(again, table.scenario.target_position)
+    expected = target_error(again, table.scenario.target.position_ras)
     assert weighted.errors["rigid"].expected_mm == pytest.approx(expected.expected_mm, rel=1e-3)
     table.logic.change(table.logic.choices.without(("1", "2")))
     assert len(table.logic.comparison.fits["rigid"].weights) == 13
@@ -289,7 +289,7 @@ def test_color_bars_beside_the_head_are_labeled_in_mm(table):
 def test_points_off_the_head_have_an_isotropic_error(table):
     setPoints(table.fixed, LABELS, 0.5 * table.scenario.task("task-1").fiducials)
     table.touch(transforms.apply(table.scenario.head_to_world, 0.5 * table.touched_on_mri))
-    shown, position = table.logic.comparison.shown, table.scenario.target_position
+    shown, position = table.logic.comparison.shown, table.scenario.target.position_ras
     assert table.logic.comparison.targetError(position) == target_error(shown, position)
 
 

@@ -48,9 +48,9 @@ def triangles(path):
 
 def test_a_scenario_comes_one_surface_and_one_view_at_a_time(opened, colin):
     load = shown(opened, lambda: opened.press("showScenarioButton"))
-    largest = max(triangles(colin.head_mesh), triangles(colin.skull_mesh))
+    largest = max(triangles(colin.head), triangles(colin.skull.file))
     assert load.most.cells == largest
-    assert load.total.cells == triangles(colin.head_mesh) + triangles(colin.skull_mesh)
+    assert load.total.cells == triangles(colin.head) + triangles(colin.skull.file)
     assert load.most.views == 1
     assert load.total.views > 1
 
@@ -100,7 +100,7 @@ def test_touches_are_shown_in_parts_and_each_once(opened, colin):
     )
     assert opened.find("residualsTable").rowCount == 15
     # The arrows of both; the head is not handed over again.
-    assert 0 < load.most.cells < load.total.cells < triangles(colin.head_mesh)
+    assert 0 < load.most.cells < load.total.cells < triangles(colin.head)
     assert load.most.events < 50
 
 

@@ -12,7 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.igtl.content import String
 from rastrainer.protocol import DeviceName
 from rastrainer.sections import trial_logic
-from rastrainer.sections.trial_logic import MAX_WAITING, AbortedTrialLogic, TrialLogic
+from rastrainer.sections.trial_logic import MAX_WAITING, TrialLogic
 from rastrainer.sections.trial_services import TrialServices
 from rastrainer.slicer import background_work
 from rastrainer.slicer.background_work import BackgroundWork
@@ -44,6 +44,8 @@ class Lab(LinkedLab):
         self.logic = TrialLogic(self.services())
         self.scored = []
         self.problems = []
+        self.kept = []
+        self.logic.abortedKept.connect(self.kept.append)
         self.logic.trialScored.connect(self.scored.append)
         self.logic.problemFound.connect(self.problems.append)
 
@@ -57,7 +59,7 @@ class Lab(LinkedLab):
         if self.refusal is not None:
             return self.refusal
         head_to_world = self.scenario.perturbed_head_to_world(SEED)
-        target = self.scenario.target_position
+        target = self.scenario.target.position_ras
         found = np.reshape(arguments["matrix"], (4, 4)) @ head_to_world
         return {
             "headToWorld": head_to_world.ravel().tolist(),
@@ -446,16 +448,6 @@ def test_after_switching_studies_trials_go_into_the_new_one(lab, make_record, tm
 # Aborted trials
 
 
-@pytest.fixture
-def aborted(lab):
-    """The lab, with a logic for aborted trials."""
-    lab.logic.close()
-    lab.logic, lab.kept = AbortedTrialLogic(lab.services()), []
-    lab.logic.kept.connect(lab.kept.append)
-    lab.logic.problemFound.connect(lab.problems.append)
-    return lab
-
-
 def offer(lab, record):
     lab.simulator.send_command("TrialAborted", record)
 
@@ -464,46 +456,46 @@ def acknowledged(lab):
     return [arguments["trialId"] for arguments in lab.sent("AcknowledgeTrial")]
 
 
-def test_an_aborted_trial_is_stored_before_it_is_acknowledged(aborted):
-    offer(aborted, make_aborted())
-    aborted.run_until(lambda: acknowledged(aborted) == [ABORTED])
-    with Study.open(aborted.path) as study:
+def test_an_aborted_trial_is_stored_before_it_is_acknowledged(lab):
+    offer(lab, make_aborted())
+    lab.run_until(lambda: acknowledged(lab) == [ABORTED])
+    with Study.open(lab.path) as study:
         (stored,) = study.aborted("T-001")
-    assert stored.record == aborted.kept[0]
+    assert stored.record == lab.kept[0]
 
 
-def test_delivering_an_aborted_trial_twice_stores_once(aborted):
+def test_delivering_an_aborted_trial_twice_stores_once(lab):
     for count in range(1, 4):
-        offer(aborted, make_aborted())
-        aborted.run_until(lambda count=count: len(acknowledged(aborted)) == count)
-    with Study.open(aborted.path) as study:
+        offer(lab, make_aborted())
+        lab.run_until(lambda count=count: len(acknowledged(lab)) == count)
+    with Study.open(lab.path) as study:
         assert len(study.aborted("T-001")) == 1
 
 
-def test_an_unstorable_aborted_trial_is_reported_once_and_not_acknowledged(aborted):
-    aborted.is_study_broken = True
+def test_an_unstorable_aborted_trial_is_reported_once_and_not_acknowledged(lab):
+    lab.is_study_broken = True
     for _ in range(3):
-        aborted.link.trialAborted.emit(make_aborted())
-        aborted.run_until(lambda: not aborted.work.isBusy)
-    aborted.is_study_broken = False
-    offer(aborted, make_aborted())
-    aborted.run_until(lambda: acknowledged(aborted))
-    assert aborted.problems == ["An aborted trial could not be stored: The disk is full."]
-    assert acknowledged(aborted) == [ABORTED]
+        lab.link.trialAborted.emit(make_aborted())
+        lab.run_until(lambda: not lab.work.isBusy)
+    lab.is_study_broken = False
+    offer(lab, make_aborted())
+    lab.run_until(lambda: acknowledged(lab))
+    assert lab.problems == ["An aborted trial could not be stored: The disk is full."]
+    assert acknowledged(lab) == [ABORTED]
 
 
-def test_aborted_trials_are_stored_before_anything_that_arrives_later(aborted):
+def test_aborted_trials_are_stored_before_anything_that_arrives_later(lab):
     """A repeat that was stored earlier would count without a reason."""
     for number in (1, 2, 3):
-        aborted.link.trialAborted.emit(make_aborted(number))
+        lab.link.trialAborted.emit(make_aborted(number))
 
     def stored():
-        with Study.open(aborted.path) as study:
+        with Study.open(lab.path) as study:
             return len(study.aborted("T-001"))
 
     found = []
-    aborted.work.do(stored, found.append)
-    aborted.run_until(lambda: found)
+    lab.work.do(stored, found.append)
+    lab.run_until(lambda: found)
     assert found == [3]
 
 
@@ -516,31 +508,31 @@ def test_aborted_trials_are_stored_before_anything_that_arrives_later(aborted):
         pytest.param(make_aborted(trainee=" "), id="trainee"),
     ],
 )
-def test_a_hostile_record_is_reported_and_later_ones_are_stored(aborted, hostile):
-    offer(aborted, hostile)
-    aborted.run_until(lambda: aborted.problems)
-    offer(aborted, make_aborted())
-    aborted.run_until(lambda: acknowledged(aborted) == [ABORTED])
-    assert len(aborted.problems) == 1
+def test_a_hostile_record_is_reported_and_later_ones_are_stored(lab, hostile):
+    offer(lab, hostile)
+    lab.run_until(lambda: lab.problems)
+    offer(lab, make_aborted())
+    lab.run_until(lambda: acknowledged(lab) == [ABORTED])
+    assert len(lab.problems) == 1
 
 
-def test_an_aborted_trial_of_a_deleted_trainee_is_acknowledged_and_not_stored(aborted):
-    offer(aborted, make_aborted())
-    aborted.run_until(lambda: acknowledged(aborted) == [ABORTED])
-    with Study.open(aborted.path) as study:
+def test_an_aborted_trial_of_a_deleted_trainee_is_acknowledged_and_not_stored(lab):
+    offer(lab, make_aborted())
+    lab.run_until(lambda: acknowledged(lab) == [ABORTED])
+    with Study.open(lab.path) as study:
         study.delete_trainee("T-001")
-    offer(aborted, make_aborted())
-    aborted.run_until(lambda: acknowledged(aborted) == [ABORTED, ABORTED])
-    with Study.open(aborted.path) as study:
+    offer(lab, make_aborted())
+    lab.run_until(lambda: acknowledged(lab) == [ABORTED, ABORTED])
+    with Study.open(lab.path) as study:
         assert study.trainees() == ()
 
 
-def test_aborted_trials_beyond_the_queue_limit_wait_for_the_next_offer(aborted):
+def test_aborted_trials_beyond_the_queue_limit_wait_for_the_next_offer(lab):
     offered = [make_aborted(number) for number in range(1, MAX_WAITING + 10)]
     for _ in range(2):
         for record in offered:
-            aborted.link.trialAborted.emit(record)
-        aborted.run_until(lambda: not aborted.logic._waiting)
-    aborted.run_until(lambda: len(aborted.kept) >= MAX_WAITING)
-    with Study.open(aborted.path) as study:
+            lab.link.trialAborted.emit(record)
+        lab.run_until(lambda: not lab.work.isBusy)
+    lab.run_until(lambda: len(lab.kept) >= MAX_WAITING)
+    with Study.open(lab.path) as study:
         assert MAX_WAITING <= len(study.aborted("T-001")) <= len(offered)

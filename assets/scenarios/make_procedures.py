@@ -124,7 +124,7 @@ class Planner:
 
     def __init__(self) -> None:
         self.scenario = load_scenario(FOLDER)
-        self.head = read_head_mesh(self.scenario.head_mesh)
+        self.head = read_head_mesh(self.scenario.head)
         self.skull = read_head_mesh(FOLDER / "skull.ply")
         self.planning = PlanningSetup(self.scenario, self.head)
         self.poses = self.planning.poses(range(POSES), WIDER)
@@ -202,7 +202,7 @@ class Planner:
         places, normals = self.head.vertices[vertices], self.head.vertex_normals[vertices]
         can_be = self.planning.touchable(places, normals, self.poses)
         places = places[can_be]
-        out = places - self.scenario.target_position
+        out = places - self.scenario.target.position_ras
         out /= np.linalg.norm(out, axis=1)[:, None]
         found = []
         for name, direction in DIRECTIONS.items():

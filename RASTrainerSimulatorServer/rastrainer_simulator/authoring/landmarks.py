@@ -197,7 +197,7 @@ def check_on_planned_head(planning: PlanningSetup, landmarks: Sequence[Landmark]
 def write_proposal(folder: Path, path: Path) -> list[str]:
     """Write landmarks for the head of a scenario to a markups file; return sentences about them."""
     scenario = load_scenario(folder)
-    mesh = read_head_mesh(scenario.head_mesh)
+    mesh = read_head_mesh(scenario.head)
     found = landmarks_on(mesh)
     unreached = unreachable(PlanningSetup(scenario, mesh), found)
     # In the order of touching, the three that a trace begins with first.

@@ -92,7 +92,7 @@ def _simulated(arguments: argparse.Namespace, scenario: Scenario, notes: list[st
 
 
 def _played(place: StudyPlace, scenario: Scenario, notes: list[str]) -> Found:
-    mesh, targets = read_head_mesh(scenario.head_mesh), region_of(scenario).targets
+    mesh, targets = read_head_mesh(scenario.head), region_of(scenario).targets
     found: dict[RegistrationMethod, list[tuple[str, MethodResult]]] = {}
     others = 0
     with Study.open_for_reading(place) as opened:

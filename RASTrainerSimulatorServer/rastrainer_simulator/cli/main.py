@@ -20,7 +20,7 @@ from rastrainer.study.database.database import study_place
 from rastrainer.work_progress import allow_any_text
 
 
-class ListedCommand(NamedTuple):
+class CliCommand(NamedTuple):
     """A command as `commands.txt` describes it; `run` is its module and function."""
 
     run: str
@@ -29,7 +29,7 @@ class ListedCommand(NamedTuple):
     arguments: list[str]
 
 
-def read_commands() -> dict[str, ListedCommand]:
+def read_commands() -> dict[str, CliCommand]:
     """Return every command by its name, such as `scenario build`."""
     text = Path(__file__).with_name("commands.txt").read_text(encoding="utf-8")
     shared: dict[str, list[str]] = {}
@@ -47,7 +47,7 @@ def read_commands() -> dict[str, ListedCommand]:
             shared[name] = arguments
         else:
             words, description = (" ".join(each.split()) for each in (*paragraphs, "")[:2])
-            commands[name] = ListedCommand(run, words, description, arguments)
+            commands[name] = CliCommand(run, words, description, arguments)
     return commands
 
 

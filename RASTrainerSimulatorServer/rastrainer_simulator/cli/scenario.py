@@ -154,7 +154,7 @@ def check_landmarks(arguments: argparse.Namespace) -> int:
         print(" ".join(write_proposal(arguments.dir, arguments.mrk_json)))
         return 0
     landmarks, scenario = read_placed_landmarks(arguments.mrk_json), load_scenario(arguments.dir)
-    planning = PlanningSetup(scenario, read_head_mesh(scenario.head_mesh))
+    planning = PlanningSetup(scenario, read_head_mesh(scenario.head))
     wrong = check_on_planned_head(planning, landmarks)
     print(" ".join(wrong) or "The landmarks can be used.")
     return 1 if wrong else 0

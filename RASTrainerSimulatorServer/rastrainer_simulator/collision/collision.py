@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.scenario.scenario import Furniture
+from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.clearance import (
     FAR,
@@ -203,7 +203,7 @@ class Collision:
         return self._head.nearest_to_shaft(self._arm.pose(link_to_world), limit)
 
 
-def head_collision(shape: RobotShape, head: HeadMesh, furniture: Furniture) -> Collision:
+def head_collision(shape: RobotShape, head: HeadMesh, scenario: Scenario) -> Collision:
     """Return what measures a robot against a head, RAS mm, and the table and stand around it."""
-    stand_radius = furniture.stand.diameter_mm / 2.0 / MM_PER_M
+    stand_radius = scenario.stand.diameter_mm / 2.0 / MM_PER_M
     return Collision(shape, head.vertices / MM_PER_M, head.triangles, stand_radius)

@@ -69,15 +69,14 @@ class ProcedureMotion:
         self.drive = FeedDrive(settings.procedure, settings.teleoperation.response)
         self.planned_bone: PlannedBone = {}
         if scenario.procedures:
-            assert scenario.skull_mesh is not None, "a scenario with procedures has a skull"
-            self._skin, self._skull = head, read_head_mesh(scenario.skull_mesh)
+            self._skin, self._skull = head, read_head_mesh(scenario.skull_path)
             # Computed now, not in the tick in which the first guide is locked.
             _ = head.triangle_spheres, self._skull.triangle_spheres
             self.planned_bone = {
                 each.name: tuple(planned_bone(line, self._skull) for line in each.trajectories)
                 for each in scenario.procedures
             }
-            self._outline = HeadOutline(head.vertices, scenario.target_position)
+            self._outline = HeadOutline(head.vertices, scenario.target.position_ras)
 
     def reset(self, feed: Feed = NO_FEED) -> None:
         """Adopt a feed, and end a commanded one."""

@@ -72,7 +72,6 @@ def load_setup(
     """Load a scenario and a robot; by default those that come with RASTrainer."""
     scenario = load_scenario(scenario_folder or asset_path(*DEFAULT_SCENARIO))
     robot = load_robot(robot_meshes)
-    skull = scenario.skull_mesh
     return SimulationSetup(
         scenario=scenario,
         robot=robot,
@@ -80,9 +79,10 @@ def load_setup(
         settings=settings or SimulationSettings(),
         scenario_sha256=scenario_sha256(scenario),
         landmarks_sha256=landmarks_sha256(scenario),
-        procedure_sha256={}
-        if skull is None
-        else {procedure.name: procedure.sha256(skull) for procedure in scenario.procedures},
+        procedure_sha256={
+            procedure.name: procedure.sha256(scenario.skull_path)
+            for procedure in scenario.procedures
+        },
     )
 
 
@@ -96,7 +96,7 @@ def scenario_sha256(scenario: Scenario) -> str:
     whole = hashlib.sha256()
     for content in (
         _without(scenario.folder / FILE_NAME, left_out),
-        scenario.head_mesh.read_bytes(),
+        scenario.head.read_bytes(),
     ):
         whole.update(hashlib.sha256(content).digest())
     for task in scenario.tasks:

@@ -85,7 +85,7 @@ class TutorialScreen(ArmScreen):
                 self._homing = None
             return
         tutorial.use(session.operator.learned(session.mode))
-        tutorial.practice.end_refusal(session.state.sim_time)
+        tutorial.practice.training.end_refusal(session.state.sim_time)
         practice = tutorial.practice.training.state
         seen = TutorialObservation(
             tip=session.tip,
@@ -111,7 +111,7 @@ class TutorialScreen(ArmScreen):
         if control is ControlName.CAMERA:
             self._change_camera()
         elif control is ControlName.BEST_VIEW and tutorial.practice.has_points:
-            session.view.want_best()
+            session.view.is_best_wanted = True
         elif control is ControlName.TOUCH and tutorial.may_touch:
             self._play_reply(tutorial.touch(session.state))
         elif control is ControlName.UNDO and tutorial.step in _WITH_UNDO:

@@ -109,7 +109,7 @@ class _FilmedScene:
 
     def __init__(self, trial: RecordedTrial, setup: SimulationSetup) -> None:
         scenario = setup.scenario
-        head = read_head_mesh(scenario.head_mesh)
+        head = read_head_mesh(scenario.head)
         self.state = first = trial.state_at(0.0)
         task = task_by_method(scenario, trial.task, first.training.method)
         self.count = len(task.labels)

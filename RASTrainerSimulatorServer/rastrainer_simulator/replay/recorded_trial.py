@@ -96,7 +96,7 @@ class RecordedTrial:
             self._tip = setup.robot.tip.name
             self._head_to_world = scenario.perturbed_head_to_world(seed_of(header))
             self._head_to_world[:3, 3] /= MM_PER_M
-            base = read_head_mesh(scenario.head_mesh).base / MM_PER_M
+            base = read_head_mesh(scenario.head).base / MM_PER_M
             self._stand_to_world = stand_pose(self._head_to_world, base)
             self._event_times = [event.time_s for event in track.events]
             self.duration_s = max(float(track.trajectory.times_s[-1]), self._event_times[-1])

@@ -38,7 +38,7 @@ class Truth(RecordedTruth):
         """Return the truth of a trial of a task, or without one, by the head's pose, mm."""
         fiducials = dict(zip(task.labels, task.fiducials, strict=True)) if task else {}
         pose = np.asarray(head_to_world, dtype=float)
-        return cls(pose, scenario.target_position, fiducials, skin or UNMOVED)
+        return cls(pose, scenario.target.position_ras, fiducials, skin or UNMOVED)
 
     def in_world(self, points: np.ndarray) -> np.ndarray:
         """Return a point of the head, or n of them, (3,) or (n, 3) float, RAS mm, in World, mm."""
@@ -93,7 +93,7 @@ class PlacedHead:
     @classmethod
     def of_trial(cls, scenario: Scenario, task: Task, seed: int, skin: SkinShift) -> PlacedHead:
         """Return the head of a trial, moved and with its skin shifted by the trial's seed."""
-        mesh = None if skin.is_none else read_head_mesh(scenario.head_mesh)
+        mesh = None if skin.is_none else read_head_mesh(scenario.head)
         pose = scenario.perturbed_head_to_world(seed)
         truth = Truth.of(scenario, pose, task, skin if skin.is_none else replace(skin, seed=seed))
         places = truth.in_world(np.array(list(truth.fiducials_ras.values()))) / MM_PER_M

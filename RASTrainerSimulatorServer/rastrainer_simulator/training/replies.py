@@ -53,6 +53,7 @@ class TrialStep:
         ahead: goes into the change of the phase: clients never learn it.
         answered: goes into the answer alone.
         feed: the new feed in the guide; None if it stays.
+        has_summary: whether the answer to a change of the phase also has the trial's summary.
     """
 
     state: TrainingState
@@ -63,6 +64,7 @@ class TrialStep:
     ahead: Ahead | None = None
     answered: Mapping[str, Any] = field(default_factory=dict)
     feed: Feed | None = None
+    has_summary: bool = True
 
 
 def phase_change(state: TrainingState, feed: Feed = NO_FEED, **data: Any) -> PhaseChange:
@@ -97,15 +99,7 @@ def summary(state: TrainingState, **data: Any) -> dict[str, Any]:
 
 def given(state: TrainingState) -> dict[str, Any]:
     """Return the points that register a trial: its touches and its trace, in double precision."""
-    trace = state.trace
-    if trace is None:
-        return {"touches": _touched(state)}
-    traced = [[*(MM_PER_M * x for x in p.position), p.sim_time] for p in trace.points]
-    return {"touches": _touched(state), "trace": traced}
-
-
-def _touched(state: TrainingState) -> list[dict[str, Any]]:
-    return [
+    touches = [
         {
             "label": touch.label,
             "positionMm": [MM_PER_M * value for value in touch.position],
@@ -113,6 +107,11 @@ def _touched(state: TrainingState) -> list[dict[str, Any]]:
         }
         for touch in state.touches
     ]
+    if state.trace is None:
+        return {"touches": touches}
+    points = state.trace.points
+    traced = [[*(MM_PER_M * x for x in point.position), point.sim_time] for point in points]
+    return {"touches": touches, "trace": traced}
 
 
 def revealed(truth: Truth, state: TrainingState, matrix: tuple[float, ...]) -> dict[str, Any]:
@@ -162,4 +161,4 @@ def take_score(
         return TrainingReply(True, data=answered)
     values = {"score": result.score, "fre": registration.fre_mm, "tre": result.true_tre_mm}
     scored = replace(state, phase=Phase.SCORED, result=result)
-    return TrialStep(scored, "scored", values, answered=answered)
+    return TrialStep(scored, "scored", values, answered=answered, has_summary=False)

@@ -141,10 +141,9 @@ class Training:
     def truth(self) -> Truth:
         return self._head.truth
 
-    @property
-    def goal(self) -> Vector | None:
-        """Where the next fiducial is, World, m; None without one."""
-        return self._head.fiducials.get(self.state.next_point or "")
+    def goal_of(self, state: TrainingState) -> Vector | None:
+        """Return where the next fiducial is in a state of the trial, World, m; None without one."""
+        return self._head.fiducials.get(state.next_point or "")
 
     def handles(self, command: str) -> bool:
         return command in self._handlers
@@ -254,7 +253,7 @@ class Training:
         self.state = replace(step.state, revision=revision, instruction=instruction)
         self._kept[revision] = self.state, None
         if has_entered:
-            if entry is None and "trialId" not in answer:
+            if entry is None and step.has_summary:
                 answer = {**summary(self.state, **step.data), **answer}
             change = phase_change(self.state, now.feed, **step.data, ahead=step.ahead)
             events.append(Event(now.sim_time, change))
@@ -350,11 +349,12 @@ class Training:
         self._kept = {}
         idle = TrainingState(revision=aborted.revision)
         values = {"trainee": aborted.trainee}
-        return TrialStep(idle, "aborted", values, answered={"trialId": aborted.trial_id})
+        answered = {"trialId": aborted.trial_id}
+        return TrialStep(idle, "aborted", values, answered=answered, has_summary=False)
 
     def _pause(self, _command: OperatorCommand, now: TouchMoment) -> Outcome:
         self._clock.pause(now.sim_time)
-        return TrialStep(paused(self.state), "paused")
+        return TrialStep(paused(self.state), "paused", has_summary=False)
 
     def _resume(self, _command: OperatorCommand, now: TouchMoment) -> Outcome:
         self._clock.resume(now.sim_time)

@@ -70,8 +70,9 @@ def paused(state: TrainingState) -> TrainingState:
 
 def resumed(state: TrainingState) -> TrialStep:
     if state.trace is None or state.next_point is not None:
-        return TrialStep(replace(state, phase=Phase.RUNNING), "resumed")
-    return replace(tracing.stroke(state, state.trace.ended()), entry=None)
+        return TrialStep(replace(state, phase=Phase.RUNNING), "resumed", has_summary=False)
+    stroke = tracing.stroke(state, state.trace.ended())
+    return replace(stroke, entry=None, has_summary=False)
 
 
 def interrupted(state: TrainingState) -> TrialStep:

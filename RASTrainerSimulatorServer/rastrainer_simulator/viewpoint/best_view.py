@@ -245,8 +245,8 @@ class TouchViews:
 
     def __init__(self, setup: SimulationSetup, head: HeadMesh | None = None) -> None:
         self._scenario: Scenario = setup.scenario
-        self._head = head or read_head_mesh(setup.scenario.head_mesh)
-        self._collision = head_collision(setup.shape, self._head, setup.scenario.furniture)
+        self._head = head or read_head_mesh(setup.scenario.head)
+        self._collision = head_collision(setup.shape, self._head, setup.scenario)
         self._kinematics = make_kinematics(setup.robot)
         self._robot = setup.robot
         self._planner = TouchPlanner(setup.robot, self._collision)

@@ -242,7 +242,7 @@ class MethodStudy:
 
     def __post_init__(self) -> None:
         scenario = self.scenario
-        self.mesh = read_head_mesh(scenario.head_mesh)
+        self.mesh = read_head_mesh(scenario.head)
         self.targets = region_of(scenario).targets
         self.fiducials = np.asarray(scenario.task(self.task).fiducials, dtype=float)
         chosen = self.fiducials[:: len(self.fiducials) // SCREWS][:SCREWS]

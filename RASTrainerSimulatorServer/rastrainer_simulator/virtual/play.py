@@ -184,7 +184,7 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
     scenario = simulation.setup.scenario
     head_to_world = scenario.perturbed_head_to_world(job.seed)
     analysis = analyze_trial(record, scenario)
-    where = Truth(head_to_world, scenario.target_position, {})
+    where = Truth(head_to_world, scenario.target.position_ras, {})
     truth = RevealedTruth(
         tuple(head_to_world.ravel().tolist()), where.target_error_mm(analysis.rigid.matrix)
     )
@@ -198,8 +198,7 @@ def _procedure(
     job: TrialJob, analysis: TrialAnalysis, scenario: Scenario, head_to_world: np.ndarray
 ) -> ProcedureRecord:
     """Return what the job's hands did after the registration."""
-    procedure, skull = scenario.procedure(job.procedure), scenario.skull_mesh
-    assert skull is not None, "a scenario with procedures has a skull"
+    procedure, skull = scenario.procedure(job.procedure), scenario.skull_path
     matrix = tuple(analysis.rigid.matrix.ravel().tolist())
     return VirtualProcedure(
         procedure,

@@ -90,7 +90,7 @@ class ScriptedTrainee:
         # As seen in the room, World, mm: (n, 3), (n, 3), the center of the head and its top.
         self._fiducials = transforms.apply(head_to_world, scenario.task(task_name).fiducials)
         self._normals = fiducial_normals(scenario, task_name) @ head_to_world[:3, :3].T
-        self._center = transforms.apply(head_to_world, scenario.target_position)
+        self._center = transforms.apply(head_to_world, scenario.target.position_ras)
         self._vertex = transforms.apply(head_to_world, computed_once(scenario, _highest))
         self._skill = skill
         self._random = np.random.default_rng(seed)

@@ -164,8 +164,7 @@ def play_procedure(
     send(client, CommandName.ACCEPT_REGISTRATION, {})
     state = _wait(client, lambda state: state["phase"] == Phase.ALIGNING.value)
     procedure = scenario.procedure(state["procedure"]["name"])
-    assert scenario.skull_mesh is not None, "a scenario with procedures has a skull"
-    skull = read_procedure_meshes(procedure, scenario.skull_mesh).skull
+    skull = read_procedure_meshes(procedure, scenario.skull_path).skull
     for number, trajectory in enumerate(procedure.trajectories):
         bone = planned_bone(trajectory, skull)
         assert bone is not None, "the plan was checked"

@@ -152,7 +152,7 @@ def test_vtk_finds_the_same_minimum_and_none_better(head, face):
     assert np.linalg.norm(apart, axis=1).max() < 0.05
 
 
-@pytest.mark.parametrize("seed", [1, 3, 5, 28])
+@pytest.mark.parametrize("seed", [3, 28])
 def test_the_lowest_of_several_close_minima_is_chosen(head, seed):
     """Each of these had a lower one a few hundredths of a millimeter away, when it was followed."""
     random = np.random.default_rng([seed, 7])
@@ -180,7 +180,7 @@ def test_a_point_at_the_outlier_gate_does_not_keep_a_match_from_converging(head,
         (lambda t, _: t[:29], "needs 30 to"),
         (lambda t, _: np.tile(t, (600, 1)), "needs 30 to"),
         (lambda t, _: t[0] + np.random.default_rng(0).normal(0, 2, (60, 3)), "in one place"),
-        (lambda t, _: np.where(np.arange(600).reshape(200, 3) == 7, np.nan, t), "Point 3 of"),
+        (lambda t, _: np.where(np.arange(600).reshape(200, 3) == 7, np.nan, t), "Point 3 has"),
         (lambda t, _: t[:, :2], "three coordinates"),
         (lambda _t, _: [["a"] * 3] * 40, "must be numbers"),
         (lambda t, _: t + 400.0, "mm off the head"),

@@ -82,7 +82,7 @@ def test_another_speed_after_an_interruption_is_not_hidden_by_the_first():
 def test_a_simulator_that_is_held_up_is_slow_by_the_clock():
     found = played(session(), start(), timed(REACH, 2.0, 4.0))
     assert (found.speed, found.pace) == (1.0, 0.5)
-    # What passes until a trial is resumed is no part of it.
+    # The time until a trial is resumed is no part of it.
     assert played(session(), timed(continued(), 1.0, 900.0)).pace == 1.0
 
 

@@ -37,7 +37,7 @@ SECTION = "procedureCollapsibleButton"
 def carried_out() -> tuple[ProcedureOutcome, list[TrueLine]]:
     """Return what virtual hands made of stereo-EEG after a careless registration."""
     scenario = load_scenario(asset_path("scenarios", "colin27"))
-    procedure, skull = scenario.procedure(PROCEDURE), scenario.skull_mesh
+    procedure, skull = scenario.procedure(PROCEDURE), scenario.skull.file
     assert skull is not None
     random, truth = np.random.default_rng(21), scenario.perturbed_head_to_world(21)
     fiducials = np.asarray(scenario.task(TASK).fiducials)

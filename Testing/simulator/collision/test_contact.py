@@ -48,7 +48,7 @@ class DefaultHead:
     """The head of the default scenario, where it stands, and VTK's distance to it."""
 
     def __init__(self, scenario):
-        mesh = read_head_mesh(scenario.head_mesh)
+        mesh = read_head_mesh(scenario.head)
         self.to_world = scenario.head_to_world.copy()
         self.to_world[:3, 3] /= MM_PER_M
         self.vertices = transforms.apply(self.to_world, mesh.vertices / MM_PER_M)

@@ -72,7 +72,7 @@ def test_the_sign_is_right_inside_outside_and_at_every_feature(bumpy):
 
 
 def test_the_sign_is_right_on_the_default_head(scenario):
-    mesh = read_head_mesh(scenario.head_mesh)
+    mesh = read_head_mesh(scenario.head)
     head = mesh.vertices / MM_PER_M, mesh.triangles
     points = np.concatenate([around(head[0], 300, 6), near(*head, 900, 7)])
     truth = np.array(list(map(vtk_distance(*head), points)))

@@ -228,10 +228,10 @@ def test_the_distances_ahead_are_those_of_the_true_surfaces(surgeon):
         )
 
     for depth, radius in ((ahead.outer, OUTER_MM), (ahead.inner, INNER_MM)):
-        away = np.linalg.norm(in_head(depth) - scenario.target_position)
+        away = np.linalg.norm(in_head(depth) - scenario.target.position_ras)
         # The made-up skull is a polyhedron in these spheres.
         assert radius - 0.5 <= away <= radius
-    skin = read_head_mesh(scenario.head_mesh)
+    skin = read_head_mesh(scenario.head)
     nearest = np.linalg.norm(skin.vertices - in_head(ahead.skin), axis=1).min()
     assert nearest < 3.0
     assert 0.0 < ahead.skin < ahead.outer < ahead.inner

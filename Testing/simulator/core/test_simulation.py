@@ -365,7 +365,7 @@ def driver_with(setup, choice):
 def test_in_direction_mode_the_tool_comes_down_along_the_surface_normal(setup):
     driver = driver_with(setup, ToolDirection.NORMAL)
     driver.until(DOWN, lambda state: state.clearance < 0.004)
-    mesh = read_head_mesh(setup.scenario.head_mesh)
+    mesh = read_head_mesh(setup.scenario.head)
     head = driver.simulation.truth.in_head(MM_PER_M * driver.tip)
     nearest = np.linalg.norm(mesh.vertices - head, axis=1).argmin()
     outward = driver.simulation.truth.head_to_world[:3, :3] @ mesh.vertex_normals[nearest]

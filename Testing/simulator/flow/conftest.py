@@ -31,7 +31,7 @@ def _known_marks():
     known, on_skin = {}, TouchViews.on_skin
 
     def kept(views, task):
-        key = views._scenario.head_mesh, task.fiducials.tobytes()
+        key = views._scenario.head, task.fiducials.tobytes()
         if key not in known:
             known[key] = on_skin(views, task)
         return known[key]
@@ -54,7 +54,7 @@ def _at_once():
 
 
 class Outside:
-    """What the presenter knows of the process around it."""
+    """The process around the presenter, as the presenter knows it."""
 
     def __init__(self, folder):
         self.has_slicer = False
@@ -74,6 +74,9 @@ class Outside:
             quit=lambda: setattr(self, "has_quit", True),
             pin=self.pin,
         )
+
+    def presenter(self, loop, **preferences):
+        return FlowPresenter(loop, self.services, DEFAULT_BINDINGS, Preferences(**preferences))
 
     def _list(self):
         done = Future()
@@ -119,8 +122,7 @@ def loop(shared, tmp_path):
 
 @pytest.fixture
 def presenter(loop, outside):
-    preferences = Preferences(**WITHOUT_TUTORIAL)
-    presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, preferences)
+    presenter = outside.presenter(loop, **WITHOUT_TUTORIAL)
     yield presenter
     presenter.close()
 

@@ -10,7 +10,6 @@ import pytest
 
 from rastrainer.journal.entries import CameraChange, ProximityChange
 from rastrainer.protocol import Phase, Proximity, TouchRule
-from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.presentation.feedback_event import (
@@ -53,9 +52,7 @@ def test_touch_undo_proximity_contact_and_finish_give_sound_and_vibration_exactl
     # SDL only prolongs what vibrates already: here simulated time is faster than the motors.
     pilot.presenter.updates.add(lambda _news: pilot.presenter.rumble(0.0, 0.0))
     pilot.start("task-1")
-    truth = pilot.loop.simulation.truth
-    center = truth.in_world(truth.target_ras) / MM_PER_M
-    top = truth.in_world(truth.fiducials_ras["1"]) / MM_PER_M
+    center, top = pilot.place(), pilot.place("1")
     outward = (top - center) / np.linalg.norm(top - center)
     pilot.steer_to(top + 0.06 * outward, 0.02)
     pilot.steer_to(top - 0.02 * outward, 0.001, fine=True)
@@ -70,10 +67,8 @@ def test_touch_undo_proximity_contact_and_finish_give_sound_and_vibration_exactl
     pilot.tap("touch")
     pilot.until(lambda: pilot.state.training.phase == "complete")
     pilot.step(2)
-    pilot.tap("touch")
-    pilot.until_menu("complete")
-    pilot.tap("accept")
-    pilot.until_menu("waiting")
+    pilot.tap_until("touch", "complete")
+    pilot.tap_until("accept", "waiting")
     trial_id = pilot.state.training.trial_id
     assert pilot.submit("SubmitRegistration", trialId=trial_id, **REGISTRATION).ok
     assert pilot.submit("TrialScored", trialId=trial_id, **SCORE).ok
@@ -98,8 +93,7 @@ def test_every_named_sound_ships_with_rastrainer():
 
 
 def test_muted_sounds_have_zero_volume(trainee):
-    trainee.choose("settings")
-    trainee.until_menu("settings")
+    trainee.choose("settings", "settings")
     trainee.focus("volume")
     trainee.tap("right")
     trainee.step()

@@ -42,7 +42,7 @@ def start(server, **others):
 
 def measured(simulation, tips_mm):
     """Return where tips (n, 3), World, mm, are measured in the trial of the seed."""
-    mesh, truth = read_head_mesh(simulation.setup.scenario.head_mesh), simulation.truth
+    mesh, truth = read_head_mesh(simulation.setup.scenario.head), simulation.truth
     assert truth.skin == SkinShift(3.0, SEED, 0.5)
     in_head = np.array([truth.in_head(tip) for tip in np.array(tips_mm)])
     return truth.in_world(truth.skin.measured(in_head, mesh))

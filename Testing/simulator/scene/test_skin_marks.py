@@ -61,7 +61,7 @@ def test_an_arrow_leads_around_the_ball_to_the_other_side(ball):
 
 @pytest.fixture(scope="module")
 def head(scenario) -> HeadMesh:
-    return read_head_mesh(scenario.head_mesh)
+    return read_head_mesh(scenario.head)
 
 
 @pytest.fixture(

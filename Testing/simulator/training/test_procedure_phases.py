@@ -1,4 +1,4 @@
-"""From the registration to the placed instrument: what each command causes and records."""
+"""A procedure, from the registration to the placed instrument, command by command."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""A trial registered by landmarks or by a trace: what is touched, traced, undone and shown."""
+"""A trial registered by landmarks or by a trace: touches, strokes, undoing, and instructions."""
 
 from dataclasses import replace
 

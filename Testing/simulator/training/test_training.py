@@ -29,7 +29,7 @@ from Testing.simulator.training.hand_driven import (
 
 
 def in_phase(scenario, phase):
-    """Return a trial that stands in a phase; those of a procedure belong to one with one."""
+    """Return a trial in a phase; phases of a procedure belong to a trial with a procedure."""
     if phase in PROCEDURE_PHASES:
         return at_procedure(scenario, phase)
     trial = Trial(scenario)

@@ -72,8 +72,8 @@ class RandomPostures:
 
     def __init__(self, setup: SimulationSetup, seed: int) -> None:
         self.setup = setup
-        self.head: HeadMesh = read_head_mesh(setup.scenario.head_mesh)
-        self.collision = head_collision(setup.shape, self.head, setup.scenario.furniture)
+        self.head: HeadMesh = read_head_mesh(setup.scenario.head)
+        self.collision = head_collision(setup.shape, self.head, setup.scenario)
         self.kinematics = make_kinematics(setup.robot)
         self.head_to_world = setup.scenario.head_to_world.copy()
         self.head_to_world[:3, 3] /= MM_PER_M

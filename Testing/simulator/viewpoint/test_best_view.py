@@ -41,7 +41,7 @@ def made(request, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def mesh(made):
-    return read_head_mesh(made.scenario.head_mesh)
+    return read_head_mesh(made.scenario.head)
 
 
 @pytest.fixture(scope="module")
@@ -118,7 +118,7 @@ def test_the_view_along_the_skin_rises_or_falls_by_at_most_45_degrees(normal):
 
 def test_the_check_of_a_scenario_names_what_no_view_shows(setup, monkeypatch):
     scenario = setup.scenario
-    planning = PlanningSetup(scenario, read_head_mesh(scenario.head_mesh), setup)
+    planning = PlanningSetup(scenario, read_head_mesh(scenario.head), setup)
     task = scenario.task("task-1")
     monkeypatch.setattr("rastrainer_simulator.authoring.scenario_check.POSES_TRIED", 0)
     assert check_tasks(planning, [task]) == []

@@ -176,7 +176,7 @@ class Pilot:
         self.fiducials = truth.in_world(np.array(list(truth.fiducials_ras.values())))
         self.normals = fiducial_normals(setup.scenario, task) @ truth.head_to_world[:3, :3].T
         self._center = truth.in_world(truth.target_ras)
-        self._mesh = read_head_mesh(setup.scenario.head_mesh)
+        self._mesh = read_head_mesh(setup.scenario.head)
 
     @property
     def tip(self) -> np.ndarray:

@@ -100,8 +100,8 @@ class DrawnPictures:
 
     def __init__(self, setup: SimulationSetup, seed: int) -> None:
         self._setup = setup
-        self._head: HeadMesh = read_head_mesh(setup.scenario.head_mesh)
-        self._collision = head_collision(setup.shape, self._head, setup.scenario.furniture)
+        self._head: HeadMesh = read_head_mesh(setup.scenario.head)
+        self._collision = head_collision(setup.shape, self._head, setup.scenario)
         self._kinematics = make_kinematics(setup.robot)
         self._random = np.random.default_rng(seed)
         self._marks: dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}

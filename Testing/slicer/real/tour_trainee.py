@@ -96,7 +96,7 @@ def _checkpoint(scenario: Any, header: dict[str, Any], number: int) -> tuple[Any
 
     head_to_world = scenario.perturbed_head_to_world(header.seed)
     position = scenario.procedure(header.procedure.name).checkpoints[number - 1].position
-    outward = np.asarray(position) - scenario.target_position
+    outward = np.asarray(position) - scenario.target.position_ras
     outward /= np.linalg.norm(outward)
     return transforms.apply(head_to_world, position), head_to_world[:3, :3] @ outward
 
@@ -110,7 +110,7 @@ def _depth(scenario: Any, header: dict[str, Any], is_drill: bool) -> float:
     line = procedure.trajectories[0]
     if not is_drill:
         return STAND_OFF_MM + line.length_mm
-    bone = planned_bone(line, read_procedure_meshes(procedure, scenario.skull_mesh).skull)
+    bone = planned_bone(line, read_procedure_meshes(procedure, scenario.skull.file).skull)
     return STAND_OFF_MM + bone.inner_mm + PAST_INNER_MM
 
 

@@ -1,7 +1,7 @@
 """The pose of the head in a trial, near the nominal one, and the shift of its skin.
 
-Only the simulator knows either. Skin and scalp move on the skull when the head is laid down
-otherwise, when its holder is tightened or tape is stuck to it, while bone, brain and targets stay.
+Only the simulator knows either. Skin and scalp move on the skull when the head is positioned
+differently, its holder is tightened or tape is stuck to it; bone, brain and targets stay.
 The shift is smooth, seeded and of a stated size: a sum of waves of random directions (random
 Fourier features), a normal field in space whose covariance is Gaussian in the distance: neighboring
 places move alike. Its size and its reach are stated, not measured.
@@ -69,7 +69,7 @@ BASE_MM = 30.0
 """So far above the flat base, where the images end, the shift grows from none to all."""
 _Amount = Annotated[float, number(0, SKIN_LIMIT_MM, "mm")]
 INVERSIONS = 8
-"""Steps by which a shift is taken back; each leaves a part of what was wrong, 4 % for 2 mm."""
+"""Steps that undo a shift; each leaves a part of the error, 4 % for 2 mm."""
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,9 @@
 """A trial's journal: stamped and hashed lines, and whether a file is intact, cut short or altered.
 
-A line is a JSON object with its own hash and that of the previous line:
+A line is a JSON object with its own hash and the previous line's:
 `{"n":…,"previous":"…",…,"sha256":"…"}` and a newline. `n` counts from 1, `previous` is the `sha256`
-of the previous line (64 zeros in the first), and `sha256` is that of the line's bytes before its
-comma, closed by `}`. What is between them is an entry and its times, see `entries`.
+of the previous line (64 zeros in the first), and `sha256` is the hash of the line's bytes
+before its comma, closed by `}`. Between them are an entry and its times, see `entries`.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ MAX_LINE_DEPTH = MAX_DEPTH + 8
 """A line may contain a message of the maximum depth."""
 
 SEED_SUFFIX = ".seed"
-"""Of the file beside the journal of an open trial that holds the seed of the head's pose."""
+"""Ends the name of the file that holds the seed of the head's pose while a trial is open."""
 
 FIRST_BYTES = f'{{"n":1,"previous":"{NO_LINE}","kind":"header","format":"{FORMAT}",'.encode()
 """The start of every journal."""
@@ -112,7 +112,7 @@ class JournalReading:
         end: number of bytes of these lines.
         sentence: the integrity in words.
         seed: of the head's pose. It is as secret as the pose while the trial is open: its last
-            entry reveals it, until then the file beside the journal holds it.
+            entry reveals it; until then a separate file holds it (`SEED_SUFFIX`).
     """
 
     path: Path

@@ -43,8 +43,8 @@ class Recording:
     """Collects a journal's entries; `trajectory` is the result so far.
 
     The simulator adds entries while the trial runs, a reader adds them from the file: the numbers
-    are the same. Of a trial with a procedure only the touching counts: in the phases after it the
-    time stands still, as in a pause, and what the tool does in them is left out.
+    are the same. Only the touching counts, not the procedure after it: there the time stands still,
+    as in a pause, and the tool's movements are left out.
     """
 
     STANDING_STILL: ClassVar = frozenset((Phase.PAUSED, *PROCEDURE_PHASES))
@@ -175,7 +175,7 @@ class Recording:
         elif self._paused_since is not None:
             self._paused_s += now - self._paused_since
             self._paused_since = None
-        # Points that could not be written are undone: those of a trace beyond these, and touches
+        # Points that could not be written are undone: points of a trace beyond these, and touches
         # back to this fiducial.
         del self._traced[entry.traced or 0 :]
         labels = [touch.label for touch in self._touches]
@@ -185,7 +185,7 @@ class Recording:
     def _proximity(self, entry: ProximityChange, sim_time: float) -> None:
         # This event is at the end of its tick, unlike those of commands.
         now = self._trial_time(sim_time)
-        # What begins and ends while the time stands still is left out.
+        # An interval that begins and ends while the time stands still is left out.
         counts = self._paused_since is None
         if self._state is Proximity.FREE:
             self._near_since = now

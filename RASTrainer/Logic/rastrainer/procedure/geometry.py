@@ -86,7 +86,7 @@ def bone_ahead(
 def angle_deg(a: np.ndarray, b: np.ndarray) -> float:
     """Return the angle between two directions (3,), in degrees.
 
-    By the arc tangent, which is exact for small angles, too (Kahan 2006).
+    The arc tangent is exact for small angles, too (Kahan 2006).
     """
     return float(np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b)))
 

@@ -1,8 +1,8 @@
 """The target error to expect of a surface match, and where on the skin more points would help most.
 
 The curvature of the cost at its minimum is H = Σ JᵢᵀJᵢ with Jᵢ = (nᵢ, (pᵢ − c) × nᵢ): what each
-point reveals about the pose. With the variance σ² of the points across the skin, σ²H⁻¹ is the
-covariance of the pose. Both are to first order, and for errors that are independent: a shift of the
+point reveals about the pose. σ²H⁻¹ is the covariance of the pose, with the variance σ² of the
+points across the skin. Both are to first order, and for errors that are independent: a shift of the
 skin is not. It guides a trainee who traces the skin.
 """
 
@@ -87,10 +87,10 @@ def surface_target_error(
 ) -> TargetError:
     """Return the error to expect at a target (3,), RAS mm, with its interval.
 
-    An offset that all points share, such as that of the tip's calibration, moves the whole head and
-    adds 3σ² of its standard deviation on each axis, as with fiducials. The interval is that of
-    fiducials, too (`rastrainer.registration.target_error.target_error`), and has the same blind
-    spots: errors that neighboring points share. It holds less often for drawn traces; see
+    An offset that all points share, such as a wrong calibration of the tip, moves the whole head
+    and adds 3σ² of its standard deviation on each axis, as with fiducials. The interval also
+    follows `rastrainer.registration.target_error.target_error`, and has the same blind spots:
+    errors that neighboring points share. It holds less often for drawn traces; see
     Testing/error_rates/tables.md.
     """
     return error_of_covariance(
@@ -162,7 +162,7 @@ way, and at nostrils."""
 LEAST_FLATNESS = 0.95
 """Least length of the mean of unit normals around a place: lids, lips and folds bend more."""
 BEHIND_MM = 30.0
-"""A place that is so much farther from the eye than others beside it is hidden by them."""
+"""Places this much nearer to the eye hide a place next to them."""
 _ROUNDS = 4
 _BESIDE_MM = 6.0
 _AROUND_TARGET_MM = 30.0
@@ -207,7 +207,7 @@ def nearest_traced_mm(
     `known_mm` has the distances to the points before these, (v,) float; infinite without any.
     """
     found = np.full(len(vertices), np.inf) if known_mm is None else known_mm
-    # From a middle, so that little is lost where squares are subtracted.
+    # Relative to the middle, so that subtracting squares loses few digits.
     middle = vertices.mean(axis=0)
     from_middle, places = vertices - middle, places - middle
     squares = np.einsum("ij,ij->i", from_middle, from_middle)
@@ -223,8 +223,8 @@ def nearest_traced_mm(
 class TraceGuide:
     """Follows a trace, and finds where its next points would help most.
 
-    A place stays until a centimeter has been drawn within `COVERED_MM` of it, or until a stroke
-    that was drawn elsewhere has ended: one that jumped about could not be followed.
+    A place stays until a centimeter has been drawn within `COVERED_MM` of it, or a stroke elsewhere
+    has ended: nobody could follow a place that jumps about.
     """
 
     def __init__(self, mesh: HeadMesh, target: np.ndarray, eye: np.ndarray) -> None:
@@ -239,7 +239,7 @@ class TraceGuide:
         self._told_at = -1
 
     def next_place(self, places: np.ndarray, is_drawing: bool) -> NextPlace | None:
-        """Return where to draw next; None where the trace is full or covers all that is reached.
+        """Return where to draw next; None if the trace is full or covers every place within reach.
 
         The places (n, 3), RAS mm, are all points so far by the pose that is known.
         """

@@ -1,7 +1,7 @@
 """The fit of points to a surface from several starts, by the true nearest points, trimmed.
 
 The sum of the squared distances to the nearest points on the triangles is minimized by the method
-of Gauss and Newton. A distance grows along the line to its nearest point, so each step is that of
+of Gauss and Newton. A distance grows along the line to its nearest point, so each step is a step of
 point-to-plane ICP (Chen and Medioni 1992), with that line as the plane's normal. Near the end, the
 curvature is exact: a nearest point on an edge or a corner differs from one within a triangle. Where
 a step leads up, since other triangles are nearest there, it is shortened to the minimum of the
@@ -67,8 +67,8 @@ def plane_normals(
 ) -> np.ndarray:
     """Return the unit directions (…, 3) in which the distances grow.
 
-    It is the line from the nearest point; for a point on the surface, the triangle's normal. The
-    offsets (…, 3), mm, are those of points from the nearest ones, which lie on the triangles (…)
+    It is the line from the nearest point; for a point on the surface, the triangle's normal.
+    `offsets` (…, 3), mm, lead to the points from their nearest points, which lie on `triangles` (…)
     int.
     """
     normals = offsets / np.where(distances > 0.0, distances, 1.0)[..., None]
@@ -176,12 +176,13 @@ def _add_bends(
 
 MAX_ITERATIONS = 60
 FOLLOWED_MM = 1.0
-"""After a step that moves no point farther, the triangles nearby are kept for the next ones."""
+"""After a step that moves no point farther, the triangles nearby are kept for the next steps."""
 BENT_MM = 0.5
-"""After a step that moves no point farther, edges and corners count as what they are: before, they
-would keep points from sliding past them, after, the steps would not end."""
+"""After a step that moves no point farther, edges and corners bend the cost: earlier, they would
+keep points from sliding past; without them, the steps would not end."""
 AROUND, AROUND_MM = 1.1, 0.05
-"""Of how far starts lie from their middle, and more: as far, the triangles about it are kept."""
+"""Factor and margin on the starts' distance from their middle: triangles within that reach are
+kept."""
 GATE = 3.5
 """A point counts up to this many standard deviations, estimated from the median distance."""
 LEAST_GATE_MM = 1.0
@@ -192,7 +193,7 @@ _NORMAL_PER_MEDIAN = 1.4826
 _LEAST_SHARE = 1e-4
 """A step is shortened no further: the nearest points change on the spot."""
 _SHORTENED = 0.1, 0.6
-"""To which share of the last step, at least and at most."""
+"""Least and largest share of the last step."""
 NEARBY = 24
 """Starts; of the heads that were compared, the lowest minimum draws one in ten or more."""
 NEARBY_SD = 0.25, 1.0
@@ -257,7 +258,7 @@ def fit_to_surface(
         last[active] = longest
         before, after = costs(here.distances_mm, gate), costs(next_.distances_mm, gate)
         better = after <= before
-        # `longest` is that of a share of the whole step.
+        # `longest` belongs to a share of the whole step.
         done = (longest < tolerance_mm * share[active]) | (share[active] < _LEAST_SHARE)
         share[active] = _next_share(share[active], before, after, step.slope * share[active])
         _replace(now, active[better], next_.taken(np.flatnonzero(better)))
@@ -347,7 +348,7 @@ def lowest_nearby(
 def _moved(
     points: np.ndarray, mesh: HeadMesh, fit: SurfaceFit, gate_mm: float, seed: int
 ) -> np.ndarray:
-    """Return matrices (NEARBY, 4, 4) about that of a fit, by the covariance of its pose."""
+    """Return matrices (NEARBY, 4, 4) about a fit's matrix, drawn by the covariance of its pose."""
     counts = fit.distances_mm[0] <= gate_mm
     places = transforms.apply_each(fit.matrices, points)[0]
     center = places.mean(axis=0)

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
+import scipy
 
 from rastrainer import transforms
 from rastrainer.json_checks import text
-from rastrainer.registration.distributions import f_tail
 from rastrainer.registration.fits import (
     AFFINE,
     RIGID,
@@ -337,7 +337,7 @@ def _explains(
     """Return whether `parameters` more parameters reduce the squares more than noise would."""
     floor = len(fixed) * (NOISE_FLOOR * np.linalg.norm(extents(fixed))) ** 2
     ratio = max(before - after, 0.0) / parameters / ((after + floor) / dof)
-    return tries * f_tail(float(ratio), parameters, dof) < FALSE_ALARM
+    return bool(tries * scipy.special.fdtrc(parameters, dof, ratio) < FALSE_ALARM)
 
 
 def _squares(moving: np.ndarray, fixed: np.ndarray, handedness: int = 1) -> float:

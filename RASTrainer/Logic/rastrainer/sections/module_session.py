@@ -25,7 +25,7 @@ from rastrainer.sections.target_plan_logic import PlanLogic
 from rastrainer.sections.trace_logic import TraceLogic
 from rastrainer.sections.trainees_logic import CurriculumLogic, TraineeLogic
 from rastrainer.sections.training_logic import TrainingLogic
-from rastrainer.sections.trial_logic import AbortedTrialLogic, TrialLogic
+from rastrainer.sections.trial_logic import TrialLogic
 from rastrainer.sections.trial_services import TrialServices
 from rastrainer.sections.views import BorrowedLayout, SliceFollower
 from rastrainer.slicer.background_work import BackgroundWork
@@ -139,7 +139,6 @@ class ModuleSession:
             scene, self.link, cache.find, self.openStudyPatiently, self.work, places.records, run
         )
         self.trials = TrialLogic(services, self.cohort)
-        self.aborted = AbortedTrialLogic(services)
         self.procedure = ProcedureLogic(services)
         self.traces = TraceLogic(services)
         self.replay = ReplayLogic(
@@ -162,10 +161,10 @@ class ModuleSession:
         self._trial = ""
         self.training.sceneShown.connect(self.procedure.showPlan)
         self.training.sceneShown.connect(self.traces.begin)
-        for kept in (self.trials.trialKept, self.aborted.kept):
+        for kept in (self.trials.trialKept, self.trials.abortedKept):
             kept.connect(lambda trial: self.study.leadOn(trial.trainee))
         self.trials.trialScored.connect(self._takeScored)
-        self.aborted.kept.connect(self._showTrainees)
+        self.trials.abortedKept.connect(self._showTrainees)
         self.link.stateChanged.connect(self._noticeNewTrial)
         self.replay.shown.connect(self.registration.reset)
         self.replay.procedureShown.connect(self.procedure.showOutcome)
@@ -195,7 +194,6 @@ class ModuleSession:
         if isinstance(place, Path):
             self.studyFile = place
         self.trials.forgetWaiting()
-        self.aborted.forgetWaiting()
         self.trainees.reopen()
 
     def chooseTask(self, task: Task, scenario: Scenario) -> None:
@@ -265,7 +263,7 @@ class ModuleSession:
         self._watch.close()
         self.layout.giveBack()
         listening = (self.study, self.curriculum, self.procedure, self.traces, self.training)
-        for part in (*listening, self.trials, self.aborted, self.work):
+        for part in (*listening, self.trials, self.work):
             part.close()
         self.link.disconnect()
         self.trainees.close()

@@ -75,9 +75,8 @@ class ProcedurePlanLogic:
         if not name:
             showPlan(self._scene, (), {}, ())
             return None
-        procedure, skull = scenario.procedure(name), scenario.skull_mesh
-        assert skull is not None, "a scenario with procedures has a skull"
-        meshes = read_procedure_meshes(procedure, skull)
+        procedure = scenario.procedure(name)
+        meshes = read_procedure_meshes(procedure, scenario.skull_path)
         showPlan(self._scene, procedure.trajectories, dict(meshes.no_go), procedure.checkpoints)
         return procedure
 

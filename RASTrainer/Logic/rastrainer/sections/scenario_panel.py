@@ -87,7 +87,7 @@ class ScenarioPanel(Panel):
     def show(self) -> None:
         with showErrors(_("The scenario cannot be shown.")):
             name = chosenData(self._ui.scenarioComboBox)
-            target = self._scenarios.find(name).target_position
+            target = self._scenarios.find(name).target.position_ras
 
             def showTarget() -> None:
                 self._session.slices.show(target)
@@ -210,7 +210,7 @@ class ScenarioPanel(Panel):
         self._session.chooseTask(task, scenario)
         self._showMessage(
             _("{count} fiducials, complexity {complexity:.2f}; target: {target}.").format(
-                count=len(task.labels), complexity=task.complexity, target=scenario.target_name
+                count=len(task.labels), complexity=task.complexity, target=scenario.target.name
             )
         )
 

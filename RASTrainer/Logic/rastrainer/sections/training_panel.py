@@ -98,7 +98,7 @@ class TrainingPanel(Panel):
             lambda: self.resume if logic.status.phase == Phase.PAUSED.value else self.pause,
         )
         connectClick(ui.abortButton, self.abort, _("The trial was not aborted."))
-        sayings = (self._logic.answered, session.trials.problemFound, session.aborted.problemFound)
+        sayings = self._logic.answered, session.trials.problemFound
         self.listen(
             (self._logic.changed, self.showState),
             *((signal, partial(setText, ui.trainingMessageText)) for signal in sayings),

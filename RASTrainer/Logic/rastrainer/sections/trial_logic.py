@@ -18,7 +18,7 @@ from __future__ import annotations
 import logging
 import time
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -45,7 +45,6 @@ from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.analysis import (
     RevealedTruth,
     TrialAnalysis,
-    registration_arguments,
     score_arguments,
 )
 from rastrainer.trial.ctps import Trial
@@ -54,123 +53,13 @@ from rastrainer.trial.record import TrialRecord
 Delivery = Mapping[str, Any]
 """The record of a trial as it was delivered, not yet checked."""
 
-Heard = tuple[Signal, Callable[..., Any]]
-"""A signal and what listens to it."""
-
 MAX_WAITING = 32
 """Most trials waiting to be stored; a simulator that has more offers them again."""
 
 
-class DeliveryQueue(Listening):
-    """Stores the trials that a signal of the link delivers, in their order.
-
-    Attributes:
-        problemFound: emits a sentence about a trial that was not stored, or not scored.
-    """
-
-    REFUSAL = ""
-    """Sentence about a trial that was not stored, with a place for its `{error}`."""
-    TOO_MANY = ""
-    """Sentence where too many trials wait; without it nothing is said."""
-    IN_TURN = True
-    """Whether a trial waits until the previous one is accepted; otherwise all are stored before
-    anything that arrives later."""
-
-    def __init__(self, services: TrialServices, delivered: Signal, *others: Heard) -> None:
-        super().__init__((delivered, self._receive), *others)
-        self.problemFound = Signal()
-        self._services = services
-        self._waiting: deque[Delivery] = deque()
-        self._underWay: list[Delivery] = []
-        self._lastProblem = ""
-
-    def close(self) -> None:
-        super().close()
-        self.forgetWaiting()
-
-    def forgetWaiting(self) -> None:
-        """Drop the waiting trials: the simulator offers them again, for another study."""
-        self._waiting.clear()
-        self._lastProblem = ""
-
-    def report(self, sentence: str) -> None:
-        """Report a problem once, though the trial is offered every two seconds."""
-        if sentence and sentence != self._lastProblem:
-            self._lastProblem = sentence
-            self.problemFound.emit(sentence)
-
-    def _store(self, delivery: Delivery) -> Any:
-        """Store a trial; called in the background."""
-        raise NotImplementedError
-
-    def _accept(self, stored: Any) -> None:
-        """Take what `_store` has returned, after the trial was acknowledged."""
-        raise NotImplementedError
-
-    def _receive(self, delivery: Delivery) -> None:
-        """Queue a delivered trial; the simulator offers a dropped one again."""
-        known = (*self._underWay, *self._waiting)
-        if any(each.get("trialId") == delivery.get("trialId") for each in known):
-            return
-        if len(known) >= MAX_WAITING:
-            self.report(self.TOO_MANY)
-            return
-        self._waiting.append(delivery)
-        self._storeNext()
-
-    def _storeNext(self) -> None:
-        if self._waiting and not (self._underWay and self.IN_TURN):
-            self._underWay.append(self._waiting.popleft())
-            self._services.converse(self._storing(self._underWay[-1]))
-
-    def _storing(self, delivery: Delivery) -> Steps:
-        def acknowledge() -> None:
-            trial = {"trialId": delivery["trialId"]}
-            self._services.link.send(CommandName.ACKNOWLEDGE_TRIAL, trial)
-
-        try:
-            stored = yield lambda: self._store(delivery)
-        except DeletedTrialError:
-            # Its trainee was deleted for good: it must not be offered forever.
-            acknowledge()
-        except Exception as error:
-            self.report(self.REFUSAL.format(error=error))
-        else:
-            acknowledge()
-            self._accept(stored)
-        finally:
-            self._underWay.remove(delivery)
-            self._storeNext()
-
-
-class AbortedTrialLogic(DeliveryQueue):
-    """Stores the aborted trials of a link.
-
-    After a break in the connection, an aborted trial arrives before its repeat. It must be stored
-    before it, too: a repeat counts in a study only once a reason was given for it.
-
-    Attributes:
-        kept: emits each received `AbortedTrial` once it is in the study; nothing is stored of one
-            in which nothing was done.
-    """
-
-    REFUSAL = _("An aborted trial could not be stored: {error}")
-    IN_TURN = False
-
-    def __init__(self, services: TrialServices) -> None:
-        super().__init__(services, services.link.trialAborted)
-        self.kept = Signal()
-
-    def _store(self, delivery: Delivery) -> AbortedTrial:
-        record = record_from_json(AbortedTrial, delivery)
-        self._services.inStudy(lambda study: study.add_aborted(record, delivery))
-        return record
-
-    def _accept(self, stored: AbortedTrial) -> None:
-        if stored.is_kept:
-            self.kept.emit(stored)
-
-
+REFUSAL = _("A trial could not be stored: {error}")
+ABORTED_REFUSAL = _("An aborted trial could not be stored: {error}")
+TOO_MANY = _("Trials arrive faster than they can be scored; they will be offered again later.")
 RETRY_S = 5.0
 """Pause before the next attempt after a study was locked or unreachable."""
 ANSWER_TIMEOUT_S = 60.0
@@ -178,31 +67,42 @@ ANSWER_TIMEOUT_S = 60.0
 connection: a busy simulator gets the time it needs."""
 
 
-class TrialLogic(DeliveryQueue):
-    """Receives the finished trials of a link.
+class TrialLogic(Listening):
+    """Receives the finished and the aborted trials of a link.
+
+    Finished trials are stored in their order, each after the former is accepted. After a break in
+    the connection, an aborted trial arrives before its repeat, and is stored before anything that
+    arrives later: a repeat counts in a study only once a reason was given for it.
 
     Attributes:
+        problemFound: emits a sentence about a trial that was not stored, or not scored.
         trialKept: emits each received `TrialRecord` when it is in the study.
+        abortedKept: emits each received `AbortedTrial` when it is in the study; nothing is stored
+            of a trial in which nothing was done.
         trialScored: emits each `TrialAnalysis` with truth and score, when they are in the study.
         received: UUIDs of the received trials that are in the study, in their order.
     """
-
-    REFUSAL = _("A trial could not be stored: {error}")
-    TOO_MANY = _("Trials arrive faster than they can be scored; they will be offered again later.")
 
     def __init__(self, services: TrialServices, cohort: Sequence[Trial] = ()) -> None:
         """Begin to listen; `cohort` are the trials that CTPS compares with."""
         link = services.link
         super().__init__(
-            services,
-            link.trialCompleted,
+            (link.trialCompleted, self._receive),
+            (link.trialAborted, self._receiveAborted),
             (link.stateChanged, self._followTraining),
             (link.opened, self._resumeAll),
         )
+        self.problemFound = Signal()
         self.trialKept = Signal()
+        self.abortedKept = Signal()
         self.trialScored = Signal()
         self.received: list[str] = []
+        self._services = services
         self._cohort = cohort
+        self._waiting: deque[Delivery] = deque()
+        self._underWay: list[Delivery] = []
+        self._aborted: list[Delivery] = []
+        self._lastProblems: dict[str, str] = {}
         self._beingScored: set[str] = set()
         self._scored: set[str] = set()
         self._unscored: deque[TrialRecord] = deque()
@@ -211,14 +111,80 @@ class TrialLogic(DeliveryQueue):
         # Trials that this simulator has refused, such as trials of another simulator.
         self._refused: set[str] = set()
 
+    def close(self) -> None:
+        super().close()
+        self.forgetWaiting()
+
     def forgetWaiting(self) -> None:
-        super().forgetWaiting()
-        for each in (self._unscored, self._refused, self.received, self._scored):
+        """Drop the waiting trials: the simulator offers them again, for another study."""
+        for each in (self._waiting, self._lastProblems, self._unscored, self._refused):
             each.clear()
+        self.received.clear()
+        self._scored.clear()
+
+    def report(self, sentence: str, kind: str = "") -> None:
+        """Report a problem once, though the trial is offered every two seconds."""
+        if sentence != self._lastProblems.get(kind):
+            self._lastProblems[kind] = sentence
+            self.problemFound.emit(sentence)
+
+    def _receive(self, delivery: Delivery) -> None:
+        """Queue a delivered trial; the simulator offers a dropped one again."""
+        known = (*self._underWay, *self._waiting)
+        if _isIn(known, delivery):
+            return
+        if len(known) >= MAX_WAITING:
+            self.report(TOO_MANY)
+            return
+        self._waiting.append(delivery)
+        self._storeNext()
+
+    def _receiveAborted(self, delivery: Delivery) -> None:
+        if len(self._aborted) < MAX_WAITING and not _isIn(self._aborted, delivery):
+            steps = self._keeping(delivery, self._aborted, self._storeAborted)
+            self._services.converse(steps)
+
+    def _storeNext(self) -> None:
+        if self._waiting and not self._underWay:
+            delivery = self._waiting.popleft()
+            self._services.converse(self._keeping(delivery, self._underWay, self._store))
+
+    def _keeping(
+        self, delivery: Delivery, underWay: list[Delivery], store: Callable[[Delivery], Any]
+    ) -> Steps:
+        """Store a trial in the background, acknowledge it, and accept it."""
+        underWay.append(delivery)
+        isAborted = underWay is self._aborted
+
+        def acknowledge() -> None:
+            trial = {"trialId": delivery["trialId"]}
+            self._services.link.send(CommandName.ACKNOWLEDGE_TRIAL, trial)
+
+        try:
+            stored = yield lambda: store(delivery)
+        except DeletedTrialError:
+            # Its trainee was deleted for good: it must not be offered forever.
+            acknowledge()
+        except Exception as error:
+            refusal = ABORTED_REFUSAL if isAborted else REFUSAL
+            self.report(refusal.format(error=error), "aborted" if isAborted else "")
+        else:
+            acknowledge()
+            if not isAborted:
+                self._accept(stored)
+            elif stored.is_kept:
+                self.abortedKept.emit(stored)
+        finally:
+            underWay.remove(delivery)
+            self._storeNext()
+
+    def _storeAborted(self, delivery: Delivery) -> AbortedTrial:
+        record = record_from_json(AbortedTrial, delivery)
+        self._services.inStudy(lambda study: study.add_aborted(record, delivery))
+        return record
 
     def isBeingScored(self, trialId: str) -> bool:
-        isStored = any(each.get("trialId") == trialId for each in self._underWay)
-        return isStored or trialId in self._beingScored
+        return _isIn(self._underWay, {"trialId": trialId}) or trialId in self._beingScored
 
     def _followTraining(self, state: Mapping[str, Any]) -> None:
         self._state = state
@@ -317,7 +283,7 @@ class TrialLogic(DeliveryQueue):
         connection, with the same outcome.
         """
         trialId, ask = analysis.record.trial_id, partial(Question, timeoutS=ANSWER_TIMEOUT_S)
-        answer = yield ask(CommandName.SUBMIT_REGISTRATION, registration_arguments(analysis))
+        answer = yield ask(CommandName.SUBMIT_REGISTRATION, analysis.arguments(trialId))
         truth = record_from_json(RevealedTruth, answer, "The simulator's answer")
 
         def storeTruth(study: Study) -> None:
@@ -354,6 +320,10 @@ class TrialLogic(DeliveryQueue):
             )
             study.add_results(record.trial_id, score=scored.score, procedure=scored.procedure)
             return with_progress(scored, study)
+
+
+def _isIn(deliveries: Iterable[Delivery], delivery: Delivery) -> bool:
+    return any(each.get("trialId") == delivery.get("trialId") for each in deliveries)
 
 
 def _fetchingJournal(trialId: str) -> Steps:

@@ -52,7 +52,7 @@ class MovedBy(str, Enum):
 
 
 class Allowance(str, Enum):
-    """Exceptions that a protocol may allow; without them, such a trial counts for no step."""
+    """Exceptions that a protocol may allow; otherwise, no step of a study accepts such a trial."""
 
     COMMANDS = "commands"
     CHOSEN_SEED = "chosen seed"
@@ -97,7 +97,7 @@ class HowPlayed:
         return self.way_mm.get(MovedBy.COMMANDS.value, 0.0) / way if way else 0.0
 
     def objections(self, mode: str, allows: Collection[str]) -> tuple[str, ...]:
-        """Return why the trial does not count for a step of a study, in words."""
+        """Return the reasons why a step of a study does not accept the trial, in words."""
         return tuple(why for what, why in self._objections(mode) if what.value not in allows)
 
     def _objections(self, mode: str) -> Iterator[tuple[Allowance, str]]:
@@ -167,7 +167,6 @@ class PlayRecording:
                 self._view_s[view] += 1
 
     def played(self) -> HowPlayed:
-        """Return how the trial was played so far."""
         return HowPlayed(
             started_by=self._started_by,
             seed_source=self._seed_source,

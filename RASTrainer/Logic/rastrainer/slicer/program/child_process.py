@@ -1,8 +1,8 @@
-"""A program that runs beside Slicer: started, listened to line by line, and ended.
+"""A program that runs next to Slicer: started, read line by line, and ended.
 
-Slicer's Python is a launcher that starts the real one and passes no signal on, so that to end what
-was started is not to end what runs: it is ended with all that it starts (`process_group`). The end
-of Slicer does not end it: a running trial survives a crash of Slicer.
+Slicer's Python is a launcher that starts the real Python and forwards no signal: killing the
+launcher alone would leave the real process. Both are therefore ended as a group (`process_group`).
+The end of Slicer does not end the program: a running trial survives a crash of Slicer.
 
 A function runs in such a program, too: it goes there by its name, and its result comes back. In a
 thread, it would share Python's lock with the main thread, which draws Slicer's window. VTK's
@@ -38,7 +38,7 @@ LINES_KEPT = 2000
 LONGEST_LINE = 2000
 KILL_AFTER_S = 5.0
 LAST_OUTPUT_S = 1.0
-"""How long to wait for the output of what was killed."""
+"""How long to wait for the output of a killed program."""
 CLOSING_S = 0.5
 """How long `close` waits for an orderly end: Slicer's user waits for that."""
 PERIOD_S = 0.02
@@ -83,7 +83,7 @@ class ChildProcess:
 
     @property
     def exitStatus(self) -> int | None:
-        """The program's exit status; None while it runs, regardless of what it started."""
+        """The program's exit status; None while it runs. Its child processes do not count."""
         return self._process.poll()
 
     def poll(self) -> bool:
@@ -149,7 +149,7 @@ def childEnvironment() -> dict[str, str]:
 
 @dataclass
 class ChildResult:
-    """What a program has returned, its last line that is not empty, and what it has warned of."""
+    """Exit status of a program, its last line that is not empty, and its warnings."""
 
     exitStatus: int | None = None
     lastLine: str = ""
@@ -211,7 +211,7 @@ class OwnProcess:
         `progress` may raise to end the process.
 
         Args:
-            function: `module:name`; what it takes and returns can be pickled.
+            function: `module:name`; its arguments and its result can be pickled.
         """
         with tempfile.TemporaryDirectory(prefix="RASTrainer-") as temporary:
             folder = Path(temporary)

@@ -19,7 +19,7 @@ _NETWORK = re.compile(
 )
 _KINEMATICS = re.compile(r"RASTrainer simulator computes the robot's kinematics by (.+)$")
 _LAUNCHER_CRASH = re.compile(r"error: \[.*\] exit abnormally")
-"""What the launcher of Slicer's Python writes when the real Python has been killed."""
+"""Message of the launcher of Slicer's Python after the real Python was killed."""
 _NEW_CODE = re.compile(r"RASTrainer simulator has a new pairing code for views: (\d+)$")
 
 
