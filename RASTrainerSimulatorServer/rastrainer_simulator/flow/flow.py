@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from rastrainer.journal.entries import GhostReport, GuidanceReport
 from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, GhostRule, Guidance, Phase
 from rastrainer_simulator.flow.arm_screen import ArmEvents
 from rastrainer_simulator.flow.pages.experiment import open_experiment
@@ -18,9 +19,9 @@ from rastrainer_simulator.flow.session.chosen_trial import begin_ghost, needs_tu
 from rastrainer_simulator.flow.session.open_pages import Page
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.trial_screen import (
-    PreparingPage,
     TrialScreen,
     practice_page,
+    preparing_page,
     trial_page,
 )
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
@@ -28,13 +29,13 @@ from rastrainer_simulator.flow.tutorial_screen import TutorialScreen
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.feedback_event import touch_feedback
 from rastrainer_simulator.presentation.screen import Hint, Menu, Screen, ScreenMessage, Tone
-from rastrainer_simulator.record.trial_context import GhostReport, GuidanceReport
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.state import Answer, SimulationState, StepResult, TouchStage, TrialResult
 from rastrainer_simulator.texts.texts import key_of
 
 RESULT_PAGES = ("waiting", "result", "replay", "errors", "procedure-errors", "procedure-lines")
 
+PREPARING = preparing_page.name
 NOT_RECORDED = "not recorded"
 INTERRUPTED = ("interrupted", "interrupted procedure")
 
@@ -127,9 +128,9 @@ class Flow:
         """Pause what runs, since no one can see it; `why` is the key of a sentence."""
         if self.playback is not None:
             self.playback.pause(True)
-        session = self._session
+        session, page = self._session, self._session.pages.top
         # A view that loads its picture may be too busy to say anything.
-        if isinstance(session.pages.top, PreparingPage) and why != "unseen.still":
+        if page is not None and page.name == PREPARING and why != "unseen.still":
             self._unseen = why
             session.pages.replace(trial_page(session))
         is_running = session.training.is_running
@@ -142,7 +143,7 @@ class Flow:
         page, menu = session.pages.top, session.pages.menu()
         warnings = session.notices.shown(session.texts)
         preparing = ScreenMessage(session.preparing())
-        if preparing.text and menu is not None and menu.name != PreparingPage.name:
+        if preparing.text and menu is not None and menu.name != PREPARING:
             warnings = (preparing, *warnings)
         shown = None if page is None else page.screen()
         if shown is not None:
@@ -248,7 +249,7 @@ class Flow:
             session.pages.show(None)
         elif training.phase is Phase.PAUSED:
             page: Callable[[TrainingSession], SessionPage]
-            page = PreparingPage if self.waits_for_picture else trial_page
+            page = preparing_page if self.waits_for_picture else trial_page
             page = practice_page if self._trial_screen.is_practice_over else page
             session.pages.show(page(session), ignore_input_briefly=not is_requested)
         elif training.phase is Phase.REGISTERED:

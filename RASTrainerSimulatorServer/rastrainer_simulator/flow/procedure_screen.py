@@ -13,7 +13,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.arm_screen import ArmScreen
 from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind
 from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
-from rastrainer_simulator.flow.session.plan_marks import ball, depth_ruler, plan_marks
+from rastrainer_simulator.flow.session.plan_marks import ball, plan_marks
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.trial_screen import TrialScreen
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
@@ -27,6 +27,7 @@ from rastrainer_simulator.presentation.screen import (
 )
 from rastrainer_simulator.training.feed import FeedLayer
 from rastrainer_simulator.trial_state import ProcedureState
+from rastrainer_simulator.vectors import dot, subtract
 
 PAST_TARGET_MM = 0.5
 """Farther past the planned target, drill or instrument has to be drawn back."""
@@ -141,16 +142,28 @@ class ProcedureScreen(ArmScreen):
                 )
                 for each in session.scenario.procedure(procedure.name).checkpoints
             )
-        return plan_marks(procedure, session.planned_bone(procedure.name))
+        return plan_marks(procedure, session.bone_ahead(procedure))
 
     def _ruler(self) -> DepthRuler | None:
-        procedure = self._procedure
+        """Return the scale along the axis of a locked guide; None before it is locked."""
+        procedure, say = self._procedure, self._session.texts.say
         if procedure.stage not in FED or procedure.present is None:
             return None
-        bone = self._session.planned_bone(procedure.name)
-        number = procedure.trajectory
-        here = bone[number] if number < len(bone) else None
-        return depth_ruler(procedure.present, here, self._session.texts)
+        guide, line = procedure.present.guide, procedure.present.line
+        bone = self._session.bone_ahead(procedure)
+        if guide is None:
+            return None
+        begin = MM_PER_M * dot(subtract(line.entry, guide.tip), guide.direction)
+        target = MM_PER_M * dot(subtract(line.target, guide.tip), guide.direction)
+        along = dot(line.direction, guide.direction)
+        inner = None if bone is None or bone.inner_mm is None else begin + along * bone.inner_mm
+        return DepthRuler(
+            begin,
+            None if bone is None else begin + along * bone.outer_mm,
+            inner,
+            target,
+            tuple(say(f"ruler.{name}") for name in ("entry", "outer", "inner", "target")),
+        )
 
     @property
     def _procedure(self) -> ProcedureState:

@@ -39,7 +39,7 @@ from rastrainer_simulator.flow.arm_screen import (
     off_path,
 )
 from rastrainer_simulator.flow.pages.controls import controls_page
-from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind
+from rastrainer_simulator.flow.pages.session_page import SessionPage, ShownPage, page_kind
 from rastrainer_simulator.flow.pages.start import settings_page, start_page
 from rastrainer_simulator.flow.pages.trial_review import POOR_MM
 from rastrainer_simulator.flow.session.chosen_trial import guidance_of
@@ -77,14 +77,30 @@ class TrialScreen(ArmScreen):
 
     def screen(self) -> Screen:
         session = self._session
+        training = session.training
+        is_complete = training.phase is Phase.COMPLETE and not training.is_tracing
+        touch = "hint.register" if is_complete else "hint.touch"
+        names = {
+            ControlName.TOUCH: "hint.trace" if training.is_tracing else touch,
+            ControlName.UNDO: "hint.undo",
+            ControlName.FINE: "hint.fine",
+            ControlName.BEST_VIEW: "hint.best_view",
+            ControlName.CAMERA: "hint.front",
+            ControlName.MENU: "hint.menu",
+        }
+        movement: tuple[Hint, ...] = ()
+        if session.operator.is_one_of(SourceKind.XR):
+            # In a headset the head turns the view, and the sticks are drawn in the hands.
+            del names[ControlName.BEST_VIEW]
+        elif not is_complete:
+            movement = self._movement_hints()
         covered = session.places.guidance(session.state).covered_mm
         legend = session.texts.say("coverage", distance=f"{covered:.0f}") if covered else ""
-        has_arrow = self.guidance is not Guidance.NONE
         return self._shown(
             self._instruction(),
             self._status(),
-            self._all_hints(),
-            has_arrow=has_arrow,
+            self._hints(movement, names),
+            has_arrow=self.guidance is not Guidance.NONE,
             coverage=legend,
         )
 
@@ -99,10 +115,9 @@ class TrialScreen(ArmScreen):
 
         It stays when Slicer continues the study, a moment before or after it.
         """
-        state = self._session.state
-        step = self._session.trial_step
-        is_new = step is not self._practice_step
-        if step is not None and step.kind == StepKind.TRIAL_RUN and is_new:
+        state, step = self._session.state, self._session.trial_step
+        is_run = step is not None and step.kind == StepKind.TRIAL_RUN
+        if step is not None and is_run and step is not self._practice_step:
             self._practice_step = step
             self._practice_end_s = state.elapsed + step.left_s()
         return TRIAL_RUN_S if self._practice_end_s is None else self._practice_end_s
@@ -134,7 +149,7 @@ class TrialScreen(ArmScreen):
             if orbit is not None:
                 session.view.control.go(orbit)
         elif control is ControlName.BEST_VIEW:
-            session.view.want_best()
+            session.view.is_best_wanted = True
         elif control is ControlName.UNDO:
             session.do(CommandName.UNDO)
         elif control is ControlName.TOUCH and session.training.is_tracing:
@@ -214,27 +229,6 @@ class TrialScreen(ArmScreen):
             nearest_mm = PRACTICED_MM if is_practice else LOOKED_AT_MM
             facts.append(self._toward(name, target, nearest_mm))
         return facts
-
-    def _all_hints(self) -> tuple[Hint, ...]:
-        session = self._session
-        training = session.training
-        is_complete = training.phase is Phase.COMPLETE and not training.is_tracing
-        touch = "hint.register" if is_complete else "hint.touch"
-        names = {
-            ControlName.TOUCH: "hint.trace" if training.is_tracing else touch,
-            ControlName.UNDO: "hint.undo",
-            ControlName.FINE: "hint.fine",
-            ControlName.BEST_VIEW: "hint.best_view",
-            ControlName.CAMERA: "hint.front",
-            ControlName.MENU: "hint.menu",
-        }
-        movement: tuple[Hint, ...] = ()
-        if session.operator.is_one_of(SourceKind.XR):
-            # In a headset the head turns the view, and the sticks are drawn in the hands.
-            del names[ControlName.BEST_VIEW]
-        elif not is_complete:
-            movement = self._movement_hints()
-        return self._hints(movement, names)
 
     def _is_off_the_path(self) -> bool:
         training = self._session.training
@@ -332,34 +326,32 @@ def _abort(session: TrainingSession, reason: AbortReason) -> partial[None]:
     return partial(session.do, CommandName.ABORT, {"reason": reason.value})
 
 
-class PreparingPage(SessionPage):
-    """A trial is paused until the trainee's view has drawn its picture; then it goes on."""
+def _resume_with_picture(page: ShownPage, _dt: float, is_resumed: bool = False) -> None:
+    if page.session.picture_share is None and not is_resumed:
+        page.set_value("is_resumed", True)
+        page.session.do(CommandName.RESUME)
 
-    name = "preparing"
-    _is_resumed = False
 
-    def content(self) -> PageContent:
-        session = self.session
+@page_kind(
+    "preparing",
+    leave=lambda page, **_values: page.session.pages.replace(trial_page(page.session)),
+    advance=_resume_with_picture,
+)
+def preparing_page(page: SessionPage, **_values: bool) -> PageContent:
+    """Have a trial wait until the trainee's view has drawn its picture."""
+    session = page.session
 
-        def begin_without_picture() -> None:
-            session.goes_on_blind = session.training.trial_id
-            session.do(CommandName.RESUME)
+    def begin_without_picture() -> None:
+        session.goes_on_blind = session.training.trial_id
+        session.do(CommandName.RESUME)
 
-        task = session.task_title(session.training.task)
-        said = (self.say("preparing.text", task=task), session.preparing())
-        rows = (
-            self.button("menu", label=self.say("hint.menu")),
-            self.button("begin", begin_without_picture),
-        )
-        return PageContent(said, rows=rows, first="menu")
-
-    def back(self) -> None:
-        self.session.pages.replace(trial_page(self.session))
-
-    def advance(self, dt: float) -> None:  # noqa: ARG002
-        if self.session.picture_share is None and not self._is_resumed:
-            self._is_resumed = True
-            self.session.do(CommandName.RESUME)
+    task = session.task_title(session.training.task)
+    said = (page.say("preparing.text", task=task), session.preparing())
+    rows = (
+        page.button("menu", label=page.say("hint.menu")),
+        page.button("begin", begin_without_picture),
+    )
+    return PageContent(said, rows=rows, first="menu")
 
 
 @page_kind("abort")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rastrainer.commands import CommandName
+from rastrainer.journal.entries import GUIDED_TOUCHES
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.arm import start_tip
 from rastrainer_simulator.flow.arm_screen import ArmEvents, ArmScreen
@@ -20,7 +21,6 @@ from rastrainer_simulator.flow.tutorial.tutorial import CENTERED_M, Tutorial
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 from rastrainer_simulator.presentation.screen import ErrorArrow, Hint, Screen, ScreenMessage, Tone
-from rastrainer_simulator.record.trial_context import GUIDED_TOUCHES
 from rastrainer_simulator.state import SimulationState, TouchStage
 from rastrainer_simulator.training.training import TrainingReply
 from rastrainer_simulator.vectors import Vector, distance
@@ -85,7 +85,7 @@ class TutorialScreen(ArmScreen):
                 self._homing = None
             return
         tutorial.use(session.operator.learned(session.mode))
-        tutorial.practice.end_refusal(session.state.sim_time)
+        tutorial.practice.training.end_refusal(session.state.sim_time)
         practice = tutorial.practice.training.state
         seen = TutorialObservation(
             tip=session.tip,
@@ -111,7 +111,7 @@ class TutorialScreen(ArmScreen):
         if control is ControlName.CAMERA:
             self._change_camera()
         elif control is ControlName.BEST_VIEW and tutorial.practice.has_points:
-            session.view.want_best()
+            session.view.is_best_wanted = True
         elif control is ControlName.TOUCH and tutorial.may_touch:
             self._play_reply(tutorial.touch(session.state))
         elif control is ControlName.UNDO and tutorial.step in _WITH_UNDO:

@@ -16,7 +16,7 @@ from rastrainer_simulator.input.inputs import ControlContext, ControlName, Input
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_of
 from rastrainer_simulator.presentation.screen import Fact, Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.rating.rating_work import RatingWork
-from rastrainer_simulator.replay.playback import Playback, ShownPlayback
+from rastrainer_simulator.replay.playback import Playback, PlaybackSwitch
 from rastrainer_simulator.replay.replay_presenter import RATE, ReplayPresenter
 from rastrainer_simulator.state import StepResult
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label, pair_label
@@ -40,7 +40,8 @@ class RatingPresenter(ReplayPresenter):
         """Begin with a replay; `load` begins to load another, by its trial's UUID."""
         self.work = work
         self.pages = OpenPages(self._happened)
-        self.shown = ShownPlayback(first)
+        self.shown = PlaybackSwitch(first)
+        self.shown.show(first)
         self.leave = end
         self._load = load
         self._loading: Future[Playback] | None = None

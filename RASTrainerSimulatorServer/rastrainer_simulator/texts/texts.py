@@ -67,10 +67,6 @@ class LocalizedText(str):
         """Return what a copy is made from, such as one for another process."""
         return LocalizedText, (str(self), self.key, self.values)
 
-    def __deepcopy__(self, _memo: object) -> LocalizedText:
-        """Stay the same object, as any text does where a screen is turned into JSON."""
-        return self
-
 
 def key_of(sentence: str) -> str:
     """Return the key of a sentence; "" if it is not ours."""

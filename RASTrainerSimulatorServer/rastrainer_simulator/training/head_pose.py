@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rastrainer.head.mesh import RAS_LIMIT_MM, HeadMesh, read_head_mesh
+from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.trial_head import UNMOVED, SkinShift
-from rastrainer.json_checks import point, transform
+from rastrainer.journal.entries import RecordedTruth
 from rastrainer.json_records import record_to_json
 from rastrainer.registration.target_error import true_errors
 from rastrainer.transforms import MM_PER_M
@@ -24,24 +24,8 @@ if TYPE_CHECKING:
     from rastrainer.scenario.scenario import Scenario
 
 
-_RasPoint = Annotated[np.ndarray, point(RAS_LIMIT_MM)]
-
-
-@dataclass(frozen=True)
-class Truth:
-    """True pose of the head. Hidden from clients until the trial's registration is final.
-
-    Attributes:
-        head_to_world: (4, 4) float, mm, from the MRI's RAS to World.
-        target_ras: (3,) float, mm, where the true error of a registration is reported.
-        fiducials_ras: label → (3,) float, mm, of the trial's task.
-        skin: its shift, compared with the images.
-    """
-
-    head_to_world: Annotated[np.ndarray, transform]
-    target_ras: _RasPoint
-    fiducials_ras: Mapping[str, _RasPoint]
-    skin: SkinShift = UNMOVED
+class Truth(RecordedTruth):
+    """True pose of the head. Hidden from clients until the trial's registration is final."""
 
     @classmethod
     def of(
@@ -54,7 +38,7 @@ class Truth:
         """Return the truth of a trial of a task, or without one, by the head's pose, mm."""
         fiducials = dict(zip(task.labels, task.fiducials, strict=True)) if task else {}
         pose = np.asarray(head_to_world, dtype=float)
-        return cls(pose, scenario.target_position, fiducials, skin or UNMOVED)
+        return cls(pose, scenario.target.position_ras, fiducials, skin or UNMOVED)
 
     def in_world(self, points: np.ndarray) -> np.ndarray:
         """Return a point of the head, or n of them, (3,) or (n, 3) float, RAS mm, in World, mm."""
@@ -109,7 +93,7 @@ class PlacedHead:
     @classmethod
     def of_trial(cls, scenario: Scenario, task: Task, seed: int, skin: SkinShift) -> PlacedHead:
         """Return the head of a trial, moved and with its skin shifted by the trial's seed."""
-        mesh = None if skin.is_none else read_head_mesh(scenario.head_mesh)
+        mesh = None if skin.is_none else read_head_mesh(scenario.head)
         pose = scenario.perturbed_head_to_world(seed)
         truth = Truth.of(scenario, pose, task, skin if skin.is_none else replace(skin, seed=seed))
         places = truth.in_world(np.array(list(truth.fiducials_ras.values()))) / MM_PER_M

@@ -7,7 +7,7 @@ import uuid
 from dataclasses import replace
 
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
-from rastrainer_simulator.state import EventKind, TrainingState
+from rastrainer_simulator.state import TrainingState
 from rastrainer_simulator.training import tracing
 from rastrainer_simulator.training.replies import TrialStep
 
@@ -70,8 +70,9 @@ def paused(state: TrainingState) -> TrainingState:
 
 def resumed(state: TrainingState) -> TrialStep:
     if state.trace is None or state.next_point is not None:
-        return TrialStep(replace(state, phase=Phase.RUNNING), "resumed")
-    return replace(tracing.stroke(state, state.trace.ended()), data={}, kind=EventKind.PHASE)
+        return TrialStep(replace(state, phase=Phase.RUNNING), "resumed", has_summary=False)
+    stroke = tracing.stroke(state, state.trace.ended())
+    return replace(stroke, entry=None, has_summary=False)
 
 
 def interrupted(state: TrainingState) -> TrialStep:

@@ -141,7 +141,14 @@ OWN_TRIALS = tuple(
     )
     for number in range(MOST_TRIALS)
 )
-LEARNED = TutorialOutcome("P07", "gamepad", "desktop", 112.0, 2.34, (1.2, 0.8, 0.6))
+LEARNED = TutorialOutcome(
+    trainee="P07",
+    device="gamepad",
+    mode="desktop",
+    duration_s=112.0,
+    first_error_mm=2.34,
+    errors_mm=(1.2, 0.8, 0.6),
+)
 
 
 class _SetPin:
@@ -162,7 +169,7 @@ def known_match(share: float, expected_mm: float, interval_mm: tuple, *wrong: st
 
 
 def _matched() -> Future:
-    """Return a match about which most is said: most of what may look wrong with one does."""
+    """Return a match with most of the possible warnings: the page with the longest text."""
     return known_match(0.71, 2.31, (1.12, 5.55), "slides", "several-minima", "few-inliers")
 
 
@@ -173,7 +180,7 @@ class _Loading:
 
 
 def every_screen(presenter: FlowPresenter) -> dict[str, Screen]:
-    """Return a screen of each page, by the name of its menu, and that of a running trial."""
+    """Return a screen of each page, by the name of its menu, and the screen of a running trial."""
     session, flow = presenter._session, presenter._flow
     session.trainee = "P07"
     session.state = replace(session.state, training=SCORED)
@@ -262,9 +269,9 @@ def _pages(session) -> Iterator[SessionPage]:
     yield start.PinPage(session)
     yield introduction.introduction_page(session)
     yield controls.controls_page(session)
-    yield controls.PadTestPage(session)
+    yield controls.pad_test_page(session)
     yield controls.bindings_page(session, device=keys)
-    yield controls.ListenPage(session, keys, touch)
+    yield controls.listen_page(session, keys, touch)
     yield controls.conflict_page(session, keys, touch, "KeyC")
     with_curriculum(session)
     yield experiment.ExperimentPage(session)
@@ -276,7 +283,7 @@ def _pages(session) -> Iterator[SessionPage]:
     yield trainee_id.questionnaire_page(session, QUESTIONNAIRE)
     for over_a_trial in (
         trial_screen.trial_page,
-        trial_screen.PreparingPage,
+        trial_screen.preparing_page,
         trial_screen.abort_page,
         trial_screen.practice_page,
         trial_screen.complete_page,

@@ -17,7 +17,7 @@ LONGEST_OR_EACH = [LONGEST, *(pytest.param(tag, marks=pytest.mark.soak) for tag 
 
 
 def screens_in(presenter: FlowPresenter, language: str) -> dict[str, Screen]:
-    """Return a screen of each page in a language, or each in the one where it is longest."""
+    """Return a screen of each page in a language, or each in the language where it is longest."""
     if language != LONGEST:
         session = presenter._session
         session.prefer(language=language)

@@ -29,8 +29,7 @@ class FlowLearner:
         self.trainee.touch(*self._next())
 
     def resume(self):
-        self.trainee.choose("resume")
-        self.trainee.until_menu(None)
+        self.trainee.choose("resume", None)
 
     def _next(self):
         practice = self.trainee.presenter._session.tutorial.practice

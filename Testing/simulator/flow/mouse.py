@@ -9,7 +9,7 @@ VIEW = 1
 
 
 class Mouse:
-    """What a view sends for a mouse: clicks on what can be clicked, and dragged sticks."""
+    """The input of a mouse as a view sends it: clicks on items and hints, and dragged sticks."""
 
     def __init__(self, trainee: Trainee, kind: str):
         self._trainee = trainee
@@ -49,7 +49,9 @@ class ClickingTrainee(Trainee):
 
     hands: Mouse
 
-    def choose(self, item: str) -> None:
+    def choose(self, item: str, *menu: str | None) -> None:
         """Click on an item, once its menu takes clicks."""
         self.until(lambda: self.menu.focus, "a focus")
         self.hands.click(item)
+        for name in menu:
+            self.until_menu(name)

@@ -67,8 +67,7 @@ def menu(trainee, outside):
 
 @pytest.fixture
 def page(menu):
-    menu.choose("assignments")
-    menu.until_menu("assignments")
+    menu.choose("assignments", "assignments")
     return menu
 
 
@@ -107,14 +106,12 @@ def test_each_assignment_is_a_row_with_its_state_and_the_next_one_has_focus(page
 
 
 def test_an_assignment_begins_its_trial_in_its_mode(page):
-    page.choose("assignment four")
-    page.until_menu(None)
+    page.choose("assignment four", None)
     assert (page.state.training.task, page.state.training.mode) == ("task-4", "hmd")
 
 
 def test_after_a_trial_the_next_assignment_is_offered_instead_of_the_next_task(page, outside):
-    page.choose("assignment one")
-    page.until_menu(None)
+    page.choose("assignment one", None)
     finished = waiting_page(page.presenter._session)
     offered = {row.item.name: row.item.label for row in finished.content().rows}
     assert offered["next"] == "Next: Task 2"

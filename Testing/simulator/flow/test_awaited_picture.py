@@ -9,7 +9,7 @@ from rastrainer_simulator.flow import operated_views
 from Testing.simulator.flow.trainee import Keys
 
 VIEW = 1
-"""Of the trainee's keyboard."""
+"""The view of the trainee's keyboard."""
 
 
 @pytest.fixture
@@ -47,13 +47,10 @@ def test_a_picture_that_makes_no_progress_is_not_waited_for_any_longer(waiting, 
 
 def test_the_trainee_may_begin_without_the_picture_or_leave(waiting):
     waiting.step(50)
-    waiting.choose("menu")
-    waiting.until_menu("trial")
-    waiting.choose("resume")
-    waiting.until_menu("preparing")
+    waiting.choose("menu", "trial")
+    waiting.choose("resume", "preparing")
     waiting.step(50)
-    waiting.choose("begin")
-    waiting.until_menu(None)
+    waiting.choose("begin", None)
     waiting.step(100)
     assert waiting.state.training.phase is Phase.RUNNING
 

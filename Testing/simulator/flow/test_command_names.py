@@ -16,7 +16,7 @@ OF_SEVERAL_WORDS = re.compile("|".join(each for each in COMMANDS if not each[1:]
 
 
 def texts_of(value) -> list[str]:
-    """Return every text in a record and in what it holds, except the names of its items."""
+    """Return every text in a record and in its members."""
     if isinstance(value, str):
         return [str(value)]
     if isinstance(value, tuple):
@@ -45,7 +45,7 @@ def test_no_notice_has_the_name_of_a_command(trainee, language):
     session.do("SubmitRegistration")
     session.do("LockGuide")
     session.do("UseRegistration", {"trialId": "another", "matrix": [1.0] * 16, "freMm": 1.0})
-    trainee.step(5)
+    trainee.step(20)
     notices = [message.text for message in trainee.presenter.screen.warnings]
     assert len(notices) >= 3
     assert [text for text in notices if OF_SEVERAL_WORDS.search(text)] == []

@@ -42,8 +42,7 @@ def test_unplugging_the_gamepad_in_use_stops_robot_and_clock_until_the_trial_is_
     pilot.step(20)
     assert pilot.state.elapsed == elapsed
     assert "robot has stopped" not in str(pilot.presenter.screen.warnings)
-    pilot.choose("resume")
-    pilot.until_menu(None)
+    pilot.choose("resume", None)
     assert pilot.presenter.screen.warnings == ()
     pilot.hands.push(0.6, 0.0, 0.0, False)
     pilot.step(20)
@@ -52,8 +51,7 @@ def test_unplugging_the_gamepad_in_use_stops_robot_and_clock_until_the_trial_is_
 
 def test_a_stick_held_while_a_menu_closes_does_not_move_the_arm_until_released(pilot):
     pilot.start("task-1")
-    pilot.tap("menu")
-    pilot.until_menu("trial")
+    pilot.tap_until("menu", "trial")
     pilot.hands.push(0.8, 0.0, 0.0, False)
     pilot.step(5)
     pilot.submit("Resume")
@@ -177,8 +175,7 @@ def test_a_headset_that_reconnects_as_another_view_is_the_one_being_worn(trainee
 
 def test_a_free_key_can_be_assigned_to_a_control_and_is_kept(trainee, outside):
     open_the_bindings(trainee)
-    trainee.choose("touch")
-    trainee.until_menu("listen")
+    trainee.choose("touch", "listen")
     trainee.hands.key("KeyY")
     trainee.until_menu("bindings")
     trainee.step(20)
@@ -194,13 +191,11 @@ def test_a_free_key_can_be_assigned_to_a_control_and_is_kept(trainee, outside):
 @pytest.mark.parametrize("answer", ["exchange", "cancel"])
 def test_a_key_already_in_use_is_exchanged_only_on_request(trainee, answer):
     open_the_bindings(trainee)
-    trainee.choose("touch")
-    trainee.until_menu("listen")
+    trainee.choose("touch", "listen")
     trainee.hands.key("KeyC")
     trainee.until_menu("conflict")
     assert trainee.menu.paragraphs == ("C is now Front view. Swap it with Touch?",)
-    trainee.choose(answer)
-    trainee.until_menu("bindings")
+    trainee.choose(answer, "bindings")
     trainee.step(20)
     labels = (trainee.item("touch").value, trainee.item("camera").value)
     assert labels == (("C", "Space") if answer == "exchange" else ("Space, Enter", "C"))
@@ -208,8 +203,7 @@ def test_a_key_already_in_use_is_exchanged_only_on_request(trainee, answer):
 
 def test_pressing_nothing_leaves_the_bindings_unchanged(trainee):
     open_the_bindings(trainee)
-    trainee.choose("undo")
-    trainee.until_menu("listen")
+    trainee.choose("undo", "listen")
     trainee.until_menu("bindings")
     assert trainee.presenter.controls.bindings == DEFAULT_BINDINGS
 
@@ -231,8 +225,7 @@ def test_a_plugged_in_gamepad_is_explained_before_anybody_has_acted(pilot):
     assert pilot.presenter.control.holder == ""
     pilot.step(20)
     assert pilot.presenter.screen.hints[1].control == "A"
-    pilot.choose("controls")
-    pilot.until_menu("controls")
+    pilot.choose("controls", "controls")
     assert pilot.menu.picture == "gamepad"
     assert [fact.value for fact in pilot.menu.facts[:3]] == [
         "Left stick up / Left stick down",
@@ -261,7 +254,7 @@ def test_keys_are_named_as_on_the_operators_keyboard(trainee):
 
     trainee.presenter.on_layout(1, AZERTY)
     assert first_hints(trainee)[0] == ("Z Q S D", "Move")
-    # Another page's keyboard is not theirs, and one that has left is forgotten.
+    # Another page's keyboard is not theirs, and a page that has left is forgotten.
     trainee.presenter.view_joined(2, Hello("page"))
     trainee.presenter.on_layout(2, {"KeyW": "ц"})
     trainee.hands.key("KeyE")
@@ -285,8 +278,7 @@ def test_the_hints_begin_with_the_sticks_that_move_the_tool(pilot):
     assert first_hints(pilot) == [("Left stick", "Move"), ("Right stick up / down", "Up, down")]
 
 
-@pytest.mark.parametrize("is_slow", [False, True])
-@pytest.mark.parametrize("steps", [0, 1, 5])
+@pytest.mark.parametrize(("is_slow", "steps"), [(False, 0), (False, 5), (True, 1)])
 def test_a_tap_of_a_key_is_one_small_step_of_the_tip(trainee, is_slow, steps):
     trainee.start("task-1")
     presenter = trainee.presenter
@@ -300,11 +292,10 @@ def test_a_tap_of_a_key_is_one_small_step_of_the_tip(trainee, is_slow, steps):
     assert np.linalg.norm(tip(trainee) - before) == pytest.approx(0.0002, abs=0.00005)
 
 
-@pytest.mark.parametrize(("key", "letter"), [("ArrowRight", "KeyD"), ("ArrowUp", "KeyW")])
-def test_arrow_keys_move_the_tool_as_the_letters_do(trainee, key, letter):
+def test_arrow_keys_move_the_tool_as_the_letters_do(trainee):
     trainee.start("task-1")
     moves = []
-    for code in (letter, key):
+    for code in ("KeyD", "ArrowRight"):
         before = tip(trainee)
         trainee.presenter.on_key(1, code, True, "")
         trainee.step(30)
@@ -316,10 +307,8 @@ def test_arrow_keys_move_the_tool_as_the_letters_do(trainee, key, letter):
 
 
 def test_the_test_screen_shows_every_stick_and_button_as_it_moves(pilot):
-    pilot.choose("controls")
-    pilot.until_menu("controls")
-    pilot.choose("test")
-    pilot.until_menu("test")
+    pilot.choose("controls", "controls")
+    pilot.choose("test", "test")
     pilot.hands.push(0.5, -1.0, 0.25, True)
     pilot.hands.plugged.press("x")
     pilot.step(20)
@@ -329,8 +318,7 @@ def test_the_test_screen_shows_every_stick_and_button_as_it_moves(pilot):
     assert ("X", "Best view") in [(fact.label, fact.value) for fact in pilot.menu.facts]
     pilot.tap("back")
     assert pilot.menu.name == "test"
-    pilot.tap("menu")
-    pilot.until_menu("controls")
+    pilot.tap_until("menu", "controls")
 
 
 def test_hostile_settings_files_are_reported_and_the_defaults_used(loop, outside):
@@ -348,7 +336,5 @@ def test_hostile_settings_files_are_reported_and_the_defaults_used(loop, outside
 
 
 def open_the_bindings(trainee):
-    trainee.choose("controls")
-    trainee.until_menu("controls")
-    trainee.choose("rebind")
-    trainee.until_menu("bindings")
+    trainee.choose("controls", "controls")
+    trainee.choose("rebind", "bindings")

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rastrainer.protocol import TouchRule
-from rastrainer.transforms import MM_PER_M
+from rastrainer.journal.entries import CameraChange, ProximityChange
+from rastrainer.protocol import Phase, Proximity, TouchRule
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.presentation.feedback_event import (
@@ -17,7 +17,8 @@ from rastrainer_simulator.presentation.feedback_event import (
     feedback_event,
     touch_feedback,
 )
-from rastrainer_simulator.state import TOUCH_ERRORS, Event, EventKind, TouchStage
+from rastrainer_simulator.state import TOUCH_ERRORS, Event, TouchStage, TrainingState
+from rastrainer_simulator.training.replies import phase_change
 from Testing.simulator.flow.test_whole_flow import REGISTRATION, SCORE
 
 
@@ -51,9 +52,7 @@ def test_touch_undo_proximity_contact_and_finish_give_sound_and_vibration_exactl
     # SDL only prolongs what vibrates already: here simulated time is faster than the motors.
     pilot.presenter.updates.add(lambda _news: pilot.presenter.rumble(0.0, 0.0))
     pilot.start("task-1")
-    truth = pilot.loop.simulation.truth
-    center = truth.in_world(truth.target_ras) / MM_PER_M
-    top = truth.in_world(truth.fiducials_ras["1"]) / MM_PER_M
+    center, top = pilot.place(), pilot.place("1")
     outward = (top - center) / np.linalg.norm(top - center)
     pilot.steer_to(top + 0.06 * outward, 0.02)
     pilot.steer_to(top - 0.02 * outward, 0.001, fine=True)
@@ -68,10 +67,8 @@ def test_touch_undo_proximity_contact_and_finish_give_sound_and_vibration_exactl
     pilot.tap("touch")
     pilot.until(lambda: pilot.state.training.phase == "complete")
     pilot.step(2)
-    pilot.tap("touch")
-    pilot.until_menu("complete")
-    pilot.tap("accept")
-    pilot.until_menu("waiting")
+    pilot.tap_until("touch", "complete")
+    pilot.tap_until("accept", "waiting")
     trial_id = pilot.state.training.trial_id
     assert pilot.submit("SubmitRegistration", trialId=trial_id, **REGISTRATION).ok
     assert pilot.submit("TrialScored", trialId=trial_id, **SCORE).ok
@@ -96,8 +93,7 @@ def test_every_named_sound_ships_with_rastrainer():
 
 
 def test_muted_sounds_have_zero_volume(trainee):
-    trainee.choose("settings")
-    trainee.until_menu("settings")
+    trainee.choose("settings", "settings")
     trainee.focus("volume")
     trainee.tap("right")
     trainee.step()
@@ -108,23 +104,26 @@ def test_muted_sounds_have_zero_volume(trainee):
     assert trainee.watcher.feedbacks[-1].volume == 0.0
 
 
+def change(before, after):
+    return ProximityChange(from_=before, to=after, clearance_mm=0.0)
+
+
 @pytest.mark.parametrize(
-    ("kind", "data", "meant"),
+    ("entry", "meant"),
     [
-        (EventKind.REJECTED, {}, FeedbackEvent.ERROR),
-        (EventKind.PROXIMITY, {"from": "free", "to": "contact"}, FeedbackEvent.CONTACT),
-        (EventKind.PROXIMITY, {"from": "free", "to": "proximity"}, FeedbackEvent.PROXIMITY_IN),
-        (EventKind.PROXIMITY, {"from": "contact", "to": "free"}, FeedbackEvent.PROXIMITY_OUT),
-        (EventKind.PHASE, {"phase": "paused"}, None),
-        (EventKind.CAMERA, {"camera": "far"}, None),
+        (change(Proximity.FREE, Proximity.CONTACT), FeedbackEvent.CONTACT),
+        (change(Proximity.FREE, Proximity.PROXIMITY), FeedbackEvent.PROXIMITY_IN),
+        (change(Proximity.CONTACT, Proximity.FREE), FeedbackEvent.PROXIMITY_OUT),
+        (phase_change(TrainingState(phase=Phase.PAUSED)), None),
+        (CameraChange("far"), None),
     ],
 )
-def test_each_event_maps_to_its_feedback(kind, data, meant):
-    assert feedback_event(Event(kind, 0.0, data), TouchStage.ELSEWHERE) is meant
+def test_each_event_maps_to_its_feedback(entry, meant):
+    assert feedback_event(Event(0.0, entry), TouchStage.ELSEWHERE) is meant
 
 
 def test_reaching_the_skin_where_a_touch_counts_plays_a_soft_tone_and_no_alarm():
-    reached = Event(EventKind.PROXIMITY, 0.0, {"from": "proximity", "to": "contact"})
+    reached = Event(0.0, change(Proximity.PROXIMITY, Proximity.CONTACT))
     assert feedback_event(reached, TouchStage.ON_SKIN) is FeedbackEvent.ON_SKIN
     soft, alarm = FeedbackEvent.ON_SKIN, FeedbackEvent.CONTACT
     assert soft.sound != alarm.sound

@@ -1,4 +1,4 @@
-"""The ghost: an earlier trial of the same task moves beside the arm, and nothing else changes."""
+"""The ghost: an earlier trial of the same task moves next to the arm, and nothing else changes."""
 
 from __future__ import annotations
 
@@ -14,9 +14,6 @@ from rastrainer.study_messages import StudyStep
 from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.flow.flow_presenter import FlowPresenter
-from rastrainer_simulator.flow.session.preferences import Preferences
-from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.loop.timing import TrialLimits
 from rastrainer_simulator.replay.ghost import Ghost
@@ -78,7 +75,7 @@ def lab(anywhere, tmp_path_factory):
     limits = TrialLimits(100.0, 100)
     places = Simulation(anywhere, 3), outside.services.records
     with ControlLoop(*places, speed=None, trial_limits=limits) as loop:
-        presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, Preferences())
+        presenter = outside.presenter(loop)
         lab = GhostPlace(loop, presenter, outside)
         yield lab
         lab.close()
@@ -189,5 +186,4 @@ def test_no_ghost_is_shown_during_a_replay(place):
     place.step(20)
     assert place.replay.training.phase == "running"
     assert place.ghost is None
-    place.tap("back")
-    place.until_menu("result")
+    place.tap_until("back", "result")

@@ -25,10 +25,8 @@ def _pin(outside):
 def open_pin(trainee):
     """Go from the start menu to the page where the PIN is entered."""
     trainee.until_menu("start")
-    trainee.choose("settings")
-    trainee.until_menu("settings")
-    trainee.choose("unlock")
-    trainee.until_menu("pin")
+    trainee.choose("settings", "settings")
+    trainee.choose("unlock", "pin")
 
 
 def enter(trainee, digits=PIN):
@@ -57,8 +55,7 @@ def enabled(trainee):
 
 
 def test_with_a_pin_set_only_language_and_sound_can_be_changed_without_it(trainee):
-    trainee.choose("settings")
-    trainee.until_menu("settings")
+    trainee.choose("settings", "settings")
     assert enabled(trainee) == {*OF_TRAINEES, "unlock", "back"}
     before = trainee.presenter._session.preferences
     trainee.focus("coarse")
@@ -69,8 +66,7 @@ def test_with_a_pin_set_only_language_and_sound_can_be_changed_without_it(traine
 
 def test_without_a_pin_nothing_is_locked_and_the_order_is_in_the_file(trainee, outside):
     outside.pin.set("")
-    trainee.choose("settings")
-    trainee.until_menu("settings")
+    trainee.choose("settings", "settings")
     assert enabled(trainee) == {*OPTIONS, "back"} - {"order", "tutorial"}
     assert "unlock" not in {item.name for item in trainee.menu.items}
 
@@ -202,12 +198,9 @@ def begin_tutorial(trainee):
 
 def unlock_in_the_trials_menu(trainee):
     """Open the menu of the trial, and enter the PIN in its settings."""
-    trainee.tap("menu")
-    trainee.until_menu("trial")
-    trainee.choose("settings")
-    trainee.until_menu("settings")
-    trainee.choose("unlock")
-    trainee.until_menu("pin")
+    trainee.tap_until("menu", "trial")
+    trainee.choose("settings", "settings")
+    trainee.choose("unlock", "pin")
     trainee.hands.type(PIN)
     trainee.tap("accept")
     until_unlocked(trainee)

@@ -1,4 +1,4 @@
-"""After a crash the trainee learns what was saved, and decides how to go on."""
+"""After a crash the trainee learns how much was saved, and decides how to go on."""
 
 from __future__ import annotations
 
@@ -8,9 +8,6 @@ from rastrainer.commands import CommandName, check_arguments
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.protocol import Phase
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
-from rastrainer_simulator.flow.flow_presenter import FlowPresenter
-from rastrainer_simulator.flow.session.preferences import Preferences
-from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from Testing.simulator.flow.conftest import put_back
 from Testing.simulator.flow.trainee import RATE_HZ, Keys, Trainee
@@ -45,8 +42,7 @@ def back(shared, records, outside, language):
     reading, interrupted = find_interrupted(records)
     shared.resume_trial(interrupted)
     with ControlLoop(shared, records, rate_hz=RATE_HZ, speed=None, interrupted=reading) as loop:
-        preferences = Preferences(language=language)
-        presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, preferences)
+        presenter = outside.presenter(loop, language=language)
         trainee = Trainee(loop, presenter, Keys)
         yield trainee
         trainee.close()
@@ -61,8 +57,7 @@ def journal(records):
 def test_the_menu_says_what_was_kept_and_resuming_leads_to_the_next_point(back, records, language):
     back.until_menu("trial")
     assert SENTENCES[language] in [warning.text for warning in back.presenter.screen.warnings]
-    back.choose("resume")
-    back.until_menu(None)
+    back.choose("resume", None)
     assert back.state.training.phase is Phase.RUNNING
     assert "1" in back.presenter.screen.instruction.text
     assert journal(records).of_kind("continued")
@@ -70,9 +65,7 @@ def test_the_menu_says_what_was_kept_and_resuming_leads_to_the_next_point(back, 
 
 def test_the_interrupted_trial_can_be_aborted_from_the_menu(back, records):
     back.until_menu("trial")
-    back.choose("abort")
-    back.until_menu("abort")
-    back.choose("abort")
-    back.until_menu("experiment")
+    back.choose("abort", "abort")
+    back.choose("abort", "experiment")
     # The menu is there before the journal's last line is whole on the disk.
     back.until(lambda: journal(records).integrity is Integrity.INTACT, "the journal's end")

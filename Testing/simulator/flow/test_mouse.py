@@ -6,12 +6,8 @@ import numpy as np
 import pytest
 
 from rastrainer.journal.journal_file import read_journal
-from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.flow.flow_presenter import FlowPresenter
-from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
 from rastrainer_simulator.flow.tutorial.steps import TutorialStep
-from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
 from Testing.simulator.flow.learner import FlowLearner
 from Testing.simulator.flow.mouse import VIEW, ClickingTrainee, Mouse
@@ -67,17 +63,14 @@ def test_the_arm_is_driven_and_touches_are_made_and_undone_by_clicks_and_dragged
     clicking.until_menu(None)
     assert not clicking.presenter.screen.has_sticks
     clicking.hands.click("press sticks")
-    truth = clicking.loop.simulation.truth
-    center = truth.in_world(truth.target_ras) / MM_PER_M
-    clicking.touch(truth.in_world(truth.fiducials_ras["1"]) / MM_PER_M, center)
+    clicking.touch_point("1")
     assert clicking.touched == 1
     assert clicking.presenter.control.holder == "mouse"
     controls = {hint.control for hint in clicking.presenter.screen.hints}
     assert {"Left stick", "Right stick up / down", "Touch", "Undo", "Slow", "Menu"} <= controls
     clicking.tap("undo")
     clicking.until(lambda: clicking.touched == 0, "the undo")
-    clicking.tap("menu")
-    clicking.until_menu("trial")
+    clicking.tap_until("menu", "trial")
     clicking.hands.click("resume")
     clicking.until_menu(None)
     clicking.hands.click("press sticks")
@@ -125,7 +118,7 @@ class MouseLearner(FlowLearner):
 @pytest.fixture(params=["desktop", "page"])
 def newcomer(loop, outside, request):
     """A trainee with a mouse who has to do the tutorial, as at the first start."""
-    presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, Preferences())
+    presenter = outside.presenter(loop)
     trainee = ClickingTrainee(loop, presenter, lambda it: Mouse(it, request.param))
     trainee.until_menu("start")
     yield trainee
@@ -164,8 +157,7 @@ def train_and_view_the_result(newcomer, outside, task):
 def test_the_tutorial_and_a_scored_trial_are_done_with_the_mouse_alone(newcomer, outside):
     enter_id(newcomer)
     assert not newcomer.item("trial-run").is_enabled
-    newcomer.choose("tutorial")
-    newcomer.until_menu(None)
+    newcomer.choose("tutorial", None)
     newcomer.hands.click("press sticks")
     player = TutorialPlayer(MouseLearner(newcomer), SourceKind.MOUSE)
     player.play()
@@ -174,8 +166,7 @@ def test_the_tutorial_and_a_scored_trial_are_done_with_the_mouse_alone(newcomer,
     finished = TraineeHistory(outside.services.records).learned.get("P7")
     assert (finished.device, finished.mode) == ("mouse", "desktop")
     assert max(finished.errors_mm) < 3.0
-    newcomer.choose("trial-run")
-    newcomer.until_menu(None)
+    newcomer.choose("trial-run", None)
     train_and_view_the_result(newcomer, outside, "trial-run")
 
 
@@ -183,13 +174,9 @@ def test_the_tutorial_and_a_scored_trial_are_done_with_the_mouse_alone(newcomer,
 def test_an_optional_tutorial_is_skipped_and_a_trial_scored_with_the_mouse_alone(newcomer, outside):
     newcomer.presenter._session.prefer(tutorial="optional")
     enter_id(newcomer)
-    newcomer.choose("tutorial")
-    newcomer.until_menu(None)
-    newcomer.tap("menu")
-    newcomer.until_menu("tutorial")
-    newcomer.choose("leave")
-    newcomer.until_menu("experiment")
-    newcomer.choose("trial-run")
-    newcomer.until_menu(None)
+    newcomer.choose("tutorial", None)
+    newcomer.tap_until("menu", "tutorial")
+    newcomer.choose("leave", "experiment")
+    newcomer.choose("trial-run", None)
     newcomer.hands.click("press sticks")
     train_and_view_the_result(newcomer, outside, "trial-run")

@@ -12,9 +12,6 @@ from rastrainer.journal.journal_file import read_journal
 from rastrainer.protocol import FREE, Phase
 from rastrainer.study_messages import StudyStep
 from rastrainer.trial.scoring import SCORE_VERSION
-from rastrainer_simulator.flow.flow_presenter import FlowPresenter
-from rastrainer_simulator.flow.session.preferences import Preferences
-from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.presentation.screen import Tone
 from rastrainer_simulator.texts.texts import LANGUAGES
 from rastrainer_simulator.trial_state import Tool
@@ -25,8 +22,8 @@ A_MICROMETER = 1e-3
 
 @pytest.fixture
 def presenter(loop, outside):
-    services = replace(outside.services, scores_alone=True)
-    presenter = FlowPresenter(loop, services, DEFAULT_BINDINGS, Preferences())
+    outside.services = replace(outside.services, scores_alone=True)
+    presenter = outside.presenter(loop)
     yield presenter
     presenter.close()
 
@@ -46,8 +43,7 @@ def entries_of(outside, trial_id, kind):
 def errors_are_drawn_as_revealed(trainee, registration):
     """Check the arrows on the head: the revealed errors of the touches, 5 times as long."""
     revealed = trainee.submit("SubmitRegistration", **registration).data["touchErrorsMm"]
-    trainee.choose("errors")
-    trainee.until_menu(None)
+    trainee.choose("errors", None)
     arrows = trainee.presenter.screen.errors
     lengths_mm = [1000 * math.dist(arrow.begin, arrow.end) for arrow in arrows]
     assert lengths_mm == pytest.approx([5 * error for error in revealed.values()])
@@ -56,8 +52,7 @@ def errors_are_drawn_as_revealed(trainee, registration):
         Tone.GOOD if error <= 2 else Tone.ERROR if error >= 4 else Tone.WARNING
         for error in revealed.values()
     ]
-    trainee.tap("back")
-    trainee.until_menu("result")
+    trainee.tap_until("back", "result")
     assert trainee.presenter.screen.errors == ()
 
 
@@ -114,8 +109,7 @@ def test_the_simulator_scores_nothing_with_slicer_connected_or_a_study_running(t
     trainee.step(150)
     assert trainee.menu.name == "waiting"
     assert "3D Slicer is scoring" in trainee.menu.paragraphs[0]
-    trainee.choose("menu")
-    trainee.until_menu("experiment")
+    trainee.choose("menu", "experiment")
     outside.services.assigned.take_step(StudyStep("P07", "trial", 1, 9, "task-1", "desktop"))
     outside.has_slicer = False
     trial_of_study = register(trainee)
@@ -168,7 +162,7 @@ def is_in_use(trainee):
 
 
 def feed(trainee, to_mm):
-    """Feed what is in the guide until the state shows this depth."""
+    """Feed drill or instrument until the state shows this depth."""
     tool = trainee.state.tool
     for _ in range(50):
         if trainee.state.tool is not tool or 1000 * trainee.state.feed >= to_mm:
@@ -181,7 +175,7 @@ def feed(trainee, to_mm):
 def test_without_slicer_the_simulator_registers_and_scores_a_procedure(trainee, outside):
     # A running study keeps it from scoring alone; registering reveals nothing.
     outside.services.assigned.take_step(StudyStep("P07", "trial", 1, 9, "task-1", "desktop"))
-    # While a Slicer is connected, it is the one that registers.
+    # While a Slicer is connected, it registers the trial.
     outside.has_slicer = True
     trial = to_verifying(trainee)
     trainee.step(150)

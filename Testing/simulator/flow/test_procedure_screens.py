@@ -1,4 +1,4 @@
-"""A procedure by the keyboard alone: what is read, drawn, heard and chosen in its phases."""
+"""A procedure by the keyboard alone: its texts, pictures, sounds and menus, phase by phase."""
 
 from __future__ import annotations
 
@@ -18,9 +18,6 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.procedure_outcome import procedure_outcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.flow.flow_presenter import FlowPresenter
-from rastrainer_simulator.flow.session.preferences import Preferences
-from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.igtl.publisher import sim_state
 from rastrainer_simulator.net.views.boards import seat_text
@@ -42,19 +39,19 @@ from Testing.simulator.planned_procedures import ENTRIES, TARGETS, procedure_set
 from Testing.without_tutorial import WITHOUT_TUTORIAL
 
 OFF_MM = (2.0, -1.0, 1.5)
-"""Offset of the registration, like that of one by biased touches."""
+"""Offset of the registration, as biased touches cause it."""
 DRILLED_M, MICROMETER = 0.052, 1e-6
 
 
 class Operation:
-    """The keyboard's trainee, and what was seen after each step."""
+    """The keyboard's trainee, and the screen after each step."""
 
     def __init__(self, trainee: Trainee, outside: Outside):
         self.trainee, self.outside = trainee, outside
         self.seen: dict = {}
 
     def keep(self, name: str) -> None:
-        """Record the screen, and what views receive beside it."""
+        """Record the screen, and the other messages to views."""
         trainee = self.trainee
         trainee.step(15)
         shown = trainee.presenter.shown.latest
@@ -66,8 +63,7 @@ class Operation:
     def next_step(self, item: str, tool: Tool) -> None:
         """Choose what leads to the next phase, which brings another tool."""
         trainee = self.trainee
-        trainee.tap("touch")
-        trainee.until_menu("procedure")
+        trainee.tap_until("touch", "procedure")
         self.seen[f"menu {item}"] = trainee.menu
         trainee.choose(item)
         self.until_tool(tool)
@@ -94,8 +90,7 @@ def operation(tmp_path_factory):
     outside.has_slicer = True
     simulation = Simulation(procedure_setup(folder / "scenario"), 3)
     with ControlLoop(simulation, folder / "records", rate_hz=RATE_HZ, speed=None) as loop:
-        preferences = Preferences(**{**WITHOUT_TUTORIAL, "order": "any"})
-        presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, preferences)
+        presenter = outside.presenter(loop, **{**WITHOUT_TUTORIAL, "order": "any"})
         trainee = Trainee(loop, presenter, Keys)
         try:
             operation = Operation(trainee, outside)
@@ -120,8 +115,7 @@ def perform(operation: Operation) -> None:
     operation.until_tool(Tool.GUIDE)
     operation.keep("aligning")
     for number in range(2):
-        trainee.tap("undo")
-        trainee.until_menu("procedure")
+        trainee.tap_until("undo", "procedure")
         trainee.choose("align")
         trainee.until(is_aligned(trainee), "the guide on the line")
         operation.keep(f"aligned {number}")
@@ -151,8 +145,7 @@ def begin(operation: Operation) -> None:
         trainee.tap("right")
         operation.seen["procedures"].append(trainee.item("procedure").value)
     trainee.tap("left", "left")
-    trainee.choose("task-1")
-    trainee.until_menu(None)
+    trainee.choose("task-1", None)
     for kept in range(1, 16):
         # Touches at one point could not be registered again by a replay.
         trainee.hands.push(*np.roll((1.0, 0.0, 0.0), kept).tolist(), False)
@@ -162,13 +155,11 @@ def begin(operation: Operation) -> None:
         trainee.until(lambda k=kept: trainee.touched == k, f"touch {kept}")
     trainee.until(lambda: trainee.state.training.phase is Phase.COMPLETE, "the last touch")
     trainee.step(2)
-    trainee.tap("touch")
-    trainee.until_menu("complete")
+    trainee.tap_until("touch", "complete")
     trainee.choose("register")
     trainee.until(lambda: trainee.state.training.phase is Phase.VERIFYING, "the verification")
     operation.keep("waiting for a registration")
-    trainee.tap("undo")
-    trainee.until_menu("procedure")
+    trainee.tap_until("undo", "procedure")
     operation.seen["menu without a registration"] = trainee.menu
     trainee.choose("work")
     off = np.eye(4)
@@ -194,8 +185,7 @@ def is_aligned(trainee: Trainee):
 def retract(operation: Operation) -> None:
     """Remove the drill before it has cut anything, and lock the guide again."""
     trainee = operation.trainee
-    trainee.tap("undo")
-    trainee.until_menu("procedure")
+    trainee.tap_until("undo", "procedure")
     trainee.choose("retract")
     operation.until_tool(Tool.GUIDE)
     operation.next_step("lock", Tool.DRILL)
@@ -217,27 +207,22 @@ def score(operation: Operation) -> None:
     assert scored.ok, scored.message
     trainee.until_menu("result")
     operation.seen["result"] = trainee.menu
-    trainee.choose("procedure")
-    trainee.until_menu("procedure-errors")
+    trainee.choose("procedure", "procedure-errors")
     operation.seen["errors"] = [trainee.menu]
     trainee.focus("trajectory")
     trainee.tap("right")
     operation.seen["errors"].append(trainee.menu)
-    trainee.choose("lines")
-    trainee.until_menu(None)
+    trainee.choose("lines", None)
     operation.keep("lines")
-    trainee.tap("back")
-    trainee.until_menu("procedure-errors")
-    trainee.choose("back")
-    trainee.until_menu("result")
+    trainee.tap_until("back", "procedure-errors")
+    trainee.choose("back", "result")
     replay(operation)
 
 
 def replay(operation: Operation) -> None:
     """Have the trial shown again, up to where the second guide is aligned."""
     trainee = operation.trainee
-    trainee.choose("replay")
-    trainee.until_menu(None)
+    trainee.choose("replay", None)
     playback = trainee.presenter._session.pages.top.playback
 
     def is_there() -> bool:
@@ -435,7 +420,7 @@ def test_the_picture_of_a_procedure_shows_the_same_lines_as_the_head_in_the_view
     ends = [arrow.end for arrow in screen_of(operation, "lines").errors]
     np.testing.assert_allclose(drawn, ends, atol=MICROMETER)
     path = tmp_path / "procedure.png"
-    draw_procedure(path, read_head_mesh(scenario.head_mesh), procedure, lines)
+    draw_procedure(path, read_head_mesh(scenario.head), procedure, lines)
     pixels = read_png(path).reshape(-1, 3)
     for color in (PLANNED, SHOWN, PLACED):
         is_that = np.abs(pixels - 255.0 * np.array(color.color)).max(axis=1) < 40.0

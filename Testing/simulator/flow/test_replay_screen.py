@@ -12,10 +12,7 @@ from rastrainer.protocol import FREE
 from rastrainer.study_messages import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.flow.flow_presenter import FlowPresenter
-from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input import controls
-from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.presentation.messages import Hello, InstructorOrder
 from rastrainer_simulator.replay import recorded_trial
@@ -38,7 +35,7 @@ class Place(Trainee):
         shown: the states that the views received.
     """
 
-    # At the loop's usual rate: what is shown again has enough samples.
+    # The loop's usual rate gives a replay enough samples.
     step_s, ticks_a_step = 0.008, 2
 
     def __init__(self, loop, presenter, outside):
@@ -79,8 +76,7 @@ class Place(Trainee):
         self.until_menu("result")
 
     def show_again(self, item="replay"):
-        self.choose(item)
-        self.until_menu(None)
+        self.choose(item, None)
 
     def pad(self, *buttons):
         """Press buttons of a gamepad that the page's browser reads."""
@@ -95,7 +91,7 @@ def place(anywhere, tmp_path_factory):
     outside = Outside(tmp_path_factory.mktemp("replay"))
     records = outside.services.records
     with ControlLoop(Simulation(anywhere, 3), records, speed=None) as loop:
-        presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, Preferences())
+        presenter = outside.presenter(loop)
         place = Place(loop, presenter, outside)
         place.until_menu("start")
         place.play_and_be_scored()
@@ -110,8 +106,7 @@ def result(place):
     assert place.menu.name == "result"
     yield place
     if place.menu is None:
-        place.tap("back")
-        place.until_menu("result")
+        place.tap_until("back", "result")
 
 
 def test_the_trial_is_replayed_in_the_views_while_the_arm_stands_still(result):
@@ -124,8 +119,7 @@ def test_the_trial_is_replayed_in_the_views_while_the_arm_stands_still(result):
     assert len(tips) > 50
     assert {state.training.phase for state in result.shown} == {"running"}
     assert (result.state.q, result.state.training.phase) == (arm, "scored")
-    result.tap("back")
-    result.until_menu("result")
+    result.tap_until("back", "result")
     assert result.replay is result.loop.latest
     assert result.journal.read_bytes() == before
 
@@ -159,7 +153,7 @@ def test_the_worst_touch_is_shown_from_where_it_is_seen_best(result):
     view = result.presenter._session.view
     view.control.reset()
     result.show_again("worst")
-    label = result.presenter.shown._playback.trial.worst[0]
+    label = result.presenter.shown.playback.trial.worst[0]
     truth = result.loop.simulation.truth
     fiducial = truth.in_world(truth.fiducials_ras[label]) / MM_PER_M
     cameras = result.loop.setup.scenario.cameras
@@ -330,11 +324,9 @@ def test_until_the_trial_is_loaded_the_views_say_so_and_the_trainee_can_go_back(
 
     monkeypatch.setattr(recorded_trial, "read_track", read)
     place.play_and_be_scored()
-    place.choose("replay")
-    place.until_menu("replay")
+    place.choose("replay", "replay")
     assert place.menu.title == "Your trial is being loaded"
-    place.tap("accept")
-    place.until_menu("result")
+    place.tap_until("accept", "result")
     may_load.set()
     place.submit("StartTask", task="task-1", trainee="P07")
     place.submit("Abort")

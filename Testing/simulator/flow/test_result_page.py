@@ -1,13 +1,9 @@
-"""The page of the result: what it says of a score, and how a trial beyond a limit looks."""
+"""The page of the result: its sentences about a score, and about a trial beyond a limit."""
 
 from __future__ import annotations
 
 import pytest
 
-from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.flow.flow_presenter import FlowPresenter
-from rastrainer_simulator.flow.session.preferences import Preferences
-from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.presentation.screen import Tone
 from Testing.simulator.flow.conftest import Outside, put_back
@@ -26,7 +22,7 @@ def registered(shared, tmp_path_factory):
     folder = tmp_path_factory.mktemp("played")
     put_back(shared)
     with ControlLoop(shared, folder / "records", rate_hz=RATE_HZ, speed=None) as loop:
-        presenter = FlowPresenter(loop, Outside(folder).services, DEFAULT_BINDINGS, Preferences())
+        presenter = Outside(folder).presenter(loop)
         trainee = Trainee(loop, presenter, Keys)
         trainee.records = folder / "records"
         trainee.until_menu("start")
@@ -160,27 +156,19 @@ def test_the_worst_point_is_practiced_again_and_nothing_is_recorded(registered, 
     result_of(**{**WITHIN, "isAccurate": False}, residualsMm=residuals)
     trial, records = registered.state.training.trial_id, registered.records
     before = sorted(path.name for path in records.iterdir())
-    registered.choose("practice")
-    registered.until_menu(None)
+    registered.choose("practice", None)
     shown = lambda: registered.presenter.shown.latest.training  # noqa: E731
     assert shown().next_point == "7"
     screen = registered.presenter.screen
     assert screen.status[0] == "Task 1: practice of point 7"
     registered.until(lambda: registered.presenter._flow._tutorial_screen._homing is None, "the arm")
-    truth = registered.loop.simulation.truth
-    place, center = (
-        truth.in_world(p) / MM_PER_M for p in (truth.fiducials_ras["7"], truth.target_ras)
-    )
-    registered.touch(place, center)
+    registered.touch_point("7")
     registered.until_menu("practiced")
     assert registered.menu.facts[0].label == "Error of your touch"
     assert registered.state.training.trial_id == trial
     assert sorted(path.name for path in records.iterdir()) == before
     registered.step(50)
-    registered.choose("again")
-    registered.until_menu(None)
+    registered.choose("again", None)
     assert shown().touches == ()
-    registered.tap("menu")
-    registered.until_menu("tutorial")
-    registered.choose("leave")
-    registered.until_menu("experiment")
+    registered.tap_until("menu", "tutorial")
+    registered.choose("leave", "experiment")

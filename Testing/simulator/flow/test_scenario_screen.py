@@ -33,8 +33,7 @@ def at_heads(heads, trainee):  # noqa: ARG001
     trainee.presenter.on_text(1, "trainee", "P07")
     trainee.step()
     assert trainee.item("scenario").value == "Colin27 head"
-    trainee.choose("scenario")
-    trainee.until_menu("scenario")
+    trainee.choose("scenario", "scenario")
     return trainee
 
 
@@ -47,8 +46,7 @@ def test_heads_are_listed_with_pictures_and_unusable_ones_say_why(at_heads):
     assert items["head mine"].picture == ""
     assert not items["head broken"].is_enabled
     assert items["head broken"].help == "scenario.json is empty."
-    at_heads.tap("back")
-    at_heads.until_menu("experiment")
+    at_heads.tap_until("back", "experiment")
 
 
 def test_a_chosen_head_is_loaded_and_no_task_begins_until_then(at_heads, heads):
@@ -56,8 +54,7 @@ def test_a_chosen_head_is_loaded_and_no_task_begins_until_then(at_heads, heads):
     at_heads.until(lambda: at_heads.item("head mine").value == "is being loaded", "the loading")
     assert [name for name, _ in heads.loads] == ["mine"]
     assert not at_heads.item("head colin27").is_enabled
-    at_heads.tap("back")
-    at_heads.until_menu("experiment")
+    at_heads.tap_until("back", "experiment")
     assert not at_heads.item("trial-run").is_enabled
     heads.loads[0][1].set_result(Answer(0, True))
     at_heads.until(lambda: at_heads.item("trial-run").is_enabled, "the task may begin")
@@ -93,8 +90,7 @@ def test_the_menu_goes_back_by_itself_once_the_head_is_loaded(at_heads, heads):
 def test_nothing_begins_in_the_menus_while_a_client_loads_a_head(at_heads):
     session = at_heads.presenter._session
     session.prefer(tutorial="required")
-    at_heads.tap("back")
-    at_heads.until_menu("experiment")
+    at_heads.tap_until("back", "experiment")
     begun = at_heads.loop.begin_replacement()
     at_heads.until(begun.done)
     at_heads.until(lambda: at_heads.item("tutorial").help == LOADING, "the reason")

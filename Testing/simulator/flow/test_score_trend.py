@@ -30,7 +30,7 @@ def test_only_scores_of_the_same_mode_by_fiducials_are_compared(tmp_path, histor
     write_scored(tmp_path, 7, 55.0, task="task-2")
     write_aborted(tmp_path, 8)
     history = history_of()
-    # Of a trial that was scored again the last score counts.
+    # The last score counts if a trial was scored again.
     assert history.trend(TRAINEE, "desktop") == (45.0, 55.0)
     assert history.trend(TRAINEE, "hmd") == (60.0,)
     assert history.trend("P08", "desktop") == ()

@@ -1,4 +1,4 @@
-"""What a teacher's board reads of a seat, and the orders that a teacher can give there."""
+"""A seat as a teacher's board reads it, and the orders that a teacher can give there."""
 
 from __future__ import annotations
 
@@ -51,8 +51,7 @@ def test_a_teacher_pauses_a_trial_and_the_trainee_sees_who_did(trainee, presente
     trainee.until_menu("trial")
     assert "Paused by your instructor." in said(trainee)
     assert presenter.instruct(InstructorOrder.PAUSE, "") == nothing
-    trainee.choose("resume")
-    trainee.until_menu(None)
+    trainee.choose("resume", None)
     assert "Paused by your instructor." not in said(trainee)
 
 

@@ -1,4 +1,4 @@
-"""A study that Slicer leads: the trainee's own menu begins what comes next, and nothing else."""
+"""A study that Slicer leads: the trainee's own menu begins the next step, and nothing else."""
 
 from __future__ import annotations
 
@@ -59,8 +59,7 @@ def test_only_what_comes_next_can_be_started_and_the_menu_says_what_that_is(menu
     menu.tap("accept")
     menu.step()
     assert (menu.watcher.kinds[-1], menu.state.training.phase) == ("error", "idle")
-    menu.choose("task-2")
-    menu.until_menu(None)
+    menu.choose("task-2", None)
     assert (menu.state.training.task, menu.state.training.mode) == ("task-2", "desktop")
 
 
@@ -111,21 +110,18 @@ TRIAL_RUN = StudyStep("P07", "trial-run", 2, 9, "trial-run", "desktop", minutes=
 
 def test_the_trial_run_lasts_for_the_rest_of_the_studys_minutes(menu, guide):
     tell(menu, guide, replace(TRIAL_RUN, over=6.0))
-    menu.choose("trial-run")
-    menu.until_menu(None)
+    menu.choose("trial-run", None)
     # Time continues while the start is written to disk.
     assert menu.presenter.screen.status[2].startswith(("02:00", "01:5"))
 
 
 def test_the_trial_run_ends_with_the_studys_minutes_even_if_slicer_has_moved_on(menu, guide):
     tell(menu, guide, replace(TRIAL_RUN, over=7.99))
-    menu.choose("trial-run")
-    menu.until_menu(None)
+    menu.choose("trial-run", None)
     guide.take_step(TASK_2)
     menu.until_menu("practice")
     assert "end the trial run to continue the study" in menu.menu.paragraphs[0]
-    menu.choose("finish")
-    menu.until_menu("experiment")
+    menu.choose("finish", "experiment")
     assert enabled(menu) == ["task-2"]
 
 
@@ -136,8 +132,7 @@ SUS = StudyStep("P07", "questionnaire", 5, 19, mode="desktop", questionnaire="su
 def form(menu, guide):
     """The trainee before the empty form of the SUS."""
     tell(menu, guide, SUS)
-    menu.choose("answer")
-    menu.until_menu("questionnaire")
+    menu.choose("answer", "questionnaire")
     return menu
 
 
@@ -155,8 +150,7 @@ def test_a_questionnaire_is_answered_line_by_line_and_submitted_only_when_comple
     assert not form.item("keep").is_enabled
     assert tuple(guide.answers.values()) == ()
     mark(form, 10, "left", "left", "left")
-    form.choose("keep")
-    form.until_menu("experiment")
+    form.choose("keep", "experiment")
     (answers,) = tuple(guide.answers.values())
     assert answers == StepAnswers("P07", 5, "sus", (2,) * 9 + (3,))
     assert form.menu.paragraphs == (
@@ -177,8 +171,7 @@ def test_the_performance_line_says_that_its_ends_differ_from_the_others(
     session = menu.presenter._session
     session.prefer(language=language)
     tell(menu, guide, replace(SUS, questionnaire="nasa-tlx"))
-    menu.choose("answer")
-    menu.until_menu("questionnaire")
+    menu.choose("answer", "questionnaire")
     assert [item.label for item in menu.menu.items[3:5]] == [performance, effort]
 
 

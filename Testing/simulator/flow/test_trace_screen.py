@@ -150,16 +150,13 @@ def test_landmarks_strokes_and_the_registration_are_made_with_the_trainees_contr
     count = traced(trainee)
     assert trainee.state.training.phase is Phase.COMPLETE
     assert trainee.presenter.screen.status[1] == f"{count} of 30–500 points traced"
-    trainee.tap("menu")
-    trainee.until_menu("trial")
+    trainee.tap_until("menu", "trial")
     assert trainee.menu.paragraphs == (f"P07, {count} points are traced.",)
-    trainee.choose("register")
-    trainee.until_menu("match")
+    trainee.choose("register", "match")
     trainee.until(lambda: "cannot be matched" in trainee.menu.paragraphs[0], "the reason")
     assert "are at the same place" in trainee.menu.paragraphs[0]
     assert not trainee.item("accept").is_enabled
-    trainee.choose("draw")
-    trainee.until_menu(None)
+    trainee.choose("draw", None)
     assert trainee.state.training.phase is Phase.COMPLETE
     register_matched(trainee)
 

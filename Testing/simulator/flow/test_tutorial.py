@@ -1,4 +1,4 @@
-"""The tutorial in the flow: by keyboard and gamepad; what it gates, stores, and what ends it."""
+"""The tutorial in the flow: by keyboard and gamepad; its gates, its file and its end."""
 
 from __future__ import annotations
 
@@ -27,7 +27,14 @@ from Testing.tutorial_player import TutorialPlayer
 
 FIRST = "The tutorial comes first, with the device that you use now: it takes two minutes."
 STUDY_RUN = StudyStep("P07", "trial-run", 2, 9, "trial-run", "desktop", minutes=8.0)
-LEARNED = TutorialOutcome("P07", "keyboard", "desktop", 112.0, 2.3, (1.2, 0.8, 0.6))
+LEARNED = TutorialOutcome(
+    trainee="P07",
+    device="keyboard",
+    mode="desktop",
+    duration_s=112.0,
+    first_error_mm=2.3,
+    errors_mm=(1.2, 0.8, 0.6),
+)
 
 
 def session_of(trainee):
@@ -35,7 +42,7 @@ def session_of(trainee):
 
 
 def go_to_experiment(trainee, rule="required"):
-    """Go from the start menu to that of the tasks, as P07."""
+    """Go from the start menu to the experiment menu, as P07."""
     session = session_of(trainee)
     session.prefer(tutorial=rule)
     session.trainee = "P07"
@@ -56,8 +63,7 @@ def menu(trainee):
 @pytest.fixture
 def learner(menu):
     """The trainee at the first step of the tutorial."""
-    menu.choose("tutorial")
-    menu.until_menu(None)
+    menu.choose("tutorial", None)
     menu.until(lambda: status(menu)[1:2] == ("Step 1 of 14",), "the first step")
     return menu
 
@@ -95,8 +101,7 @@ def test_the_tutorial_is_played_and_leads_to_the_trial_run(who, device, says, re
     go_to_experiment(trainee)
     assert (trainee.menu.focus, trainee.item("trial-run").help) == ("tutorial", FIRST)
     assert not trainee.item("trial-run").is_enabled
-    trainee.choose("tutorial")
-    trainee.until_menu(None)
+    trainee.choose("tutorial", None)
     phases = set()
     stop = trainee.loop.subscribe(lambda result: phases.add(result.state.training.phase.value))
     player = TutorialPlayer(FlowLearner(trainee), device)
@@ -119,8 +124,7 @@ def test_the_tutorial_is_played_and_leads_to_the_trial_run(who, device, says, re
     ]
     # Both are rounded, the file's to more digits.
     np.testing.assert_allclose(shown, finished.errors_mm, atol=0.055)
-    trainee.choose("trial-run")
-    trainee.until_menu(None)
+    trainee.choose("trial-run", None)
     assert trainee.state.training.task == "trial-run"
     trainee.submit("Abort")
     trainee.until_menu("experiment")
@@ -165,12 +169,12 @@ def test_a_touch_that_does_not_count_says_why(learner):
 
 
 def move_over_skin(learner, aside_m, lift_m=0.0):
-    """Bring the tip onto the skin so far beside the next point, or so far above it."""
+    """Bring the tip onto the skin so far from the next point, or so far above it."""
     point, center = FlowLearner(learner)._next()
     outward = (point - center) / np.linalg.norm(point - center)
     aside = np.cross(outward, (1.0, 0.0, 0.0))
     place = point + aside_m * aside / np.linalg.norm(aside)
-    # The head is not a ball: beside the point, the skin is a little lower or higher.
+    # The head is not a ball: next to the point, the skin is a little lower or higher.
     low = lift_m or -0.0005 - 0.2 * aside_m
     for height, speed in ((0.03, 200), (low, 40)):
         goal_mm = (MM_PER_M * (place + height * outward)).tolist()
@@ -271,22 +275,16 @@ def test_a_tip_resting_on_the_first_point_is_not_an_error_in_the_guided_touches(
 
 def test_the_tutorials_menu_lets_it_wait_restart_or_be_left(learner):
     go_to_step(learner, TutorialStep.UP)
-    learner.tap("menu")
-    learner.until_menu("tutorial")
+    learner.tap_until("menu", "tutorial")
     assert learner.menu.paragraphs == ("The tutorial is paused at step 5 of 14.",)
     assert learner.item("leave").label == "Skip the tutorial"
-    learner.tap("pause")
-    learner.until_menu(None)
+    learner.tap_until("pause", None)
     assert status(learner)[1] == "Step 5 of 14"
-    learner.tap("pause")
-    learner.until_menu("tutorial")
-    learner.choose("restart")
-    learner.until_menu(None)
+    learner.tap_until("pause", "tutorial")
+    learner.choose("restart", None)
     learner.until(lambda: status(learner)[1:2] == ("Step 1 of 14",), "the first step")
-    learner.tap("menu")
-    learner.until_menu("tutorial")
-    learner.choose("leave")
-    learner.until_menu("experiment")
+    learner.tap_until("menu", "tutorial")
+    learner.choose("leave", "experiment")
     assert learner.item("trial-run").is_enabled
     assert session_of(learner).tutorial is None
 
@@ -298,10 +296,8 @@ def test_if_so_configured_the_trial_run_does_not_wait_for_the_tutorial(trainee, 
     assert ("tutorial" in names) is is_listed
     assert trainee.item("trial-run").is_enabled
     if is_listed:
-        trainee.choose("tutorial")
-        trainee.until_menu(None)
-        trainee.tap("menu")
-        trainee.until_menu("tutorial")
+        trainee.choose("tutorial", None)
+        trainee.tap_until("menu", "tutorial")
         assert trainee.item("leave").label == "Skip the tutorial"
 
 
@@ -382,8 +378,7 @@ def test_the_tutorial_pauses_while_nobody_sees_it(learner):
     learner.presenter.on_visibility(1, False)
     learner.until_menu("tutorial")
     assert learner.presenter.screen.warnings[0].text == "Paused: the trial was out of sight."
-    learner.choose("resume")
-    learner.until_menu(None)
+    learner.choose("resume", None)
     learner.step(20)
     assert learner.presenter.screen.warnings == ()
 

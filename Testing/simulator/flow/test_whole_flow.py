@@ -42,24 +42,19 @@ SCORE = {
 
 
 def go_to_the_experiment_menu(trainee):
-    trainee.choose("train")
-    trainee.until_menu("introduction")
+    trainee.choose("train", "introduction")
     trainee.tap("accept", "accept", "accept")
     trainee.until_menu("controls")
-    trainee.choose("next")
-    trainee.until_menu("experiment")
+    trainee.choose("next", "experiment")
 
 
 def train_and_view_the_result(trainee, outside, monkeypatch):
     trainee.until(lambda: trainee.item("trainee").value == "P07")
     assert not trainee.item("task-1").is_enabled
     monkeypatch.setattr(trial_screen, "TRIAL_RUN_S", 0.5)
-    trainee.choose("trial-run")
-    trainee.until_menu("practice")
-    trainee.choose("finish")
-    trainee.until_menu("experiment")
-    trainee.choose("task-1")
-    trainee.until_menu(None)
+    trainee.choose("trial-run", "practice")
+    trainee.choose("finish", "experiment")
+    trainee.choose("task-1", None)
     trainee.play("task-1")
     trainee.register()
     training = trainee.state.training
@@ -79,8 +74,7 @@ def train_and_view_the_result(trainee, outside, monkeypatch):
         "What only another one knows.",
         "Point 3 is far off.",
     )
-    trainee.choose("next")
-    trainee.until_menu("experiment")
+    trainee.choose("next", "experiment")
     assert trainee.menu.focus == "task-2"
     return training.trial_id
 
@@ -97,18 +91,16 @@ def test_the_whole_flow_is_done_with_a_gamepad_alone_and_its_trial_replays_bit_f
     pilot, outside, setup, tmp_path, monkeypatch
 ):
     go_to_the_experiment_menu(pilot)
-    pilot.choose("trainee")
-    pilot.until_menu("keyboard")
+    pilot.choose("trainee", "keyboard")
     for row, steps in (("row1", 5), ("row3", 0), ("row3", 7)):
         pilot.focus(row)
         pilot.tap(*["right"] * steps, "accept")
-    pilot.choose("done")
-    pilot.until_menu("experiment")
+    pilot.choose("done", "experiment")
     trial_id = train_and_view_the_result(pilot, outside, monkeypatch)
     (path,) = (tmp_path / "records").glob(f"*{trial_id}.journal")
     reading = read_journal(path)
     assert reading.integrity is Integrity.INTACT
-    assert reading.header["trainee"] == "P07"
+    assert reading.header.trainee == "P07"
     assert {entry["operator"] for entry in reading.of_kind("input")} <= {"gamepad", ""}
     assert replay(reading, setup).difference is None
 

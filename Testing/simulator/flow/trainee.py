@@ -21,7 +21,7 @@ from rastrainer_simulator.vectors import dot, subtract
 
 PATIENCE_S = 120.0
 RATE_HZ = 62.5
-"""Of a trainee's control loop: it ticks as often as a view is drawn, and costs a quarter."""
+"""Rate of a trainee's control loop, which ticks as often as a view is drawn and costs a quarter."""
 STEP_S = 1.0 / RATE_HZ
 MAX_STEPS = 5_000
 SINK_M = 0.003
@@ -59,8 +59,8 @@ class Watcher:
 class LockStep:
     """Lets a control loop tick only when a test wants it: nothing depends on how fast it is.
 
-    Between two ticks the loop waits where all its subscribers have been called: what the test sees
-    of the loop is what they have seen.
+    The loop waits between two ticks, after all its subscribers have been called: the test sees the
+    same states as they do.
     """
 
     def __init__(self, loop):
@@ -128,7 +128,7 @@ class Trainee:
 
     @property
     def touched(self) -> int:
-        """How many touches the views show: those of the trial, or of the tutorial."""
+        """The number of touches that the views show, in the trial or in the tutorial."""
         return len(self.presenter.shown.latest.training.touches)
 
     def step(self, count: int = 1) -> None:
@@ -166,20 +166,25 @@ class Trainee:
         for control in controls:
             self.hands.tap(control)
 
-    def choose(self, item: str) -> None:
-        """Move the focus to an item and accept it."""
+    def tap_until(self, control: str, menu: str | None) -> None:
+        """Press a control, and wait for a menu, or for none."""
+        self.tap(control)
+        self.until_menu(menu)
+
+    def choose(self, item: str, *menu: str | None) -> None:
+        """Move the focus to an item and accept it; wait for the menu that follows, if named."""
         self.focus(item)
         self.tap("accept")
+        for name in menu:
+            self.until_menu(name)
 
     def go_to_experiment(self, trainee: str) -> None:
         """Read through to the experiment menu, and type an ID there."""
         self.until_menu("start")
-        self.choose("train")
-        self.until_menu("introduction")
+        self.choose("train", "introduction")
         while self.menu.name != "controls":
             self.tap("accept")
-        self.choose("next")
-        self.until_menu("experiment")
+        self.choose("next", "experiment")
         self.focus("trainee")
         self.hands.type(trainee)
 
@@ -210,8 +215,7 @@ class Trainee:
             ("skip", "controls"),
             ("next", "experiment"),
         ):
-            self.choose(choice)
-            self.until_menu(menu)
+            self.choose(choice, menu)
 
     def start(self, task: str, trainee: str = "P07", procedure: str = "") -> None:
         """Begin a task as Slicer would, and wait for its screen."""
@@ -221,11 +225,18 @@ class Trainee:
 
     def register(self) -> str:
         """Register the touches, which are complete; return the trial's UUID."""
-        self.tap("touch")
-        self.until_menu("complete")
-        self.choose("register")
-        self.until_menu("waiting")
+        self.tap_until("touch", "complete")
+        self.choose("register", "waiting")
         return self.state.training.trial_id
+
+    def place(self, label: str = "") -> np.ndarray:
+        """Return where a point of the trial is, (3,) World, m; the head's center without one."""
+        truth = self.loop.simulation.truth
+        place = truth.fiducials_ras[label] if label else truth.target_ras
+        return truth.in_world(place) / MM_PER_M
+
+    def touch_point(self, label: str) -> None:
+        self.touch(self.place(label), self.place())
 
     def touch(self, point: np.ndarray, center: np.ndarray) -> None:
         """Carry the tip over the head to a point of the skin (3,) m, and record a touch there."""
@@ -260,7 +271,7 @@ class Trainee:
         self._let_go()
 
     def _press_until_green(self, outward: np.ndarray) -> None:
-        """Press less or more, by short pushes, as long as the ring is that of the next point."""
+        """Press less or more, by short pushes, as long as the ring belongs to the next point."""
         pushes = {TouchStage.TOO_DEEP: outward, TouchStage.NEAR: -outward}
         for _ in range(SHORT_PUSHES):
             if self._stage not in pushes:
@@ -308,10 +319,8 @@ class Trainee:
 
     def play(self, task: str) -> None:
         """Touch all points of the running trial, as the head stands in it."""
-        truth = self.loop.simulation.truth
-        center = truth.in_world(truth.target_ras) / MM_PER_M
-        for label in [str(number) for number in range(1, 16)]:
-            self.touch(truth.in_world(truth.fiducials_ras[label]) / MM_PER_M, center)
+        for number in range(1, 16):
+            self.touch_point(str(number))
         assert self.state.training.phase is Phase.COMPLETE, task
         self.step(2)
 

@@ -1,4 +1,4 @@
-"""What the simulator and its views send is read as it was written."""
+"""Each message of the simulator and its views is read as it was written."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ FEEDBACK = "Feedback on a trial (in English in rastrainer/trial/wording.py)"
 
 
 def sections(language):
-    """What a language's file holds, in its order: titles, and the keys below each."""
+    """The sections of a language's file, in their order: titles, and the keys below each."""
     content = (FOLDER / f"{language}.json").read_text(encoding="utf-8")
     read = json.loads(content, object_pairs_hook=lambda pairs: [*pairs])
     return {title: [key for key, _text in pairs] for title, pairs in read}

@@ -9,7 +9,7 @@ from rastrainer.commands import CommandName
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.json_records import record_from_json
 from rastrainer.protocol import TouchRule
-from rastrainer.scenario.points import LABELS, Task
+from rastrainer.scenario.points import LABELS, Task, task_file
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.writer import HeadDraft, write_scenario
 from rastrainer.transforms import MM_PER_M
@@ -41,13 +41,13 @@ def scenario(request, tmp_path_factory):
     random = np.random.default_rng(request.param)
     mesh = egg()
     head = HeadMesh(mesh.vertices * random.uniform(0.85, 1.1, 3), mesh.triangles)
-    # From a patch of skin to all of it.
+    # A patch of skin, and all of it.
     center = random.normal(size=3)
     center[2] = abs(center[2])
     width = random.uniform(60.0, 200.0)
     away = np.linalg.norm(head.vertices - center / np.linalg.norm(center) * 90.0, axis=1)
     places = head.vertices[(head.vertices[:, 2] > -40.0) & (away < width)]
-    task = Task("task-1", "Task 1", LABELS, _apart(places, random), 10.0)
+    task = Task("task-1", "Task 1", task_file("task-1"), 10.0, fiducials=_apart(places, random))
     options = ScenarioOptions("random", "random", "none")
     made = replace(without_tasks(HeadDraft(head, "made up"), options), tasks=(task,))
     folder = tmp_path_factory.mktemp("head")
@@ -150,10 +150,10 @@ def test_a_bias_of_two_millimeters_never_helps(scenario, hands):
 
 @pytest.mark.parametrize("height_mm", [2.0, 5.0, 9.0])
 def test_hovering_never_helps(scenario, hands, height_mm):
-    """By less, chance may decide: a height of 1 mm is within the scatter of these hands."""
+    """Chance may decide below that: a height of 1 mm is within the scatter of these hands."""
     normals = fiducial_normals(scenario, "task-1")
     honest = score_of(scenario, hands, settings=ANY_HEIGHT)
-    # Above each fiducial, and off all of them by the same vector.
+    # Touches above each fiducial, and off all fiducials by the same vector.
     for offset in (normals, np.tile(normals.mean(axis=0), (15, 1))):
         # The errors along the skin must not take a touch out of its fiducial's reach.
         away = 0.9 * height_mm * offset / np.linalg.norm(offset, axis=1, keepdims=True)

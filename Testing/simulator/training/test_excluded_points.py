@@ -19,7 +19,7 @@ from Testing.simulator.training.hand_driven import Trial
 
 TASKS = ("trial-run", "task-1", "task-2", "task-3", "task-4", "task-5")
 BAD_MM = 4.0
-"""By which the five worst touches are off, along the skin or not."""
+"""Errors of the five worst touches, along the skin or not."""
 MOTION = {
     "unintended_contact_time_s": 0.0,
     "unintended_contact_path_mm": 0.0,

@@ -1,4 +1,4 @@
-"""How far drill and instrument go in the guide, and what is felt meanwhile."""
+"""The feed of drill and instrument in the guide, and how it feels."""
 
 import math
 

@@ -61,7 +61,7 @@ def controls_page(page: SessionPage, leads_on: bool = False) -> PageContent:
     ]
     rows = (
         *((page.button("next", lead_on),) if leads_on else ()),
-        page.button("test", page.open_page(PadTestPage)),
+        page.button("test", page.open_page(pad_test_page)),
         page.button(
             "rebind", lambda: session.pages.open(bindings_page(session, device=operator.kind))
         ),
@@ -70,43 +70,41 @@ def controls_page(page: SessionPage, leads_on: bool = False) -> PageContent:
     return PageContent((page.say("controls.text"),), facts, rows, picture=operator.picture)
 
 
-class PadTestPage(SessionPage):
-    """Shows what arrives. Every input but the menu's is only shown; the menu's leaves."""
+Pressed = tuple[tuple[InputDevice, str], ...]
+"""Inputs with their devices, the newest first."""
 
-    name = "test"
 
-    def __init__(self, session: TrainingSession) -> None:
-        super().__init__(session)
-        self._pressed: list[tuple[InputDevice, str]] = []
+def _show_input(page: ShownPage, device: InputDevice, name: str, pressed: Pressed = ()) -> bool:
+    if name in page.session.controls.bindings.table(device)[ControlName.MENU]:
+        return False
+    page.set_value("pressed", ((device, name), *pressed)[:REMEMBERED])
+    page.session.happened(FeedbackEvent.TEST)
+    return True
 
-    def content(self) -> PageContent:
-        held = self.session.controls.held
-        pairs = zip((*TRANSLATION, *ROTATION), (*held.translation, *held.rotation), strict=True)
-        axes = (
-            self.button(
-                f"axis{number}",
-                label=" / ".join(self.say(f"control.{control.value}") for control in controls),
-                kind=ItemKind.AXIS,
-                value=f"{position:.2f}",
-                is_enabled=False,
-            )
-            for number, (controls, position) in enumerate(pairs)
+
+@page_kind("test", take_input=_show_input)
+def pad_test_page(page: SessionPage, pressed: Pressed = ()) -> PageContent:
+    """Show every input that arrives, except the menu's, which leaves."""
+    session, say, held = page.session, page.say, page.session.controls.held
+    pairs = zip((*TRANSLATION, *ROTATION), (*held.translation, *held.rotation), strict=True)
+    axes = (
+        page.button(
+            f"axis{number}",
+            label=" / ".join(say(f"control.{control.value}") for control in controls),
+            kind=ItemKind.AXIS,
+            value=f"{position:.2f}",
+            is_enabled=False,
         )
-        facts = [Fact(self.say("control.fine"), self.say("test.yes" if held.fine else "test.no"))]
-        for device, name in self._pressed:
-            table = self.session.controls.bindings.table(device)
-            works = [self.say(f"control.{each.value}") for each in table if name in table[each]]
-            label = self.session.operator.input_label(device, name)
-            facts.append(Fact(label, self.session.texts.listed(works) or self.say("test.nothing")))
-        text = self.say("test.text", menu=self.session.operator.label(ControlName.MENU))
-        return PageContent((text,), facts, (*axes, self.button("back")))
-
-    def input_pressed(self, device: InputDevice, name: str) -> bool:
-        if name in self.session.controls.bindings.table(device)[ControlName.MENU]:
-            return False
-        self._pressed = [(device, name), *self._pressed][:REMEMBERED]
-        self.session.happened(FeedbackEvent.TEST)
-        return True
+        for number, (controls, position) in enumerate(pairs)
+    )
+    facts = [Fact(say("control.fine"), say("test.yes" if held.fine else "test.no"))]
+    for device, name in pressed:
+        table = session.controls.bindings.table(device)
+        works = [say(f"control.{each.value}") for each in table if name in table[each]]
+        label = session.operator.input_label(device, name)
+        facts.append(Fact(label, session.texts.listed(works) or say("test.nothing")))
+    text = say("test.text", menu=session.operator.label(ControlName.MENU))
+    return PageContent((text,), facts, (*axes, page.button("back")))
 
 
 GROUPS = {
@@ -134,7 +132,7 @@ def bindings_page(page: ShownPage, device: InputDevice, group: str = "work") -> 
 
     def control_row(control: ControlName) -> PageRow:
         inputs = (session.operator.input_label(device, name) for name in table[control])
-        listen = page.open_page(ListenPage, device, control)
+        listen = page.open_page(listen_page, device, control)
         label = say(f"control.{control.value}")
         return page.button(control.value, listen, label, value=session.texts.listed(inputs))
 
@@ -154,39 +152,40 @@ def bindings_page(page: ShownPage, device: InputDevice, group: str = "work") -> 
     return PageContent(rows=rows)
 
 
-class ListenPage(SessionPage):
-    """Waits for the new input of one control; the control for the menu cancels it."""
+def _count_down(page: ShownPage, dt: float, *_wanted: object, left_s: float = LISTEN_S) -> None:
+    page.set_value("left_s", left_s - dt)
+    if left_s <= dt:
+        page.back()
 
-    name = "listen"
 
-    def __init__(self, session: TrainingSession, device: InputDevice, control: ControlName) -> None:
-        super().__init__(session)
-        self._device = device
-        self._control = control
-        self._left = LISTEN_S
+def _take_new_input(
+    page: ShownPage,
+    pressed: InputDevice,
+    name: str,
+    device: InputDevice,
+    control: ControlName,
+    **_left: float,
+) -> bool:
+    session = page.session
+    if pressed is not device:
+        return False
+    if session.controls.bindings.others(device, control, name):
+        session.pages.replace(conflict_page(session, device, control, name))
+    else:
+        session.pages.close()
+        rebind(session, device, control, name)
+    return True
 
-    def content(self) -> PageContent:
-        control = self.say(f"control.{self._control.value}")
-        key = f"listen.{self._device.value}"
-        text = self.say(key, control=control, seconds=math.ceil(self._left))
-        title = self.say("listen.title", control=control)
-        return PageContent((text,), rows=(self.button("cancel"),), title=title)
 
-    def input_pressed(self, device: InputDevice, name: str) -> bool:
-        if device is not self._device:
-            return False
-        session, wanted = self.session, (device, self._control, name)
-        if session.controls.bindings.others(*wanted):
-            session.pages.replace(conflict_page(session, *wanted))
-        else:
-            session.pages.close()
-            rebind(session, *wanted)
-        return True
-
-    def advance(self, dt: float) -> None:
-        self._left -= dt
-        if self._left <= 0.0:
-            self.back()
+@page_kind("listen", advance=_count_down, take_input=_take_new_input)
+def listen_page(
+    page: SessionPage, device: InputDevice, control: ControlName, left_s: float = LISTEN_S
+) -> PageContent:
+    """Wait for the new input of a control; the control for the menu cancels it."""
+    name = page.say(f"control.{control.value}")
+    text = page.say(f"listen.{device.value}", control=name, seconds=math.ceil(left_s))
+    title = page.say("listen.title", control=name)
+    return PageContent((text,), rows=(page.button("cancel"),), title=title)
 
 
 @page_kind("conflict")
@@ -200,6 +199,7 @@ def conflict_page(
         page.back()
         rebind(session, device, control, wanted)
 
+    listen_again = partial(session.pages.replace, listen_page(session, device, control))
     others = session.controls.bindings.others(device, control, wanted)
     text = page.say(
         "conflict.text",
@@ -209,7 +209,7 @@ def conflict_page(
     )
     rows = (
         page.button("exchange", exchange),
-        page.button("another", lambda: session.pages.replace(ListenPage(session, device, control))),
+        page.button("another", listen_again),
         page.button("cancel"),
     )
     return PageContent((text,), rows=rows)

@@ -5,7 +5,7 @@ It opens the lists of heads, and of the assignments of a trainee's curriculum.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import Future
 from functools import partial
 
@@ -78,14 +78,14 @@ class ExperimentPage(SessionPage):
             yield self.button("answer", partial(self._open_questionnaire, step))
         yield from self._trainee()
         modes, shown = [mode.value for mode in Mode], say(f"mode.{session.mode}")
-        yield self.choice("mode", modes, session.mode, self._chooser("mode"), shown)
+        yield self.choice("mode", modes, session.mode, partial(setattr, session, "mode"), shown)
         yield self.button("scenario", self._open_heads, value=session.scenario.title)
         methods, offered = playable_methods(session.scenario), offered_method(session)
         is_free = step is None
         if len(methods) > 1:
             method = offered if step is None else method_of(step.method)
             shown, help_ = say(f"method.{method.value}"), say("experiment.method help")
-            choose = self._chooser("method")
+            choose = partial(setattr, session, "method")
             yield self.choice(
                 "method", methods, offered, choose, shown, is_enabled=is_free, help=help_
             )
@@ -93,13 +93,10 @@ class ExperimentPage(SessionPage):
         chosen = session.procedure if session.procedure in names else ""
         if len(names) > 1:
             shown = session.procedure_title(chosen if step is None else step.procedure)
-            choose, help_ = self._chooser("procedure"), say("experiment.procedure help")
+            choose, help_ = partial(setattr, session, "procedure"), say("experiment.procedure help")
             yield self.choice(
                 "procedure", names, chosen, choose, shown, is_enabled=is_free, help=help_
             )
-
-    def _chooser(self, name: str) -> Callable[[object], None]:
-        return partial(setattr, self.session, name)
 
     def _open_heads(self) -> None:
         session = self.session
@@ -208,13 +205,14 @@ def open_experiment(
 Listing = Future[list[ListedScenario]]
 
 
-def _is_loaded(page: ShownPage, _listing: Listing, wanted: str = "") -> bool:
-    """Return whether the chosen head is loaded; the page stays if it was refused."""
+def _leave_when_loaded(page: ShownPage, _dt: float, _listing: Listing, wanted: str = "") -> None:
+    """Go back once the chosen head is loaded; stay if it was refused."""
     session = page.session
-    return wanted == session.scenario.name and not session.reload.is_under_way
+    if wanted == session.scenario.name and not session.reload.is_under_way:
+        page.back()
 
 
-@page_kind("scenario", is_over=_is_loaded)
+@page_kind("scenario", advance=_leave_when_loaded)
 def scenario_page(page: ShownPage, listing: Listing, wanted: str = "") -> PageContent:
     """List the scenarios, and why some cannot be used."""
     session, is_loading = page.session, page.session.reload.is_under_way
@@ -245,7 +243,12 @@ def scenario_page(page: ShownPage, listing: Listing, wanted: str = "") -> PageCo
     )
 
 
-@page_kind("assignments", is_over=lambda page: page.session.curriculum is None)
+def _leave_without_curriculum(page: SessionPage, _dt: float) -> None:
+    if page.session.curriculum is None:
+        page.back()
+
+
+@page_kind("assignments", advance=_leave_without_curriculum)
 def assignments_page(page: SessionPage) -> PageContent:
     """List the assignments; the next to practice has the focus, and each begins its trial."""
     session, curriculum = page.session, page.session.curriculum

@@ -8,7 +8,7 @@ from typing import Any
 
 from rastrainer_simulator.flow.session.open_pages import Page, PageContent
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.inputs import ControlName
+from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.presentation.screen import PRESS, Hint
 
 
@@ -30,17 +30,21 @@ class SessionPage(Page):
 
 @dataclass(frozen=True)
 class PageKind:
-    """A kind of page: a function of the page and its arguments that returns the content.
+    """A kind of page: functions of the page, its arguments and its values.
 
     Attributes:
-        leave: does what going back does, given the same arguments; closes the page by default.
-        is_over: whether the page is left without the trainee, given the same arguments.
+        show: returns the content.
+        leave: does what going back does; closes the page by default.
+        advance: also given the seconds since it was called last, after the page.
+        take_input: also given a device and the name of its input, after the page; returns whether
+            the input has no other function.
     """
 
     name: str
     show: Callable[..., PageContent]
     leave: Callable[..., object] = lambda page, *_arguments, **_values: page.session.pages.close()
-    is_over: Callable[..., bool] = lambda *_arguments, **_values: False
+    advance: Callable[..., object] = lambda *_arguments, **_values: None
+    take_input: Callable[..., bool] = lambda *_arguments, **_values: False
     pause_goes_back: bool = False
 
     def __call__(self, session: TrainingSession, *arguments: Any, **values: Any) -> ShownPage:
@@ -48,7 +52,7 @@ class PageKind:
 
 
 class ShownPage(SessionPage):
-    """A page of a kind; its rows may change its `values`, which are arguments, too."""
+    """A page of a kind; its functions may change its `values`."""
 
     def __init__(
         self,
@@ -70,9 +74,11 @@ class ShownPage(SessionPage):
     def back(self) -> None:
         self._kind.leave(self, *self._arguments, **self._values)
 
-    def advance(self, dt: float) -> None:  # noqa: ARG002
-        if self._kind.is_over(self, *self._arguments, **self._values):
-            self.back()
+    def advance(self, dt: float) -> None:
+        self._kind.advance(self, dt, *self._arguments, **self._values)
+
+    def input_pressed(self, device: InputDevice, name: str) -> bool:
+        return self._kind.take_input(self, device, name, *self._arguments, **self._values)
 
 
 def page_kind(name: str, **others: Any) -> Callable[[Callable[..., PageContent]], PageKind]:

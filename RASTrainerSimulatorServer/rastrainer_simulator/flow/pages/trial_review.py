@@ -138,7 +138,7 @@ class ReplayPage(SessionPage):
         procedure = self.playback.latest.training.procedure
         if procedure is None or procedure.present is None:
             return shown
-        marks = plan_marks(procedure, session.planned_bone(procedure.name))
+        marks = plan_marks(procedure, session.bone_ahead(procedure))
         return replace(shown, errors=marks, is_head_clear=True)
 
     def advance(self, dt: float) -> None:
@@ -182,7 +182,7 @@ class ReplayPage(SessionPage):
     def _do(self, player: Player, action: PlayerAction) -> None:
         player.do(action)
         if action is PlayerAction.WORST and player.playback.trial.worst is not None:
-            self.session.view.want_best()
+            self.session.view.is_best_wanted = True
 
 
 MOST_TRIALS = 12

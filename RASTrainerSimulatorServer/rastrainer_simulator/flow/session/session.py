@@ -45,6 +45,7 @@ from rastrainer_simulator.replay.recorded_trial import TrialLoading, load_trial
 from rastrainer_simulator.state import Answer, Event, SimulationState, TouchStage, TrainingState
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from rastrainer_simulator.training.local_scorer import LocalScorer
+from rastrainer_simulator.trial_state import ProcedureState
 from rastrainer_simulator.vectors import Vector, in_meters
 from rastrainer_simulator.viewpoint.view_control import Orbit
 
@@ -234,8 +235,10 @@ class TrainingSession:
         """Return where a point of the MRI (RAS mm) truly is, World, m: only after the score."""
         return in_meters(self.control_loop.simulation.truth.in_world(point))
 
-    def planned_bone(self, procedure: str) -> tuple[BoneAhead | None, ...]:
-        return self.control_loop.simulation.planned_bone.get(procedure, ())
+    def bone_ahead(self, procedure: ProcedureState) -> BoneAhead | None:
+        """Return the bone on the current line of a procedure, as planned."""
+        planned = self.control_loop.simulation.planned_bone.get(procedure.name, ())
+        return planned[procedure.trajectory] if procedure.trajectory < len(planned) else None
 
     def load_trial(self, trial_id: str) -> TrialLoading:
         found = journals_of(self.services.records, trial_id)

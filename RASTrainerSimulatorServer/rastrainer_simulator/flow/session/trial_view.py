@@ -26,7 +26,7 @@ from rastrainer_simulator.vectors import (
     unit,
     vector,
 )
-from rastrainer_simulator.viewpoint.best_view import BestView
+from rastrainer_simulator.viewpoint.best_view import BestView, BestViews
 from rastrainer_simulator.viewpoint.view_control import (
     UP,
     CameraPose,
@@ -36,15 +36,16 @@ from rastrainer_simulator.viewpoint.view_control import (
     heading_deg,
     orbit_to,
 )
-from rastrainer_simulator.viewpoint.view_search import BestViews
 
 
 class TrialView:
     """The viewpoint of the pictures of the present trial, and what the sticks mean from there.
 
     Attributes:
-        stick_turn_deg: by how much right and forward of the sticks are turned against those of the
-            scenario's camera, counterclockwise from above.
+        stick_turn_deg: turn of the sticks' right and forward against the scenario's camera,
+            counterclockwise from above.
+        is_best_wanted: whether to go to the best view of the next point for the arm as it stands
+            now, once it is found.
         yaw_deg: where the eyes look, degrees from World's x; None without a headset's controllers.
     """
 
@@ -57,7 +58,7 @@ class TrialView:
         self._search: tuple[str, Future[BestView | None]] | None = None
         self._found: tuple[str, BestView | None] | None = None
         self._went_for: str | None = None
-        self._is_wanted = False
+        self.is_best_wanted = False
 
     def begin(self, setup: SimulationSetup, truth: Truth, state: SimulationState) -> None:
         """Look from the front again, and begin to look for the best views of a trial."""
@@ -71,15 +72,11 @@ class TrialView:
     def close(self) -> None:
         self._best.forget()
         self._search = self._found = None
-        self._went_for, self._is_wanted = None, False
+        self._went_for, self.is_best_wanted = None, False
 
     def has_moved_to(self, label: str | None) -> bool:
-        is_there = not self._is_wanted and self.control.travel is None
+        is_there = not self.is_best_wanted and self.control.travel is None
         return label is not None and label == self._went_for and is_there
-
-    def want_best(self) -> None:
-        """Go to the best view of the next point for the arm as it stands now, once it is found."""
-        self._is_wanted = True
 
     def advance(
         self,
@@ -92,12 +89,19 @@ class TrialView:
     ) -> None:
         camera = scenario.cameras[state.camera]
         self.control.use(state.camera)
-        label = state.training.next_point
-        has_searched = self._look_for(state)
+        label, has_searched = state.training.next_point, False
+        # The view of a point is looked for once it is next, and whenever it is wanted.
+        if label is not None and self._is_open(state):
+            is_new = self._found is None or self._found[0] != label
+            if self._search is None and (self.is_best_wanted or is_new):
+                self._search = label, self._best.search(label, state.q)
+            elif self._search is not None and self._search[1].done():
+                has_searched = self._search[0] == label
+                self._found, self._search = (self._search[0], self._search[1].result()), None
         view = self._view_of(state)
-        is_wanted = self._is_wanted and has_searched
+        is_wanted = self.is_best_wanted and has_searched
         if view is not None and (is_wanted or (follows and label != self._went_for)):
-            self._went_for, self._is_wanted = label, False
+            self._went_for, self.is_best_wanted = label, False
             orbit = orbit_to(camera, view.eye, view.fiducial)
             self.control.go(orbit, is_automatic=not is_wanted)
         is_still = not any((*sticks.translation, *sticks.rotation))
@@ -131,24 +135,6 @@ class TrialView:
         else:
             self.stick_turn_deg = yaw_deg - heading_deg(camera)
         return turned(sticks, self.stick_turn_deg) if axes is AxesChoice.CAMERA else sticks
-
-    def _look_for(self, state: SimulationState) -> bool:
-        """Look for the view of a point once it is next, and whenever it is wanted.
-
-        Returns whether a search has just ended.
-        """
-        label = state.training.next_point
-        if label is None or not self._is_open(state):
-            return False
-        if self._search is None:
-            if self._is_wanted or self._found is None or self._found[0] != label:
-                self._search = label, self._best.search(label, state.q)
-            return False
-        searched, search = self._search
-        if not search.done():
-            return False
-        self._search, self._found = None, (searched, search.result())
-        return searched == label
 
     def _is_open(self, state: SimulationState) -> bool:
         training = state.training

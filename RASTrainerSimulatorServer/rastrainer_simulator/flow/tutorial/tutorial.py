@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from rastrainer.commands import CommandName
 from rastrainer.head.trial_head import Perturbation
+from rastrainer.journal.entries import GUIDED_TOUCHES
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import SimulationSetup
@@ -22,8 +23,8 @@ from rastrainer_simulator.flow.tutorial.steps import (
     steps_for,
 )
 from rastrainer_simulator.input.inputs import SourceKind
-from rastrainer_simulator.record.trial_context import GUIDED_TOUCHES, TutorialOutcome
-from rastrainer_simulator.state import OperatorCommand, SimulationState, TouchStage, TrainingState
+from rastrainer_simulator.record.trial_context import TutorialOutcome
+from rastrainer_simulator.state import OperatorCommand, SimulationState, TouchStage
 from rastrainer_simulator.training.rules import TouchMoment, touch_stage
 from rastrainer_simulator.training.training import Training, TrainingReply
 from rastrainer_simulator.vectors import ZERO, Vector, distance, in_meters, in_millimeters, vector
@@ -74,20 +75,9 @@ class TouchPractice:
         start = {**arguments, "task": short.name}
         self.training.handle(OperatorCommand(CommandName.START_TASK, start), _moment(state))
         self.has_points = False
-        self._shown = self._present()
-
-    def end_refusal(self, sim_time: float) -> None:
-        self.training.end_refusal(sim_time)
-        self._shown = self._present()
 
     def handle(self, command: str, state: SimulationState) -> TrainingReply:
-        reply = self.training.handle(OperatorCommand(command), _moment(state))
-        self._shown = self._present()
-        return reply
-
-    def show_points(self) -> None:
-        self.has_points = True
-        self._shown = self._present()
+        return self.training.handle(OperatorCommand(command), _moment(state))
 
     def errors_mm(self) -> tuple[float, ...]:
         """Return how far each kept touch is from its point, in mm."""
@@ -97,7 +87,10 @@ class TouchPractice:
 
     def shown(self, state: SimulationState) -> SimulationState:
         """Return a state of the simulation as the views show it; called in any thread."""
-        training, goal = self._shown
+        training = self.training.state
+        if not self.has_points:
+            training = replace(training, next_point=None)
+        goal = self.training.goal_of(training)
         # The state says that the arm is stopped, but not by which obstacle.
         obstacle = state.touch.value if state.touch is TouchStage.ARM else ""
         stage = touch_stage(
@@ -113,17 +106,12 @@ class TouchPractice:
 
     def off_center_mm(self, state: SimulationState) -> float | None:
         """Return how far from a point's center the tip is on the skin, mm; None elsewhere."""
-        goal, tip = self.training.goal, _tip(state)
+        goal, tip = self.training.goal_of(self.training.state), _tip(state)
         if goal is None or state.tip_clearance > self._settings.skin_tolerance:
             return None
         off = distance(tip, goal)
         is_beside = CENTERED_M < off <= self._of_trials.acceptance_radius
         return MM_PER_M * off if is_beside else None
-
-    def _present(self) -> tuple[TrainingState, Vector | None]:
-        if self.has_points:
-            return self.training.state, self.training.goal
-        return replace(self.training.state, next_point=None), None
 
 
 def _moment(state: SimulationState) -> TouchMoment:
@@ -155,14 +143,15 @@ class Tutorial:
         self.setup = setup
         trial = {**arguments, "trialId": str(uuid.uuid4())}
         self._first = TouchPractice(setup, state, trial, slice(1))
-        guided, rest, task = slice(1, 1 + GUIDED_TOUCHES), self._first.training.goal, TRIAL_RUN
+        rest = self._first.training.goal_of(self._first.training.state)
+        guided, task = slice(1, 1 + GUIDED_TOUCHES), TRIAL_RUN
         self.practiced = practiced
         if practiced:
             task, rest = arguments["task"], None
             place = setup.scenario.task(task).labels.index(practiced)
             guided = slice(place, place + 1)
         self._guided = TouchPractice(setup, state, trial, guided, rest, task)
-        self._guided.show_points()
+        self._guided.has_points = True
         truths = self._first.training.truth, self._guided.training.truth
         self.points = {
             label: in_meters(truth.in_world(point))
@@ -224,7 +213,7 @@ class Tutorial:
         if step is None:
             return None
         if step in WITH_POINTS and not self._first.has_points:
-            self._first.show_points()
+            self._first.has_points = True
         first = self._first_seen or before
         if first.yaw_deg is None and before.yaw_deg is not None:
             # The headset's controllers have only now been used.
