@@ -16,7 +16,7 @@ export type AxesChoice = "camera" | "robot";
 
 export type Vector = readonly [number, number, number];
 
-/** Where a camera stands: World, m. */
+/** Where a camera stands, World, m; the focal point is in the middle of its picture. */
 export interface CameraPose {
   readonly position: Vector;
   readonly focalPoint: Vector;
@@ -363,7 +363,7 @@ export interface SeatReport {
   readonly touch: TouchStage;
 }
 
-/** What a board shows of a seat; `seat` is None while it is not watched. */
+/** A seat on the board; `seat` is None while it is not watched. */
 export interface TileNews {
   readonly id: string;
   readonly name: string;
