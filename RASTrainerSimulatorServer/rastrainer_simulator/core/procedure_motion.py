@@ -107,18 +107,18 @@ class ProcedureMotion:
         if phase not in FEED_PHASES:
             return NOT_FED
         before = self.feed
-        way = self.drive.way(dt, phase, operator_input)
-        if way.distance == 0.0:
+        way, is_by_stick = self.drive.way(dt, phase, operator_input)
+        if way == 0.0:
             return NOT_FED
-        self.feed = before.moved(phase, way.distance)
+        self.feed = before.moved(phase, way)
         layer = self.feed.layer(phase)
         has_moved = self.feed.depth != before.depth
         if layer is before.layer(phase):
-            return Fed(has_moved, way.is_by_stick)
+            return Fed(has_moved, is_by_stick)
         depth_mm = MM_PER_M * self.feed.depth
         data = {"phase": phase.value, "layer": layer.value, "feedMm": depth_mm}
         event = Event(EventKind.FEED, sim_time, data)
-        return Fed(has_moved, way.is_by_stick, (event,))
+        return Fed(has_moved, is_by_stick, (event,))
 
     def way(
         self, guide: GuideAxis, procedure: ProcedureState | None, stand_off_mm: float
