@@ -105,7 +105,7 @@ DIRECTIONS = {
     "Left parietal": (-0.8, -0.45, 0.7),
     "Occiput": (0.0, -1.0, 0.25),
 }
-"""In which checkpoints are looked for, from the head's center."""
+"""Checkpoints are sought in these directions from the head's center."""
 
 CANDIDATES = 4000
 STEEPEST_COST, AWAY_COST, LENGTH_COST = 1.0, 1.0, 0.15

@@ -1,5 +1,5 @@
-"""Trials registered by every method, side by side: played ones by each method that they allow, and
-virtual ones on one head, with stated noise and skin shift.
+"""Trials registered by every method, side by side: played trials by each method that they allow,
+and virtual trials on one head, with stated noise and skin shift.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ class MethodPoints:
     """The points that one method registers.
 
     Attributes:
-        moving_mm: (n, 3) float, World, touched points; those of a surface match give its start.
+        moving_mm: (n, 3) float, World, touched points; a surface match starts from them.
         fixed_mm: (n, 3) float, RAS, where they belong.
         normals: (n, 3) float, of the skin there, RAS; None if the error has no direction.
         cloud_mm: (k, 3) float, World, traced or scanned points; empty of touches alone.
@@ -223,7 +223,7 @@ METHODS = tuple(PUBLISHED_NOISE)
 
 @dataclass(eq=False)
 class MethodStudy:
-    """The common settings of virtual trials, and what they share; points in RAS mm.
+    """The common settings and data of virtual trials; points in RAS mm.
 
     Attributes:
         shift_mm: root mean square length of the skin's shift; each trial has its own.

@@ -178,7 +178,7 @@ def standings(
     own = [o for o in outcomes if o.trainee == record.trainee and o is not this]
     others = [o for o in outcomes if o.trainee != record.trainee]
     # Title, unit, 1 where more is better and −1 where less is, value, group, and its values.
-    compared: list[tuple[str, str, int, float | None, str, list[float | None]]] = []
+    compared: list[tuple[str, str, int, float | None, str, Sequence[float | None]]] = []
     for group, members in ((_("own"), own), (_("others"), others)):
         scores = [o.score for o in members if o.method == this.method]
         times = [o.completion_time_s for o in members]
