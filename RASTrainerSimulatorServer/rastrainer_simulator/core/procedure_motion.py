@@ -107,16 +107,16 @@ class ProcedureMotion:
         if phase not in FEED_PHASES:
             return NOT_FED
         before = self.feed
-        way = self.drive.way(dt, phase, operator_input)
-        if way.distance == 0.0:
+        way, is_by_stick = self.drive.way(dt, phase, operator_input)
+        if way == 0.0:
             return NOT_FED
-        self.feed = before.moved(phase, way.distance)
+        self.feed = before.moved(phase, way)
         layer = self.feed.layer(phase)
         has_moved = self.feed.depth != before.depth
         if layer is before.layer(phase):
-            return Fed(has_moved, way.is_by_stick)
+            return Fed(has_moved, is_by_stick)
         entry = FeedChange(phase, layer.value, MM_PER_M * self.feed.depth)
-        return Fed(has_moved, way.is_by_stick, (Event(sim_time, entry),))
+        return Fed(has_moved, is_by_stick, (Event(sim_time, entry),))
 
     def way(
         self, guide: GuideAxis, procedure: ProcedureState | None, stand_off_mm: float
