@@ -68,7 +68,7 @@ def test_integers_of_any_length_and_underflowing_numbers_are_finite():
 
 
 def test_a_pseudonym_has_no_space_at_its_ends():
-    with pytest.raises(InputError, match="^The value must be .*without a space at its beginning"):
+    with pytest.raises(InputError, match="without a space at its beginning"):
         accepted(json_checks.pseudonym, " a", "The value")
 
 
