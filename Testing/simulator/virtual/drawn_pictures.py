@@ -15,8 +15,7 @@ from rastrainer_simulator.collision.clearance import LineOfSight
 from rastrainer_simulator.collision.collision import head_collision
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.robot.kinematics import make_kinematics
-from rastrainer_simulator.scene.skin import Skin
-from rastrainer_simulator.scene.skin_marks import place_marks
+from rastrainer_simulator.scene.skin_marks import Skin, place_marks
 from rastrainer_simulator.state import SimulationState, TouchStage
 from rastrainer_simulator.teleoperation.steering import camera_axes
 from rastrainer_simulator.vectors import Vector, vector
