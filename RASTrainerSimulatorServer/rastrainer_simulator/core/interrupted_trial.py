@@ -64,7 +64,7 @@ def seed_of(header: JournalHeader) -> int:
     if header.seed is None:
         raise InputError(
             "The journal of a trial that was not ended does not tell where the head was: keep the "
-            f"file of the same name with the ending {SEED_SUFFIX} next to it."
+            f"file of the same name with the ending {SEED_SUFFIX} beside it."
         )
     return header.seed
 
