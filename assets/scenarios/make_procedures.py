@@ -19,14 +19,9 @@ from colin27_setup import write_table
 
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import write_json
-from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
+from rastrainer.head.mesh import HeadMesh, mesh_crossings, read_head_mesh, write_head_mesh
 from rastrainer.procedure.checks import distances_to_no_go, planned_bone
-from rastrainer.procedure.geometry import (
-    axis_distance_mm,
-    mesh_crossings,
-    segment_distances_mm,
-    skull_angle_deg,
-)
+from rastrainer.procedure.geometry import axis_distance_mm, segment_distances_mm, skull_angle_deg
 from rastrainer.procedure.plan import (
     Checkpoint,
     NoGoStructure,

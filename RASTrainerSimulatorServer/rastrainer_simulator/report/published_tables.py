@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +10,6 @@ from markupsafe import Markup
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import counted, fixed, significant
-from rastrainer.study.outcomes import task_title
 from rastrainer.study.study_data import StudyData
 from rastrainer.trial.ctps import (
     CTPS_WARNING,
@@ -21,12 +20,11 @@ from rastrainer.trial.ctps import (
     task_number,
 )
 from rastrainer_simulator.report.mode_comparison import mean_and_sd
-from rastrainer_simulator.report.page import Cell, render
+from rastrainer_simulator.report.page import render
 from rastrainer_simulator.statistics.intervals import Correlation, correlation
 
 MAX_COLUMNS = 6
 RED, YELLOW, GREEN = (244, 165, 158), (252, 234, 170), (171, 219, 165)
-Line = list[Cell | str]
 
 
 def with_ctps(data: StudyData) -> StudyData:
@@ -56,21 +54,34 @@ def published_tables(data: StudyData) -> Markup:
     tables = []
     for number, mode in enumerate(data.modes):
         scores = cohort_scores(data, mode)
-        if scores is not None:
-            few = len(scores.subjects) <= MAX_COLUMNS
-            performance = {
-                task: Cell(
-                    fixed(value, 2),
-                    color=performance_color(value, scores.tasks.values()),
-                    kind="marginal",
-                )
-                for task, value in scores.tasks.items()
+        if scores is None:
+            continue
+        trials = [trial for trial in data.of_mode(mode) if "rmse_mm" in trial.values]
+        tables.append(
+            {
+                "number": number,
+                "mode": mode,
+                "scores": scores,
+                "tasks": [task for task in data.tasks if task in scores.tasks],
+                "trials": {(trial.task, trial.trainee): trial.values for trial in trials},
+                "of_task": {
+                    task: [trial.values for trial in trials if trial.task == task]
+                    for task in scores.tasks
+                },
+                "span": np.quantile([*scores.subjects.values()], [0, 0.5, 1]).tolist(),
+                "complexity": complexity(data, mode, scores),
             }
-            lines = (_whole if few else _by_task)(data, mode, scores, performance)
-            tables.append((number, mode, scores, lines, few, complexity(data, mode, scores)))
+        )
     if not tables:
         return Markup()
-    return render("published_tables", tables=tables, warning=CTPS_WARNING)
+    return render(
+        "published_tables",
+        tables=tables,
+        most_columns=MAX_COLUMNS,
+        color=performance_color,
+        mean_and_sd=mean_and_sd,
+        warning=CTPS_WARNING,
+    )
 
 
 def performance_color(value: float, values: Iterable[float]) -> str:
@@ -82,43 +93,6 @@ def performance_color(value: float, values: Iterable[float]) -> str:
     weight = 2 * share - (share >= 0.5)
     mixed = (round(a + weight * (b - a)) for a, b in zip(*pair, strict=True))
     return "#" + "".join(f"{part:02x}" for part in mixed)
-
-
-def _whole(
-    data: StudyData, mode: str, scores: CohortScores, performance: Mapping[str, Cell]
-) -> list[Line]:
-    trials = {(t.task, t.trainee): t.values for t in data.of_mode(mode) if "rmse_mm" in t.values}
-    lines: list[Line] = []
-    for task in (task for task in data.tasks if task in scores.tasks):
-        line: Line = [task_title(task)]
-        for subject in scores.subjects:
-            values = trials.get((task, subject))
-            line += ["–", "–"]
-            if values is not None:
-                line[-2:] = [f"{values['completion_time_s']:.2f}", f"{values['rmse_mm']:.2f}"]
-        lines.append([*line, performance[task]])
-    last: Line = [Cell("User Perf.", kind="total")]
-    for score in scores.subjects.values():
-        color = performance_color(score, scores.subjects.values())
-        last.append(Cell(fixed(score, 2), 2, color, "total"))
-    return [*lines, [*last, Cell(fixed(scores.overall, 2), kind="total")]]
-
-
-def _by_task(
-    data: StudyData, mode: str, scores: CohortScores, performance: Mapping[str, Cell]
-) -> list[Line]:
-    """Return the table of a cohort too large for a column per subject."""
-    lines: list[Line] = []
-    for task in (task for task in data.tasks if task in scores.tasks):
-        own = [t.values for t in data.of_mode(mode) if t.task == task and "rmse_mm" in t.values]
-        times = mean_and_sd([values["completion_time_s"] for values in own], 1)
-        errors = mean_and_sd([values["rmse_mm"] for values in own], 2)
-        lines.append([task_title(task), str(len(own)), times, errors, performance[task]])
-    low, middle, high = np.quantile(list(scores.subjects.values()), [0, 0.5, 1])
-    span = f"{fixed(low, 1)} to {fixed(high, 1)}, median {fixed(middle, 1)}"
-    users = Cell(f"{len(scores.subjects)} users: {span}", 3, kind="total")
-    overall = Cell(fixed(scores.overall, 2), kind="total")
-    return [*lines, [Cell("User Perf.", kind="total"), users, overall]]
 
 
 def complexity(data: StudyData, mode: str, scores: CohortScores) -> dict[str, Correlation] | None:

@@ -15,9 +15,8 @@ from numpy.random import Generator
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, pair
-from rastrainer.head.mesh import HeadMesh, outward_normals, read_head_mesh
+from rastrainer.head.mesh import HeadMesh, mesh_crossings, outward_normals, read_head_mesh
 from rastrainer.head.trial_head import SkinShift
-from rastrainer.procedure.geometry import mesh_crossings
 from rastrainer.protocol import COARSE_LANDMARKS, TRACED_METHODS, RegistrationMethod
 from rastrainer.registration.localization_error import error_along_surface, isotropic_error
 from rastrainer.registration.registration import register

@@ -83,18 +83,17 @@ def test_every_structure_of_the_default_head_is_called_schematic_and_kept_clear_
             assert min(distances.values()) >= trajectory.safety_mm
 
 
-def test_a_line_on_which_the_robot_cannot_hold_the_guide_is_named(copy, capsys):
+def test_a_line_on_which_the_robot_cannot_hold_the_guide_is_named(copy):
     """The arm has no room on the right, between the robot's base and the head."""
     head = read_head_mesh(SCENARIO.head)
     near = np.abs(head.vertices[:, 1:] - STN[1:]).max(axis=1) < 3.0
     entry = head.vertices[near][head.vertices[near][:, 0].argmax()].round(2)
     with_line(copy, entry.tolist(), STN.tolist())
-    assert main(["scenario", "check", str(copy)]) == 1
-    assert (
+    assert check_procedures(PlanningSetup(load_scenario(copy), head)) == [
         "Deep brain stimulation of both subthalamic nuclei: the robot cannot hold the guide on the "
         "line of Right subthalamic nucleus where the head is; choose another entry, or move the "
         "head."
-    ) in capsys.readouterr().out
+    ]
     with pytest.raises(InputError, match="cannot hold the guide on the line of Right subthalamic"):
         require_usable_procedures(load_setup(copy))
 
