@@ -120,7 +120,7 @@ _EFFECTS: Mapping[str, frozenset[str]] = {
 
 @dataclass(frozen=True)
 class InterruptedTrial:
-    """Where a trial is to be resumed, by what was recorded last.
+    """The point at which a trial resumes, by its last records.
 
     `steps` are the commands that were carried out, each with its moment; the last one pauses.
     `q` are joint angles in rad, None before the first sample.
