@@ -36,11 +36,13 @@ test: .venv/test-installed page
 	$(BIN)/python tools/system_packages.py test
 	$(ONE_THREAD) PYTHONDONTWRITEBYTECODE= RASTRAINER_KINEMATICS=$(KINEMATICS) $(AS_SLOW) $(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder $(ENDING) $(RUN_AGAIN) -q
 
-# What takes minutes to hours: attacks, crashes, cut links, whole trials in the headset.
+# What takes hours: attacks, crashes, cut links, whole trials in the headset. `make soak PART=3` runs
+# one of the parts that `make soak PART=list` lists, each of at most 20 minutes.
+PART ?=
 soak: .venv/soak-installed page
 	$(BIN)/python tools/system_packages.py test
 	$(BIN)/python tools/system_packages.py soak
-	$(ONE_THREAD) $(BIN)/python -m pytest -m soak -q
+	$(ONE_THREAD) $(BIN)/python -m Testing.soak $(if $(PART),"$(PART)")
 
 bench: .venv/bench-installed page
 	$(BIN)/python tools/system_packages.py test

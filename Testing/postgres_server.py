@@ -109,7 +109,7 @@ class PostgresServer:
         return study_place(f"postgresql://{user}@127.0.0.1:{self.port}/{database}")
 
     def execute(self, sql: str, database: str = "postgres") -> str:
-        """Have `psql` execute SQL as the administrator; return what it prints."""
+        """Have `psql` execute SQL as the administrator; return its output."""
         words = ("-h", "127.0.0.1", "-p", str(self.port), "-U", "tester", "-d", database)
         command = [str(self.programs / "psql"), *words, "-qAtX", "-v", "ON_ERROR_STOP=1", "-c", sql]
         return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
@@ -121,7 +121,7 @@ class PostgresServer:
         self.execute("SELECT pg_reload_conf()")
 
     def offer_tls(self, folder: Path, name: str) -> Path:
-        """Offer TLS with a certificate of its own for an IP address; return what clients trust."""
+        """Offer TLS with a new certificate for an IP address; return its issuer's certificate."""
         issuer = trustme.CA()
         key = self._data / "server.key"
         issued = issuer.issue_cert(name)

@@ -7,7 +7,7 @@ import functools
 import re
 import sys
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -31,7 +31,8 @@ LAYERS = {
         rastrainer.registration
         rastrainer.procedure
         rastrainer.motion, rastrainer.scenario
-        rastrainer.journal, rastrainer.trial
+        rastrainer.journal
+        rastrainer.trial
         rastrainer.study.database
         rastrainer.study.protocol
         rastrainer.study.curriculum
@@ -43,8 +44,9 @@ LAYERS = {
         rastrainer.slicer.link
         rastrainer.slicer.program
         rastrainer.slicer.head
-        rastrainer.slicer.logic
-        rastrainer.panels, rastrainer_headless
+        rastrainer.widgets
+        rastrainer.sections
+        rastrainer_headless
         RASTrainer
     """,
     "the simulator": """
@@ -76,7 +78,7 @@ LAYERS = {
 BELOW = {"the domain": (), "Slicer's side": ("the domain",), "the simulator": ("the domain",)}
 
 # What a part may import that is not ours; None means anything that its package requires.
-OUTSIDE = {"the domain": {*sys.stdlib_module_names, "numpy", "fastcrc"}}
+OUTSIDE = {"the domain": {*sys.stdlib_module_names, "numpy", "scipy", "fastcrc"}}
 FORBIDDEN = {
     "rastrainer.slicer": {"qt", "ctk"},
     "rastrainer_simulator": {"slicer", "qt", "ctk"},
@@ -189,27 +191,38 @@ def named_in_strings(module: str) -> set[str]:
     return {name for text in texts for name in re.findall(r"rastrainer[\w.]+", text)} & set(FILES)
 
 
-def test_slicer_reaches_every_module_of_its_extension():
-    extension = {name for name, path in FILES.items() if path.is_relative_to(MODULE.parent)}
+def all_imported_by(*modules: str) -> set[str]:
+    """Return modules of ours with all that they need in the end, also by name."""
     reached: set[str] = set()
-    found = {MODULE.stem}
+    found = set(modules)
     while found:
         module = found.pop()
         reached.add(module)
         package = module.rpartition(".")[0]
         named = {package, *our_imports()[module], *named_in_strings(module)}
-        found |= named & extension - reached
-    assert extension - reached == set()
+        found |= named & FILES.keys() - reached
+    return reached
 
 
-def outsiders(modules: Iterator[str]) -> set[str]:
+def test_slicer_reaches_every_module_of_its_extension():
+    extension = {name for name, path in FILES.items() if path.is_relative_to(MODULE.parent)}
+    assert extension - all_imported_by(MODULE.stem) == set()
+
+
+def outsiders(modules: Iterable[str]) -> set[str]:
     names = {name.partition(".")[0] for module in modules for name in imports()[module]}
     return names - set(FOLDERS)
 
 
-def test_the_domain_needs_only_numpy_and_the_standard_library():
+def test_the_domain_needs_only_numpy_scipy_and_the_standard_library():
     domain = (module for module in FILES if TABLE_OF.get(room_of(module)) == "the domain")
     assert outsiders(domain) <= OUTSIDE["the domain"]
+
+
+def test_the_logic_of_each_section_works_without_qt():
+    logic = [module for module in FILES if re.fullmatch(r"rastrainer\.sections\.\w+_logic", module)]
+    assert len(logic) > 10
+    assert not outsiders(all_imported_by(*logic)) & {"qt", "ctk"}
 
 
 @pytest.mark.parametrize("part", FORBIDDEN)

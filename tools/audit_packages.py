@@ -5,7 +5,6 @@ be reached from here.
 """
 
 import json
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -28,9 +27,8 @@ def audit_python(lock: Path) -> tuple[int, str]:
 def audit_page() -> tuple[int, str]:
     """Check the packages of the page; return the status and a sentence."""
     node, npm = build_page.node_and_npm()
-    path = os.pathsep.join([str(Path(node).parent), os.environ.get("PATH", "")])
     command = [*npm, "audit", "--package-lock-only", "--json", "--fetch-retries=0"]
-    where = {"cwd": build_page.WEB, "env": {**os.environ, "PATH": path}}
+    where = {"cwd": build_page.WEB, "env": build_page.node_environment(node)}
     return _judged("package-lock.json", command, _page_findings, **where)
 
 

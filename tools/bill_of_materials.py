@@ -1,11 +1,10 @@
 """Write what RASTrainer is made with as CycloneDX: build/rastrainer.cdx.json and the page's.
 
 Made from the lock files alone, so the same locks give the same bills. Needs `cyclonedx-bom` for the
-Python packages and npm for those of the page.
+Python packages and npm for the page's packages.
 """
 
 import json
-import os
 import subprocess
 import sys
 import tempfile
@@ -21,21 +20,20 @@ NO_VERSION = "0.0.0"
 PAGE_BILL = BUILD / "rastrainer-page.cdx.json"
 
 
-def write_python_bill(lock: Path = LOCK, output: Path = PYTHON_BILL) -> int:
-    """Write the bill of a lock and return how many packages it names."""
-    output.parent.mkdir(parents=True, exist_ok=True)
+def write_python_bill() -> int:
+    """Write the bill of the lock and return how many packages it names."""
+    PYTHON_BILL.parent.mkdir(parents=True, exist_ok=True)
     project = ["--pyproject", str(ROOT / "pyproject.toml")]
-    form = ["--output-reproducible", "--output-format", "JSON", "--output-file", str(output)]
-    command = [sys.executable, "-m", "cyclonedx_py", "requirements", str(lock)]
+    form = ["--output-reproducible", "--output-format", "JSON", "--output-file", str(PYTHON_BILL)]
+    command = [sys.executable, "-m", "cyclonedx_py", "requirements", str(LOCK)]
     _run([*command, *project, *form])
-    return _count(output)
+    return _count(PYTHON_BILL)
 
 
 def write_page_bill(output: Path = PAGE_BILL) -> int:
     """Write the bill of what goes into the page and return how many packages it names."""
     output.parent.mkdir(parents=True, exist_ok=True)
     node, npm = build_page.node_and_npm()
-    path = os.pathsep.join([str(Path(node).parent), os.environ.get("PATH", "")])
     words = ["sbom", "--package-lock-only", "--omit=dev", "--sbom-format=cyclonedx"]
     with tempfile.TemporaryDirectory() as temporary:
         # Its name is part of the bill.
@@ -48,7 +46,7 @@ def write_page_bill(output: Path = PAGE_BILL) -> int:
             if "packages" in content:
                 content["packages"][""]["version"] = NO_VERSION
             (folder / name).write_text(json.dumps(content), encoding="utf-8")
-        text = _run([*npm, *words], cwd=folder, env={**os.environ, "PATH": path})
+        text = _run([*npm, *words], cwd=folder, env=build_page.node_environment(node))
     bill = json.loads(text)
     # Differs from run to run.
     bill.pop("serialNumber", None)

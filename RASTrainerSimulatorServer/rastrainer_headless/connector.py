@@ -23,7 +23,7 @@ from rastrainer.igtl.message import Header, Message, crc64, pack, unpack
 from rastrainer.slicer.link.connection import ConnectorKit
 from rastrainer.slicer.scene.nodes import ORIGINAL_NAME, decodedText
 from rastrainer_headless.command import HeadlessCommand
-from rastrainer_headless.peer_sockets import PeerSockets, recordCrash
+from rastrainer_headless.peer_socket import PeerSocket, recordCrash
 from rastrainer_headless.scene import NODE_CLASS, adoptOrCreateNode, asSlicerHas, updateNode
 
 _INCOMING = "incoming"
@@ -55,11 +55,10 @@ class OutgoingCommand(NamedTuple):
 class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
     """The part of the connector that we use; the host calls `PeriodicProcess` every few ms.
 
-    Method names, constants and event numbers are those of the real class.
+    Method names, constants and event numbers match the real class.
     """
 
     StateOff, StateWaitConnection, StateConnected = range(3)
-    TypeNotDefined, TypeServer, TypeClient = range(3)
     ConnectedEvent = 118944
     DisconnectedEvent = 118945
     CommandReceivedEvent = 119001
@@ -68,24 +67,18 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
 
     def __init__(self) -> None:
         self.SetSaveWithScene(False)
-        self._type = self.TypeNotDefined
         self._address = ("", 0)
-        self._sockets: PeerSockets | None = None
+        self._socket: PeerSocket | None = None
         self._state = self.StateOff
         self._nextCommandId = 1
         self._outgoing: list[OutgoingCommand] = []
         self._lock = threading.Lock()
         self._commands: deque[Raw] = deque()
-        self._latest: dict[tuple[str, str, int], Raw] = {}
+        self._latest: dict[tuple[str, str], Raw] = {}
         self._events: deque[int] = deque()
 
     def SetTypeClient(self, hostname: str, port: int) -> int:
-        self._type, self._address = self.TypeClient, (hostname, port)
-        return 1
-
-    def SetTypeServer(self, port: int) -> int:
-        """Make it a server; it listens on this machine's loopback only."""
-        self._type, self._address = self.TypeServer, ("127.0.0.1", port)
+        self._address = (hostname, port)
         return 1
 
     def GetServerHostname(self) -> str:
@@ -94,31 +87,25 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
     def SetServerPort(self, port: int) -> None:
         """Change the port; a client that runs connects there the next time it has no server."""
         self._address = (self._address[0], port)
-        if self._sockets is not None:
-            self._sockets.port = port
+        if self._socket is not None:
+            self._socket.port = port
 
     def GetState(self) -> int:
         return self._state
 
     def Start(self) -> int:
-        """Start to connect or to listen, repeatedly until `Stop`; return 1 on success."""
-        if self._sockets is not None or self._type == self.TypeNotDefined:
+        """Start to connect, repeatedly until `Stop`; return 1 on success."""
+        if self._socket is not None:
             return 0
-        isServer = self._type == self.TypeServer
         self._state = self.StateWaitConnection
-        try:
-            self._sockets = PeerSockets(isServer, *self._address, self._receive, self._changeState)
-        except OSError as error:
-            self._state = self.StateOff
-            logging.error("Failed to create server socket: %s", error)
-            return 0
+        self._socket = PeerSocket(*self._address, self._receive, self._changeState)
         return 1
 
     def Stop(self) -> int:
-        if self._sockets is None:
+        if self._socket is None:
             return 0
-        self._sockets.stop()
-        self._sockets = None
+        self._socket.stop()
+        self._socket = None
         self._state = self.StateOff
         return 1
 
@@ -129,20 +116,20 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         return self.GetNthNodeReference(_INCOMING, index)
 
     def SendCommand(self, command: HeadlessCommand) -> None:
-        """Send a command to every peer; without one nothing is sent, silently."""
+        """Send a command; without a connection nothing is sent, silently."""
         if command.IsInProgress():
             logging.error("The command %s is already in progress.", command.GetName())
             return
         command.commandId = self._nextCommandId
         self._nextCommandId += 1
-        if self._state != self.StateConnected or self._sockets is None:
+        if self._state != self.StateConnected or self._socket is None:
             return
         content = Command(
             command.commandId,
             decodedText(command.GetName()),
             decodedText(command.GetCommandContent()),
         )
-        if not self._sockets.send(pack(Message("command", content, timestamp=0.0))):
+        if not self._socket.send(pack(Message("command", content, timestamp=0.0))):
             command.SetCommandStatus(command.CommandFailed)
             return
         command.SetCommandStatus(command.CommandWaiting)
@@ -150,7 +137,7 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         self._outgoing.append(OutgoingCommand(command.commandId, deadline, weakref.ref(command)))
 
     def PeriodicProcess(self) -> None:
-        """Put what has arrived into the scene, and notify the observers.
+        """Put all arrivals into the scene, and notify the observers.
 
         Does nothing while there is no connection: Slicer's timer does not call it then.
         """
@@ -167,22 +154,22 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         for _key, raw in sorted(latest.items(), key=lambda item: item[0]):
             self._processData(*raw, modifications)
         for event in events:
-            if event == self.ConnectedEvent and self._sockets is not None:
+            if event == self.ConnectedEvent and self._socket is not None:
                 # The odd STATUS that Slicer opens each connection with: no name, metadata `dummy`.
                 dummy = Message("none", Status(0), {"dummy": "dummy"}, timestamp=0.0)
                 greeting = bytearray(pack(dummy))
                 greeting[_DEVICE_NAME_FIELD] = bytes(20)
-                self._sockets.send(bytes(greeting))
+                self._socket.send(bytes(greeting))
             self.InvokeEvent(event)
         for node, wasModifying in reversed(modifications):
             node.EndModify(wasModifying)
 
-    def _receive(self, peer: int, header: Header, body: bytes) -> None:
+    def _receive(self, header: Header, body: bytes) -> None:
         with self._lock:
             if header.type in (Command.TYPE, CommandReply.TYPE):
                 self._commands.append((header, body))
             else:
-                self._latest[header.type, header.device, peer] = (header, body)
+                self._latest[header.type, header.device] = (header, body)
 
     def _changeState(self, isConnected: bool) -> None:
         self._state = self.StateConnected if isConnected else self.StateWaitConnection

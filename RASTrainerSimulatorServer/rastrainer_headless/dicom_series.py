@@ -1,6 +1,6 @@
 """Read the largest stack of slices among DICOM files: one series, sorted by place.
 
-pydicom reads the headers, and pixels that are not compressed; the compressed ones are Slicer's.
+pydicom reads the headers and uncompressed pixels; Slicer's reader decompresses the rest.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ EVEN_WITHIN = 0.1
 """Share of a step by which steps may differ; more means that a slice is missing."""
 
 IN_LINE_WITHIN = 0.5
-"""Share of a step by which a slice may lie beside the line of the others."""
+"""Share of a step by which a slice may lie off the line of the others."""
 
 _SAME_AXES, _SAME_PLACE_MM = 1e-3, 0.01
 _MAGIC_AT, _MAGIC = 128, b"DICM"
@@ -42,24 +42,6 @@ _FIRST_GROUPS = (b"\x08\x00", b"\x02\x00", b"\x00\x08")
 _NO_HEADS = ("PR", "REG", "RTDOSE", "SEG")
 _LPS_TO_RAS = np.array([-1.0, -1.0, 1.0])
 _DESCRIPTION = ("Rows", "Columns", "BitsAllocated", "BitsStored", "HighBit", "PixelRepresentation")
-_TAGS = [
-    *_DESCRIPTION,
-    "EchoTime",
-    "ImageOrientationPatient",
-    "ImagePositionPatient",
-    "ImageType",
-    "Modality",
-    "PerFrameFunctionalGroupsSequence",
-    "PixelData",
-    "PixelSpacing",
-    "RescaleIntercept",
-    "RescaleSlope",
-    "SamplesPerPixel",
-    "SeriesDescription",
-    "SeriesInstanceUID",
-    "SharedFunctionalGroupsSequence",
-    "SOPClassUID",
-]
 
 
 @dataclass(frozen=True)
@@ -81,7 +63,6 @@ class _Slice:
 
 
 def isDicom(path: Path) -> bool:
-    """Return whether a file looks like DICOM, with or without a preamble."""
     with path.open("rb") as file:
         begin = file.read(_MAGIC_AT + len(_MAGIC))
     return begin[_MAGIC_AT:] == _MAGIC or begin[:2] in _FIRST_GROUPS
@@ -90,7 +71,7 @@ def isDicom(path: Path) -> bool:
 def readDicom(path: Path) -> Volume:
     """Read the stack with the most slices in a folder and the folders in it, or in one file.
 
-    What is no slice of a patient is ignored: reports, presentation states, directories, pictures.
+    Other files are ignored: reports, presentation states, directories, pictures.
     """
     paths = sorted(each for each in path.rglob("*") if each.is_file()) if path.is_dir() else [path]
     paths = [each for each in paths if isDicom(each)]
@@ -123,7 +104,7 @@ def readDicom(path: Path) -> Volume:
 
 
 def _read(path: Path, read: Callable[[Path], Any]) -> Any:
-    """Return what a function reads from a file; pydicom raises many errors at damaged ones."""
+    """Return the result of reading a file; pydicom raises many errors at damaged files."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -144,9 +125,9 @@ def _content(path: Path) -> bytes:
 
 
 def _slices(path: Path) -> Iterator[_Slice]:
-    """Yield the slices of a file; none if it is no image that lies in a patient."""
+    """Yield the slices of a file; none if its image has no position in a patient."""
     content = _content(path)
-    header = pydicom.dcmread(io.BytesIO(content), force=True, specific_tags=_TAGS)
+    header = pydicom.dcmread(io.BytesIO(content), force=True)
     kind = header.get("SOPClassUID") or header.file_meta.get("MediaStorageSOPClassUID")
     if kind is None:
         if content[_MAGIC_AT:].startswith(_MAGIC):
@@ -184,7 +165,8 @@ def _slices(path: Path) -> Iterator[_Slice]:
 
 
 def _value(header: Any, groups: tuple[Any, Any], group: str, name: str) -> Any:
-    """Return a frame's value: of its own functional groups, of the shared ones, or the file's."""
+    """Return a frame's value: from its functional groups, from the shared groups, or from the
+    file."""
     for each in groups:
         items = each.get(f"{group}Sequence")
         if items and items[0].get(name) is not None:

@@ -1,12 +1,11 @@
-"""The session of Slicer's module without Slicer: on a scene and a connector of our own."""
+"""The session of Slicer's module without Slicer, on stand-ins for its scene and connector."""
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
 
-from rastrainer.slicer.logic.module_paths import ModulePaths
-from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.sections.module_session import ModulePaths, ModuleSession
 from rastrainer.slicer.program.child_process import runHere
 from rastrainer.slicer.program.simulator_package import SimulatorPackage
 from rastrainer.study.database.database import PostgresAddress

@@ -36,7 +36,7 @@ from rastrainer.json_records import record_to_json
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
 from rastrainer.registration.fits import RIGID
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.sections.module_session import ModuleSession
 from rastrainer.slicer.scene.error_colors import magnification
 from rastrainer.slicer.scene.nodes import labelsOf
 from rastrainer.slicer.scene.scenario_nodes import showScenario
@@ -74,12 +74,11 @@ class TrialPrinter:
         session.link.statusChanged.connect(lambda status: printEvent("status", **asdict(status)))
         session.link.pointsChanged.connect(self._printPoints)
         session.trials.trialScored.connect(self._printTrial)
-        session.aborted.kept.connect(
+        session.trials.abortedKept.connect(
             lambda trial: printEvent("aborted", trialId=trial.trial_id, reason=trial.reason)
         )
         for problems in (
             session.trials.problemFound,
-            session.aborted.problemFound,
             session.files.problemFound,
             session.procedure.answered,
         ):
@@ -166,11 +165,11 @@ def writeOutput(
     caption = [
         "Ball and number: fiducial in the MRI and its residual in mm. Arrow: toward where the "
         f"registration puts the touch, {magnification(rigid):g} times as long.",
-        f"At the target ({scenario.target_name}): expected TRE {expected.expected_mm:.2f} mm "
+        f"At the target ({scenario.target.name}): expected TRE {expected.expected_mm:.2f} mm "
         f"(95 %: {low:.2f} to {high:.2f} mm){true}. "
         "FRE does not predict TRE case by case.",
     ]
-    head = read_head_mesh(scenario.head_mesh)
+    head = read_head_mesh(scenario.head)
     writeResidualPicture(files["picture"], head, rigid, title, caption)
     return {name: str(path) for name, path in files.items()}
 
@@ -183,9 +182,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--host", default=DEFAULT_HOST, help="where the simulator runs")
     parser.add_argument("--port", type=int, default=DEFAULT_PORT, help="its OpenIGTLink port")
-    parser.add_argument(
-        "--listen", action="store_true", help="wait for a simulator started with --connect"
-    )
     parser.add_argument("--scenario", default="colin27", metavar="NAME")
     parser.add_argument("--output", type=Path, required=True, metavar="DIR")
     parser.add_argument("--trials", type=int, default=1, metavar="N", help="trials to wait for")
@@ -215,15 +211,12 @@ def _run(arguments: argparse.Namespace) -> None:
     output, scene = arguments.output, HeadlessScene()
     session = openSession(scene, output, arguments.assets)
     try:
-        # What is wrong with it is reported before anyone plays.
+        # Problems are reported before anyone plays.
         scenario = session.scenarios.find(arguments.scenario)
         session.openStudyPatiently().close()
         printer = TrialPrinter(session, output / RESULTS)
         showScenario(scene.scene, scenario)
-        if arguments.listen:
-            session.link.listenOn(arguments.port)
-        else:
-            session.link.connectTo(arguments.host, arguments.port)
+        session.link.connectTo(arguments.host, arguments.port)
         end = time.monotonic() + arguments.timeout
         while printer.scored < arguments.trials:
             if time.monotonic() > end:

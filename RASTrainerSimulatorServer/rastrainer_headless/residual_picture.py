@@ -24,7 +24,7 @@ _VIEWS = ((0.0, 0.09, 0.45, 0.92), (0.45, 0.09, 0.9, 0.92))
 _LEGEND = (0.9, 0.09, 1.0, 0.92)
 _LABEL_SIZE, _LABEL_GAP = (100, 28), 10
 _SIDES = ((1, 1), (1, -1), (-1, 1), (-1, -1))
-"""Of a point, on which its label may be: right or left, above or below."""
+"""Sides of a point for its label: right or left, above or below."""
 _MARGIN = 1.08
 _CLEARLY_FACING = 0.25
 _PAPER = (1.0, 1.0, 1.0)
@@ -232,8 +232,8 @@ _ELEVATIONS = np.radians([0.0, 25.0, 50.0])
 def chooseTwoViews(outward: np.ndarray) -> np.ndarray:
     """Return (2, 3) unit vectors, from the head toward two cameras.
 
-    Of all pairs in a grid, the one in which the point that is seen worst is seen best; among
-    equals, the one that shows the points, which face along `outward` (n, 3), best on the whole.
+    The pair in a grid that maximizes the visibility of the worst visible point, and then of all
+    points, which face along `outward` (n, 3).
     """
     grid = np.array(
         [

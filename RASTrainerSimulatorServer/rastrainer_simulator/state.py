@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 
-from rastrainer.json_checks import number, whole_number
+from rastrainer.journal.entries import Entry, StartingPoint
 from rastrainer.procedure.record import UsedRegistration
 from rastrainer.protocol import PROCEDURE_PHASES, Phase, Proximity, RegistrationMethod
 from rastrainer_simulator.trial_state import (
@@ -59,28 +59,6 @@ NEUTRAL_STICKS = OperatorInput()
 """The sticks are at rest and no command has arrived."""
 
 
-class EventKind(str, Enum):
-    """Events of a tick, from which sounds, vibration and the journal follow.
-
-    `TRACE` is one point of a trace, `STROKE` the beginning, the end or the undoing of a stroke.
-    """
-
-    PHASE = "phase"
-    REGISTRATION = "registration"
-    TOUCH = "touch"
-    UNDO = "undo"
-    REJECTED = "rejected"
-    PROXIMITY = "proximity"
-    MOTION = "motion"
-    CAMERA = "camera"
-    PLAN = "plan"
-    REACH = "reach"
-    CHECKPOINT = "checkpoint"
-    FEED = "feed"
-    TRACE = "trace"
-    STROKE = "stroke"
-
-
 class TouchStage(str, Enum):
     """The state of the next touch; the last four are errors, which views show in red.
 
@@ -119,11 +97,10 @@ class Motion(str, Enum):
 
 @dataclass(frozen=True)
 class Event:
-    """An event; `data` is ready for JSON, with lengths in mm."""
+    """What happened in a tick, as the journal records it; sounds and vibration follow from it."""
 
-    kind: EventKind
     sim_time: float
-    data: Mapping[str, Any] = field(default_factory=dict)
+    entry: Entry
 
 
 @dataclass(frozen=True)
@@ -259,6 +236,11 @@ class SimulationState:
     tip_clearance: float = 0.0
 
     @property
+    def starting_point(self) -> StartingPoint:
+        """Where another simulation continues."""
+        return StartingPoint(self.tick, self.sim_time, self.training.revision, self.camera)
+
+    @property
     def completion_time(self) -> float:
         """What the trial's clock shows: it stops at the last point, s."""
         return self.training.completed_s if self.training.is_touched else self.elapsed
@@ -293,24 +275,6 @@ class SimulationState:
         """The position of the guide relative to the current planned line; None without one."""
         line = self.plan_in_world
         return None if line is None else GuideAlignment.of(self.guide_axis, line)
-
-
-@dataclass(frozen=True)
-class StartingPoint:
-    """Where a simulation starts: after another one's state, or within a trial's journal.
-
-    `tick` and `sim_time_s` are those of the last step before, `revision` that of the training
-    state; `camera` is the view, None for the one at the start.
-    """
-
-    tick: Annotated[int, whole_number(0, 2**53)] = 0
-    sim_time_s: Annotated[float, number(0, 1e9, "s")] = 0.0
-    revision: Annotated[int, whole_number(0, 2**53)] = 0
-    camera: str | None = None
-
-    @classmethod
-    def after(cls, state: SimulationState) -> StartingPoint:
-        return cls(state.tick, state.sim_time, state.training.revision, state.camera)
 
 
 @dataclass(frozen=True)

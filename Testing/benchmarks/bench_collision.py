@@ -1,4 +1,5 @@
-"""All clearances of a tick, beside coal's on the same shapes; and how deep a thousand rams get."""
+"""All clearances of a tick, compared with coal on the same shapes; and how deep a thousand rams
+get."""
 
 import gc
 import time
@@ -36,7 +37,7 @@ class Bench:
     def __init__(self) -> None:
         setup = load_setup()
         self.robot, self.scenario = setup.robot, setup.scenario
-        mesh = read_head_mesh(setup.scenario.head_mesh)
+        mesh = read_head_mesh(setup.scenario.head)
         self.vertices, self.triangles = mesh.vertices / MM_PER_M, mesh.triangles
         self.to_world = setup.scenario.head_to_world.copy()
         self.to_world[:3, 3] /= MM_PER_M

@@ -61,7 +61,7 @@ from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.slicer.turns import importInTurns
 ours = lambda: sum(name.split(".")[0] == "rastrainer" for name in sys.modules)
 turns, was, before = [], time.process_time(), ours()
-for _ in importInTurns("rastrainer.panels.panel_stack"):
+for _ in importInTurns("rastrainer.sections.panel_stack"):
     turns.append((1e3 * (time.process_time() - was), ours() - before))
     was, before = time.process_time(), ours()
 milliseconds, modules = zip(*turns)
@@ -108,7 +108,7 @@ def rows(quick: bool) -> list[dict]:
 
 
 def _load_rows(step: str, load: SceneLoad) -> list[dict]:
-    """Return what one turn has handed over at most, beside all turns of the step."""
+    """Return the most that one turn has handed over, among all turns of the step."""
     most, total = asdict(load.most), asdict(load.total)
     return [
         row(f"handed.{step}.{kind}", [most[kind]], UNITS[kind], IN_ALL, [total[kind]])
@@ -118,7 +118,7 @@ def _load_rows(step: str, load: SceneLoad) -> list[dict]:
 
 
 def _import_rows() -> list[dict]:
-    """Return what a turn costs at most that imports a part of the module, beside all turns."""
+    """Return the largest cost of a turn that imports a part of the module, among all turns."""
     found = subprocess.run(
         [sys.executable, "-c", IMPORTS], capture_output=True, check=True, text=True
     )
@@ -184,7 +184,7 @@ class _Steps:
     def _play(self) -> None:
         host = self._host
         self._watch("show_scenario", lambda: host.press("showScenarioButton"))
-        place = self._colin.target_position + 10.0
+        place = self._colin.target.position_ras + 10.0
         slices = host.widget.logic.session.slices
         self._watch("next_point", lambda: slices.show(place))
         self._watch("show_robot", lambda: host.check("robotCheckBox"))
@@ -291,7 +291,7 @@ class _Steps:
         if name != "SubmitRegistration":
             return {}
         head_to_world = self._colin.perturbed_head_to_world(SEED)
-        target = self._colin.target_position
+        target = self._colin.target.position_ras
         found = np.reshape(arguments["matrix"], (4, 4)) @ head_to_world
         error = float(np.linalg.norm(transforms.apply(found, target) - target))
         return {"headToWorld": head_to_world.ravel().tolist(), "trueTreMm": error}

@@ -35,7 +35,7 @@ ABOVE = np.array([0.0, 0.0, 165.0])
 
 
 def rows(quick: bool) -> list[dict]:
-    """Return the rows `tick.60k` and `tick.200k`, those of a procedure, and of the loop.
+    """Return the rows `tick.60k` and `tick.200k`, a procedure's rows, and the loop's.
 
     See `procedure_rows` and `_on_time`.
     """
@@ -61,7 +61,7 @@ def _tick(name: str, setup: SimulationSetup, runs: int) -> dict:
 
 def _with_finer_head(setup: SimulationSetup, path: Path) -> SimulationSetup:
     """Return the setup with each triangle of the head cut into four."""
-    mesh = read_head_mesh(setup.scenario.head_mesh)
+    mesh = read_head_mesh(setup.scenario.head)
     edges = np.sort(mesh.sides, axis=1)
     unique, index = np.unique(edges, axis=0, return_inverse=True)
     ab, bc, ca = len(mesh.vertices) + index.reshape(3, -1)
@@ -71,7 +71,7 @@ def _with_finer_head(setup: SimulationSetup, path: Path) -> SimulationSetup:
     )
     vertices = np.concatenate([mesh.vertices, mesh.vertices[unique].mean(axis=1)])
     write_head_mesh(path, HeadMesh(vertices, triangles))
-    return dataclasses.replace(setup, scenario=dataclasses.replace(setup.scenario, head_mesh=path))
+    return dataclasses.replace(setup, scenario=dataclasses.replace(setup.scenario, head=path))
 
 
 def _tick_times(setup: SimulationSetup, runs: int) -> np.ndarray:
@@ -173,7 +173,8 @@ def _jog_for_a_second(client: Client) -> None:
 
 @contextmanager
 def _clients(port: int) -> Iterator[tuple[Client, Client]]:
-    """Connect the clients that behave well; return the one that jogs and one that does not."""
+    """Connect the clients that behave well; return a client that jogs and a client that does
+    not."""
     clients = [Client(port=port) for _ in range(GOOD_CLIENTS)]
     try:
         for client in clients:
@@ -187,7 +188,8 @@ def _clients(port: int) -> Iterator[tuple[Client, Client]]:
 
 @contextmanager
 def _annoyed(port: int) -> Iterator[None]:
-    """Keep a client that never reads and one that sends garbage, each back as soon as dropped."""
+    """Keep a client that never reads and a client that sends garbage, each back as soon as
+    dropped."""
     is_over = threading.Event()
 
     def never_read() -> None:

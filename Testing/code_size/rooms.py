@@ -18,7 +18,7 @@ def product_files() -> list[Path]:
 
 
 def room_of(path: Path) -> str:
-    """Return the folder that a file belongs to, such as `rastrainer/slicer/logic`."""
+    """Return the folder that a file belongs to, such as `rastrainer/slicer/scene`."""
     parts = path.relative_to(ROOT).parts[:-1]
     for package in ("rastrainer", "rastrainer_simulator", "rastrainer_headless"):
         if package in parts:

@@ -15,9 +15,9 @@ import threading
 import time
 from dataclasses import dataclass, replace
 
+from rastrainer.sections.trial_services import TrialServices
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic.trial_services import TrialServices
 from rastrainer.study.database.study import Study
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.scene import HeadlessScene

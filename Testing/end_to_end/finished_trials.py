@@ -7,15 +7,17 @@ from pathlib import Path
 
 import numpy as np
 
+from rastrainer.journal.entries import Registered
 from rastrainer.journal.folder import SUFFIX
-from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, stamp
 from rastrainer.json_records import record_to_json
+from rastrainer.protocol import Phase
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.trial.record import TouchedPoint, TrialRecord
 from rastrainer.trial.scoring import SAFETY_METRICS
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.training.head_pose import Truth
+from Testing.journal_lines import at, header
 
 COLIN = asset_path("scenarios", "colin27")
 TRAINEE = "T-042"
@@ -33,7 +35,7 @@ def _write(folder: Path, number: int, scenario) -> str:
     task = scenario.task(TASK)
     truth = Truth(
         scenario.perturbed_head_to_world(number),
-        scenario.target_position,
+        scenario.target.position_ras,
         dict(zip(task.labels, task.fiducials, strict=True)),
     )
     rng = np.random.default_rng(number)
@@ -56,12 +58,16 @@ def _write(folder: Path, number: int, scenario) -> str:
         versions={"rastrainer": "0"},
         motion=dict.fromkeys(SAFETY_METRICS, 0.0),
     )
-    times = stamp(0, 0.0)
-    header = {"kind": "header", "format": FORMAT, "version": FORMAT_VERSION, **times}
-    registered = {"kind": "registered", **times, "record": record_to_json(record)}
-    journal = Journal(folder / f"20240517T{number:06d}Z_{trial_id}{SUFFIX}")
-    journal.write(
-        [header, registered | {"truth": record_to_json(truth), "seed": number}], sync=False
+    texts = dict.fromkeys(("trial_id", "trainee", "task", "mode", "instruction"), "")
+    registered = Registered(
+        **texts,
+        phase=Phase.REGISTERED,
+        next_point=None,
+        truth=truth,
+        record=record_to_json(record),
+        seed=number,
     )
+    journal = Journal(folder / f"20240517T{number:06d}Z_{trial_id}{SUFFIX}")
+    journal.write_lines([at(0.0, header()), at(0.0, registered)], sync=False)
     journal.close()
     return trial_id

@@ -170,7 +170,7 @@ class SurvivingPlayer:
     def _go_to(self, client: Client, number: int) -> None:
         """Lift off from wherever the tip is, and come down on the point `number`."""
         head_to_world = self._scenario.perturbed_head_to_world(self._seed)
-        points = [*self._scenario.task(self.task).fiducials, self._scenario.target_position]
+        points = [*self._scenario.task(self.task).fiducials, self._scenario.target.position_ras]
         *places, center = transforms.apply(head_to_world, np.array(points))
         place = places[number]
         tip = client.wait_for(DeviceName.TOOL_TIP_TO_WORLD, timeout=TIMEOUT_S)

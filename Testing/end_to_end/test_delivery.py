@@ -12,12 +12,11 @@ import random
 
 import pytest
 
+from rastrainer.journal.entries import Attempt
 from rastrainer.journal.folder import SUFFIX
-from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, stamp
-from rastrainer.json_records import record_from_json
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.logic.delivery_queue import AbortedTrialLogic
-from rastrainer.slicer.logic.trial_logic import TrialLogic
+from rastrainer.sections.trial_logic import TrialLogic
 from rastrainer.study.database.study import Study
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer_simulator.core.setup import load_setup
@@ -27,12 +26,12 @@ from rastrainer_simulator.net.igtl.simulator_link import SimulatorLink
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_archive import (
     TrialArchive,
-    attempt_entry,
     find_unacknowledged,
 )
 from Testing.domain.trial.trial_records import make_aborted
 from Testing.end_to_end.faulty_proxy import FaultyProxy, SlicerSide
 from Testing.end_to_end.finished_trials import COLIN, TRAINEE, write_finished_trials
+from Testing.journal_lines import at, header
 from Testing.simulator.net.igtl.servers import HOST
 from Testing.slicer.simulator_double import run_logic_until
 
@@ -143,17 +142,16 @@ TRIALS = 12
 
 
 def slicer_side_for_aborted(path, port):
-    return SlicerSide(path, port, AbortedTrialLogic)
+    return SlicerSide(path, port, TrialLogic)
 
 
 def write_aborted_trials(folder):
     folder.mkdir()
-    header = {"kind": "header", "format": FORMAT, "version": FORMAT_VERSION}
     for number in range(1, TRIALS + 1):
         record = record_from_json(AbortedTrial, make_aborted(number, touches=number))
         journal = Journal(folder / f"20240517T0930{number:02d}Z_{record.trial_id}{SUFFIX}")
-        entries = [header | {"trainee": "T-001"}, attempt_entry(record, stamp(1, 0.0))]
-        journal.write(entries, sync=False)
+        attempt = Attempt(record_to_json(record))
+        journal.write_lines([at(0.0, header(trainee="T-001")), at(0.0, attempt)], sync=False)
         journal.close()
 
 

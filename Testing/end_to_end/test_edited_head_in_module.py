@@ -15,8 +15,8 @@ from vtk.util.numpy_support import numpy_to_vtk
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.scenario.library import user_library
 from rastrainer.scenario.points import LABELS
+from rastrainer.sections import new_scenario_logic
 from rastrainer.slicer.head.volume import SEGMENT_NAME
-from rastrainer.slicer.logic import scenario_maker
 from rastrainer.slicer.scene.nodes import Role, findNode, setPoints
 from Testing.end_to_end.module.story import Story, unfold
 from Testing.slicer.head.phantoms import phantom
@@ -85,7 +85,7 @@ def test_a_scenario_canceled_while_its_head_is_extracted_leaves_nothing_behind(
 ):
     is_canceled = threading.Event()
     # The head is not finished before, however late it is canceled.
-    monkeypatch.setattr(scenario_maker, "write_draft", lambda *_draft: is_canceled.wait(120))
+    monkeypatch.setattr(new_scenario_logic, "write_draft", lambda *_draft: is_canceled.wait(120))
     with cancels(host, "makeScenarioButton"):
         host.press("makeScenarioButton")
     is_canceled.set()

@@ -88,5 +88,5 @@ def test_a_gamepad_alone_begins_a_task_moves_the_arm_and_may_be_unplugged(tmp_pa
         assert simulator.stop() == (0, "")
     (path,) = (tmp_path / "records").glob("*.journal")
     reading = read_journal(path)
-    assert reading.header["settings"]["teleoperation"]["fineSpeed"] == 0.005
+    assert reading.header.settings["teleoperation"]["fineSpeed"] == 0.005
     assert {entry["operator"] for entry in reading.of_kind("input")} <= {"gamepad", ""}

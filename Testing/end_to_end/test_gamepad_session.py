@@ -196,7 +196,7 @@ def unplug_and_resume(lab: Lab, trainee: StreamTrainee, photographer: Photograph
     trainee.until_not_warned(UNPLUGGED)
     trainee.touch("2")
     records = [read_journal(path) for path in lab.records.glob("*.journal")]
-    (journal,) = [record for record in records if record.header["task"] == "task-2"]
+    (journal,) = [record for record in records if record.header.task == "task-2"]
     return {"phase": phase, "touched": trainee.view.state["touched"], "journal": journal}
 
 

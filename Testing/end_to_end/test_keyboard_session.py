@@ -75,7 +75,7 @@ def kill_while_moving(lab: Lab, trainee: StreamTrainee, window) -> dict:
 def touches_of(lab: Lab) -> list[dict]:
     """Return the touches in the journal of the only trial of Task 1."""
     records = [read_journal(path) for path in lab.records.glob("*.journal")]
-    (journal,) = [record for record in records if record.header["task"] == "task-1"]
+    (journal,) = [record for record in records if record.header.task == "task-1"]
     return list(journal.of_kind("touch"))
 
 

@@ -113,12 +113,12 @@ def check_records(lab, player):
         assert reading.integrity is not Integrity.ALTERED
         if not reading.entries:
             continue
-        trial = reading.header["trialId"]
+        trial = reading.header.trial_id
         if registered := reading.of_kind("registered"):
             assert reading.integrity is Integrity.INTACT
             points = registered[-1]["record"]["points"]
             found[trial] = [(p["label"], tuple(p["positionMm"])) for p in points]
-        elif InterruptedTrial.of(reading.entries) is not None:
+        elif InterruptedTrial.of(tuple(reading.lines())) is not None:
             open_trials += 1
     assert found.keys() >= player.registered
     for trial in player.registered:

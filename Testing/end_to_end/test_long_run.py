@@ -33,6 +33,7 @@ pytestmark = pytest.mark.skipif(
 )
 
 TROUBLE = re.compile(r"error|traceback|critical", re.IGNORECASE)
+SPEED = 8.0
 MAX_GROWTH_MB = 8.0
 """Allowed growth of either process between the first fifth and the last, for caches and studies."""
 
@@ -67,7 +68,7 @@ class Run:
     trials: int
 
 
-def train(folder: Path, is_enough: Callable[[int], bool], speed: float) -> Run:
+def train(folder: Path, is_enough: Callable[[int], bool]) -> Run:
     """Play trial after trial, each over a separate connection, with a view and Slicer's side.
 
     `is_enough` is asked with the number of trials played, before each trial.
@@ -78,7 +79,7 @@ def train(folder: Path, is_enough: Callable[[int], bool], speed: float) -> Run:
     with contextlib.ExitStack() as stack:
         thread = stack.enter_context(LoopThread())
         simulator = stack.enter_context(
-            ViewedSimulator(records, "--speed", str(speed), "--view-port", "0")
+            ViewedSimulator(records, "--speed", str(SPEED), "--view-port", "0")
         )
         slicer_says = stack.enter_context((folder / "slicer-says").open("w+"))
         slicer = SlicerProcess(
@@ -147,17 +148,9 @@ def growth_text(run: Run) -> str:
 
 
 @pytest.mark.soak
-def test_ten_consecutive_trials_do_not_increase_memory_or_descriptors(tmp_path, capsys):
-    run = train(tmp_path, lambda played: played >= 10, speed=8)
-    with capsys.disabled():
-        print(growth_text(run))
-    check_flat(run)
-
-
-@pytest.mark.soak
 def test_two_hours_of_training_do_not_increase_memory_or_descriptors(tmp_path, capsys):
-    end = time.monotonic() + 7200.0
-    run = train(tmp_path, lambda _played: time.monotonic() > end, speed=1)
+    end = time.monotonic() + 7200.0 / SPEED
+    run = train(tmp_path, lambda _played: time.monotonic() > end)
     with capsys.disabled():
         print(growth_text(run))
     check_flat(run)

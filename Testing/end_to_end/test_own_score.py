@@ -10,11 +10,12 @@ import pytest
 from rastrainer.commands import check_arguments
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Client
+from rastrainer.journal.entries import Stamp
 from rastrainer.journal.folder import journals_of
-from rastrainer.journal.journal_file import read_journal, stamp
+from rastrainer.journal.journal_file import read_journal
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.logic.trial_logic import TrialLogic
+from rastrainer.sections.trial_logic import TrialLogic
 from rastrainer.study.database.study import Study
 from rastrainer.study.delivered_trial import (
     score_references,
@@ -25,7 +26,6 @@ from rastrainer.study.delivered_trial import (
 from rastrainer.trial.analysis import (
     RevealedTruth,
     analyze_trial,
-    registration_arguments,
     score_arguments,
 )
 from rastrainer.trial.ctps import PUBLISHED_STUDY, read_trials
@@ -79,7 +79,7 @@ class Alone:
             self.history.changed(TRAINEE, trial)
 
     def ask(self, command, arguments):
-        return self._archive.answer(command, check_arguments(command, arguments), stamp(0, 0.0))
+        return self._archive.answer(command, check_arguments(command, arguments), Stamp.now(0, 0.0))
 
     def entries(self, trial, kind):
         (path,) = journals_of(self.folder, trial)
@@ -107,9 +107,9 @@ def test_the_result_without_slicer_is_that_of_slicers_study_on_100_seeded_trials
                 record_to_json(record), study, lambda each: analyze_trial(each, scenario, cohort)
             )
             registration = check_arguments(
-                "SubmitRegistration", registration_arguments(stored.analysis)
+                "SubmitRegistration", stored.analysis.arguments(stored.analysis.record.trial_id)
             )
-            answer = archive.answer("SubmitRegistration", registration, stamp(0, 0.0))
+            answer = archive.answer("SubmitRegistration", registration, Stamp.now(0, 0.0))
             truth = record_from_json(RevealedTruth, answer)
             scored = scored_with_journal(stored.analysis, truth, scenario, score_references(study))
             study.add_results(record.trial_id, score=scored.score)

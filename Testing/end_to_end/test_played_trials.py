@@ -64,12 +64,12 @@ def play(simulation: Simulation, setup: SimulationSetup, seed: int, folder: Path
 
 
 def is_within_interval(touches_mm: np.ndarray, task: str, seed: int, scenario: Scenario) -> bool:
-    target, fiducials_mm = scenario.target_position, scenario.task(task).fiducials
+    target, fiducials_mm = scenario.target.position_ras, scenario.task(task).fiducials
     registration = register(touches_mm, fiducials_mm)
     head_to_world = scenario.perturbed_head_to_world(seed)
     there_and_back = transforms.apply(registration.matrix @ head_to_world, target[None])
     true_tre_mm = np.linalg.norm(there_and_back[0] - target)
-    normals = outward_normals(read_head_mesh(scenario.head_mesh), fiducials_mm)
+    normals = outward_normals(read_head_mesh(scenario.head), fiducials_mm)
     error = target_error(registration, target, error_along_surface(registration, normals))
     low, high = error.interval_mm
     return bool(low <= true_tre_mm <= high)

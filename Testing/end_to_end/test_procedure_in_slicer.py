@@ -46,7 +46,7 @@ class Leader:
 
     @property
     def status(self):
-        return self.session.procedure.status
+        return self.session.procedure.status.procedure
 
     def until(self, condition) -> None:
         deadline = time.monotonic() + WITHIN_S
@@ -57,7 +57,7 @@ class Leader:
             assert time.monotonic() < deadline, (self.status, self.answers)
 
     def until_in(self, phase: Phase) -> None:
-        self.until(lambda: self.status.phase == phase.value)
+        self.until(lambda: self.session.procedure.status.phase == phase.value)
 
     def is_aligned(self) -> bool:
         off = (self.status.entryDistanceMm, self.status.angleDeg)
@@ -106,7 +106,7 @@ def led(tmp_path_factory):
             )
             touching.start()
             leader.until(lambda: not touching.is_alive())
-            leader.until(lambda: leader.status.isRegistered)
+            leader.until(lambda: leader.status.registrationInUse)
             seen["axial"] = leader.slices()
             leader = found(leader, seen)
             leader.session.procedure.command(CommandName.ACCEPT_REGISTRATION)
@@ -168,7 +168,7 @@ def test_a_slicer_lost_in_a_phase_finds_the_procedure_unchanged(led):
     assert phases == [phase.value for phase in PROCEDURE_PHASES]
     for before, after in led["found"]:
         assert (after.phase, after.name) == (before.phase, before.name)
-        assert after.isRegistered
+        assert after.registrationInUse
         assert after.feedMm >= before.feedMm
 
 

@@ -152,7 +152,7 @@ def perform(surgeon: Surgeon) -> dict:
 
 
 def touch_checkpoint(surgeon: Surgeon, place, head_to_world, scenario) -> dict:
-    center = transforms.apply(head_to_world, scenario.target_position)
+    center = transforms.apply(head_to_world, scenario.target.position_ras)
     outward = (place - center) / np.linalg.norm(place - center)
     surgeon.player.move_to(place + 40.0 * outward)
     lower_onto_skin(surgeon.player, place, center)

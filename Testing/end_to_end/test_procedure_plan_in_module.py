@@ -70,7 +70,7 @@ def test_a_procedure_is_edited_checked_and_saved_in_a_copy_of_its_scenario(host,
     assert dbs.trajectories[1].diameter_mm == 2.0
     np.testing.assert_allclose(dbs.trajectories[1].target_ras, good[1], atol=1e-3)
     assert len(dbs.checkpoints) == 6
-    meshes = read_procedure_meshes(dbs, saved.skull_mesh).no_go
+    meshes = read_procedure_meshes(dbs, saved.skull.file).no_go
     assert list(meshes) == [node.GetName() for node in noGoNodes(host.scene)]
     assert host.find("scenarioComboBox").currentText == "My DBS"
     assert host.find("procedureComboBox").count == 4

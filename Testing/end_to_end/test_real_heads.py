@@ -37,12 +37,12 @@ def test_a_real_head_becomes_a_sound_scenario(request, tmp_path, volume, kind):
     path, folder = request.getfixturevalue(volume), tmp_path / "made"
     subprocess.run([*RASTRAINER, "build", str(path), "-o", str(folder)], check=True)
     scenario = load_scenario(folder)
-    mesh = read_head_mesh(scenario.head_mesh)
+    mesh = read_head_mesh(scenario.head)
     assert mesh.is_closed
     assert mesh.euler_characteristic == 2
     assert body_count(mesh) == 1
     assert len(mesh.triangles) <= 60_000
-    assert scenario.is_skull_approximate == (kind == "approximation")
+    assert scenario.skull.kind.value == kind
     extent = np.ptp(mesh.vertices, axis=0)
     assert (extent > [130, 160, 120]).all()
     # Upright: the widest part is nearer to the base than the crown is.

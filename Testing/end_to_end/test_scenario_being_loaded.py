@@ -225,5 +225,5 @@ def test_a_trial_and_a_scenario_wait_while_other_settings_are_applied(
     wait_until(lambda: instructor.start("task-1").error != LOADING, "the trial")
     assert phase(instructor) == "running"
     (journal,) = simulator.records.glob(f"*{SUFFIX}")
-    settings = read_journal(journal).header["settings"]
+    settings = read_journal(journal).header.settings
     assert settings["teleoperation"]["fineSpeed"] != load_setup().settings.teleoperation.fine_speed

@@ -11,9 +11,9 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.scenario.scenario import load_scenario
+from rastrainer.scenario.scenario import SkullKind, load_scenario
 from rastrainer.scenario.writer import HeadDraft, new_folder, write_scenario
-from rastrainer.slicer.logic.scenario_maker import HEAD_SHARE, planScenario
+from rastrainer.sections.new_scenario_logic import HEAD_SHARE, planScenario
 from rastrainer_simulator.authoring.make import head_process
 from rastrainer_simulator.cli.main import main
 from Testing.domain.head.spheres import sphere_mesh
@@ -60,7 +60,7 @@ def test_a_head_can_be_worked_on_before_its_skull_is_made(ct):
     assert np.array_equal(whole.head.vertices, first.head.vertices)
     assert np.array_equal(whole.head.triangles, first.head.triangles)
     assert len(whole.skull.triangles) > 1000
-    assert not whole.is_skull_approximate
+    assert whole.skull.kind is SkullKind.BONE
     assert whole.method == f"{first.method} Skull: bone of the CT."
 
 

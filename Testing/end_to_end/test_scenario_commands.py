@@ -70,7 +70,7 @@ def test_the_check_names_the_fiducials_that_no_view_shows(tmp_path, monkeypatch,
     scenario = load_scenario(asset_path("scenarios", "colin27"))
     with new_folder(tmp_path / "head") as made:
         one = replace(scenario, tasks=scenario.tasks[1:2], procedures=())
-        write_scenario(made, one, read_head_mesh(scenario.head_mesh))
+        write_scenario(made, one, read_head_mesh(scenario.head))
         (made / "preview.png").write_bytes(png())
     monkeypatch.setattr("rastrainer_simulator.viewpoint.best_view.WIDEST_DEG", 0.0)
     assert main(["scenario", "check", str(tmp_path / "head")]) == 1

@@ -41,8 +41,8 @@ def test_a_scenario_is_saved_without_face_and_names_and_the_panel_says_so(host, 
     given = read_scenario(tmp_path)
     assert given.title in text
     assert given.title.startswith("Head ")
-    assert given.skull_mesh is None
-    assert read_head_mesh(given.head_mesh).vertices[:, 1].max() < egg().vertices[:, 1].max() - 3.0
+    assert given.skull is None
+    assert read_head_mesh(given.head).vertices[:, 1].max() < egg().vertices[:, 1].max() - 3.0
 
 
 @pytest.mark.soak

@@ -12,12 +12,12 @@ from slicer.util import arrayFromMarkupsControlPoints
 from rastrainer import transforms
 from rastrainer.igtl.client import Client
 from rastrainer.scenario.scenario import load_scenario
+from rastrainer.sections.scenario_files import ScenarioCache
+from rastrainer.sections.trial_logic import TrialLogic
+from rastrainer.sections.trial_services import TrialServices
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.link.link_status import LinkState
-from rastrainer.slicer.logic.scenario_cache import ScenarioCache
-from rastrainer.slicer.logic.trial_logic import TrialLogic
-from rastrainer.slicer.logic.trial_services import TrialServices
 from rastrainer.study.database.study import Study
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.scene import HeadlessScene
@@ -73,7 +73,7 @@ def start_playing(port, counts):
     scenario = load_scenario(COLIN)
     head_to_world = scenario.perturbed_head_to_world(SEED)
     fiducials = transforms.apply(head_to_world, scenario.task("task-1").fiducials)
-    center = transforms.apply(head_to_world, scenario.target_position)
+    center = transforms.apply(head_to_world, scenario.target.position_ras)
 
     def play():
         with Client(port=port) as client:
@@ -162,6 +162,6 @@ def test_the_truth_that_is_stored_follows_from_the_seed(slicer_side):
     head_to_world = scenario.perturbed_head_to_world(SEED)
     np.testing.assert_allclose(trial.truth.matrix, head_to_world, atol=1e-9)
     found = np.reshape(trial.registrations["rigid"].matrix, (4, 4)) @ head_to_world
-    target = scenario.target_position
+    target = scenario.target.position_ras
     error = np.linalg.norm(transforms.apply(found, target) - target)
     assert trial.true_tre_mm == pytest.approx(error, abs=1e-6)

@@ -12,7 +12,7 @@ from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.json_records import record_from_json
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.logic.trial_logic import TrialLogic
+from rastrainer.sections.trial_logic import TrialLogic
 from rastrainer.study.database.study import Study
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import SCORE_VERSION

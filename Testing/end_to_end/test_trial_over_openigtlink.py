@@ -72,7 +72,7 @@ def play(player: Player, scenario: Scenario, **start: str) -> dict:
     `start` goes to StartTask besides task, trainee and seed.
     """
     task, head_to_world = scenario.task(TASK), scenario.perturbed_head_to_world(SEED)
-    head = read_head_mesh(scenario.head_mesh)
+    head = read_head_mesh(scenario.head)
     normals = outward_normals(head, task.fiducials)
     fiducials = transforms.apply(head_to_world, task.fiducials)
     above = fiducials + ABOVE_MM * normals @ head_to_world[:3, :3].T

@@ -176,7 +176,7 @@ def test_an_unusual_volume_becomes_a_scenario_with_the_right_skin(place, capfd, 
     assert warning in printed.out
     scenario = load_scenario(place / "made")
     assert [task.title for task in scenario.tasks] == ["Trial run"]
-    mesh = read_head_mesh(scenario.head_mesh)
+    mesh = read_head_mesh(scenario.head)
     assert mesh.is_closed
     assert mesh.euler_characteristic == 2
     scanned = mesh.vertices[mesh.vertices[:, 2] > NOTHING_SCANNED_BELOW]

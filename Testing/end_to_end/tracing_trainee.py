@@ -32,7 +32,7 @@ class TracingTrainee:
     def __init__(self, player: Player, scenario: Scenario, seed: int) -> None:
         self.player = player
         self._scenario, self._seed = scenario, seed
-        self._head = read_head_mesh(scenario.head_mesh)
+        self._head = read_head_mesh(scenario.head)
         self._to_world = scenario.perturbed_head_to_world(seed)
         self._lean = np.array(LEANS[0])
 

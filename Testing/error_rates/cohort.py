@@ -164,7 +164,7 @@ def _alone(task: str, seed: int, bias_mm: np.ndarray) -> tuple[float, float]:
     # Errors perpendicular to the skin move no touch.
     along = bias_mm - normals * (normals @ bias_mm)[:, None]
     fit = register(transforms.apply(head_to_world, fiducials) + along, fiducials)
-    target = scenario.target_position[None]
+    target = scenario.target.position_ras[None]
     there = transforms.apply(fit.matrix @ head_to_world, target)
     return float(np.linalg.norm(there - target)), fit.fre_mm
 

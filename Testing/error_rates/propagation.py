@@ -113,9 +113,9 @@ class Bench:
         self.scenario = load_scenario(asset_path(*DEFAULT_SCENARIO))
         self.procedure: Procedure = self.scenario.procedure(PROCEDURE)
         self.fiducials = np.asarray(self.scenario.task(TASK).fiducials, dtype=float)
-        assert self.scenario.skull_mesh is not None
-        skull = read_procedure_meshes(self.procedure, self.scenario.skull_mesh).skull
-        # Obstacles play no part.
+        assert self.scenario.skull is not None
+        skull = read_procedure_meshes(self.procedure, self.scenario.skull.file).skull
+        # What is in the way plays no part.
         self.meshes = ProcedureMeshes(skull, {})
 
     def registered(

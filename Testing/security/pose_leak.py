@@ -48,8 +48,8 @@ class PoseFit:
     def __init__(self, scenario: Scenario) -> None:
         """Read the head."""
         self.scenario = scenario
-        self._mesh = read_head_mesh(scenario.head_mesh)
-        self.center = transforms.apply(scenario.head_to_world, scenario.target_position)
+        self._mesh = read_head_mesh(scenario.head)
+        self.center = transforms.apply(scenario.head_to_world, scenario.target.position_ras)
         self._marks = scenario.task(TASK).fiducials
 
     def head_to_world(self, pose: np.ndarray) -> np.ndarray:

@@ -12,7 +12,7 @@ from rastrainer.journal.folder import journals_of
 from rastrainer.journal.journal_file import NO_LINE, encode_line, read_journal
 from rastrainer.json_records import record_from_json
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.logic.trial_logic import TrialLogic
+from rastrainer.sections.trial_logic import TrialLogic
 from rastrainer.study.database.study import Study
 from rastrainer.study.journal_check import check_journal
 from rastrainer.study.protocol.study_progress import StudyProgress

@@ -9,8 +9,7 @@ from rastrainer import transforms
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.logic.delivery_queue import AbortedTrialLogic
-from rastrainer.slicer.logic.trial_logic import TrialLogic
+from rastrainer.sections.trial_logic import TrialLogic
 from rastrainer.study.database.study import Study
 from Testing.end_to_end.faulty_proxy import SlicerSide
 from Testing.end_to_end.finished_trials import COLIN, write_finished_trials
@@ -37,7 +36,7 @@ def scenario():
 
 def slicer_for_aborted(folder, simulator):
     """Return Slicer's side, once the simulator knows it."""
-    side = SlicerSide(folder / "study.db", simulator.port, AbortedTrialLogic)
+    side = SlicerSide(folder / "study.db", simulator.port, TrialLogic)
     run_logic_until(side.link, side.work, lambda: side.link.seen.isOpen, TIMEOUT_S)
     return side
 

@@ -79,7 +79,7 @@ def heard(fit, tmp_path_factory) -> dict:
         trial = client.do("StartTask", task=TASK, trainee="anna")
         (path,) = records.glob(f"*_{trial['trialId']}.journal")
         seen["trial"], seen["open"] = trial["trialId"], path.read_bytes()
-        seen["drawn"] = read_journal(path).header["seed"]
+        seen["drawn"] = read_journal(path).header.seed
         seen["is beside"] = path.with_suffix(SEED_SUFFIX).stat().st_mode & 0o777
         client.do("Abort", trialId=trial["trialId"])
         client.do("StartTask", task=TASK, trainee="anna")

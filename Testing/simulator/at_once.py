@@ -7,7 +7,7 @@ from concurrent.futures import Future
 from contextlib import contextmanager
 from unittest import mock
 
-from rastrainer_simulator.viewpoint import view_search
+from rastrainer_simulator.viewpoint import best_view
 
 
 @contextmanager
@@ -17,7 +17,7 @@ def at_once() -> Iterator[None]:
     Else a simulation that goes as fast as it can would take more steps meanwhile on a busy machine.
     """
 
-    with mock.patch.object(view_search, "ThreadPoolExecutor", _AtOnce), mock.patch("os.fsync"):
+    with mock.patch.object(best_view, "ThreadPoolExecutor", _AtOnce), mock.patch("os.fsync"):
         yield
 
 

@@ -7,7 +7,7 @@ from vtk.util.numpy_support import vtk_to_numpy
 
 from rastrainer import transforms
 from rastrainer.head.mesh import HeadMesh, write_head_mesh
-from rastrainer.scenario.points import LABELS, Task
+from rastrainer.scenario.points import LABELS, PlannedTarget, Task, task_file
 from rastrainer.scenario.scenario import Perturbation, Scenario
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.program.child_process import OwnProcess, runHere
@@ -102,20 +102,21 @@ def scenario(tmp_path):
     write_head_mesh(tmp_path / "head.ply", HeadMesh(vertices, triangles))
     names = {"trial-run": "Trial run", "task-1": "Task 1", "task-2": "Task 2"}
     return Scenario(
-        folder=tmp_path,
+        format_version=1,
         name="ball",
         title="Ball",
-        head_mesh=tmp_path / "head.ply",
-        target_name="center",
-        target_position=np.array([0.0, 10.0, -20.0]),
+        head=tmp_path / "head.ply",
+        target=PlannedTarget("center", np.array([0.0, 10.0, -20.0])),
         head_to_world=transforms.rigid(np.diag([-1.0, -1.0, 1.0]), np.array([500.0, 0.0, 300.0])),
         perturbation=Perturbation(20.0, 10.0, 5.0),
         tasks=tuple(
             make_task(name, title, seed) for seed, (name, title) in enumerate(names.items())
         ),
         cameras={},
-        furniture=None,
+        table=None,
+        stand=None,
         provenance=None,
+        folder=tmp_path,
     )
 
 
@@ -123,7 +124,7 @@ def make_task(name, title, seed):
     directions = np.random.default_rng(seed).normal(size=(15, 3))
     directions[:, 2] = np.abs(directions[:, 2])
     fiducials = 90.0 * directions / np.linalg.norm(directions, axis=1, keepdims=True)
-    return Task(name, title, LABELS, fiducials, 1.0 + seed)
+    return Task(name, title, task_file(name), 1.0 + seed, fiducials=fiducials)
 
 
 @pytest.fixture

@@ -1,10 +1,10 @@
 """What would have crashed Slicer in a test."""
 
-from rastrainer_headless.peer_sockets import crashes
+from rastrainer_headless.peer_socket import crashes
 
 
 def take_crashes():
-    """Return what was recorded since the last call."""
+    """Return the crashes recorded since the last call."""
     taken = crashes[:]
     crashes.clear()
     return taken

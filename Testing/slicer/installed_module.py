@@ -16,7 +16,7 @@ from Testing.slicer.host.host import Host
 
 
 def main() -> None:
-    """Open the module, show its scenario, and print what was seen."""
+    """Open the module, show its scenario, and print the texts."""
     host = Host(Path(sys.argv[2]), Path(sys.argv[1]))
     package = host.open().logic.session.simulator.setup.package
     seen = {

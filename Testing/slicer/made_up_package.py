@@ -21,7 +21,7 @@ OURS = (
     "slicer/program/__init__.py",
     "slicer/program/trim_packages.py",
 )
-"""Of the real wheel: what runs a program on the packages of its folder, and trims them."""
+"""Parts of the real wheel: they run a program on the packages of its folder, and trim them."""
 
 
 def write_wheel(folder: Path, name: str, version: str, files: Mapping[str, str]) -> Path:
@@ -76,7 +76,7 @@ def write_package(folder: Path, cli: str, lock: Sequence[str] = ()) -> Simulator
 
 
 def write_checkout(folder: Path, cli: str) -> SimulatorPackage:
-    """Write a repository with the simulator's sources, and an empty lock beside its module."""
+    """Write a repository with the simulator's sources, and an empty lock next to its module."""
     roots = {"rastrainer": "RASTrainer/Logic", "rastrainer_simulator": "RASTrainerSimulatorServer"}
     for place, text in simulator_files(cli).items():
         path = folder / roots[place.split("/")[0]] / place

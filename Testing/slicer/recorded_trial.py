@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer import transforms
-from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, NO_LINE, encode_line
+from rastrainer.journal.entries import TracePoint
 from rastrainer.json_records import record_from_json
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.slicer.scene.robot_description import readArmChain
@@ -18,6 +18,7 @@ from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_tria
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import SAFETY_METRICS
 from rastrainer_simulator.assets import asset_path
+from Testing.journal_lines import at, header, journal_bytes, sample, touch
 from Testing.slicer.host.host import Host
 
 TICK_S = 0.004
@@ -43,36 +44,18 @@ def write_recorded_trial(
     times = np.arange(5, round(seconds / TICK_S) + 1, 5) * TICK_S
     q = np.array([0.1, 0.5, -0.2, -1.4, 0.3, 0.9, 0.0]) + 0.05 * np.sin(times)[:, None]
     tips = readArmChain(URDF).toolToWorld(q)[:, :3, 3]
-    header = {
-        "kind": "header",
-        "format": FORMAT,
-        "version": FORMAT_VERSION,
-        "tick": 0,
-        "simTimeS": START_S + TICK_S,
-        "trialId": trial_id,
-        "trainee": trainee,
-        "task": "task-1",
-        "tickS": TICK_S,
-    }
-    entries = [header]
-    for number, (time, posture, tip) in enumerate(zip(times, q, tips, strict=True)):
-        stamp = {"tick": 5 * number, "simTimeS": START_S + time}
-        sample = {"q": posture.tolist(), "tipMm": tip.tolist(), "clearanceMm": 30.0 - 5.0 * time}
-        entries.append({"kind": "sample", **stamp, **sample})
+    lines = [at(START_S + TICK_S, header(TICK_S, trial_id=trial_id, trainee=trainee))]
+    for number, (time, posture, tip) in enumerate(zip(times, q, tips.tolist(), strict=True)):
+        time_s, tick, place = START_S + time, 5 * number, tuple(tip)
+        posed = sample(place, q=tuple(posture.tolist()), clearance_mm=30.0 - 5.0 * time)
+        lines.append(at(time_s, posed, tick))
         if round(time / TICK_S) % (250 * touch_every_s) == 0:
             count = round(time) // touch_every_s
-            touch = {"label": str(count), "positionMm": tip.tolist(), "kept": count}
-            stamp = {"tick": 5 * number, "simTimeS": START_S + time + TICK_S}
-            entries.append({"kind": "touch", **stamp, **touch})
+            lines.append(at(time_s + TICK_S, touch(str(count), place, count), tick))
         elif number < traced:
-            point = {"positionMm": tip.tolist(), "kept": number + 1}
-            entries.append({"kind": "trace", **stamp, **point})
-    lines, previous = [], NO_LINE
-    for n, entry in enumerate(entries, start=1):
-        line, previous = encode_line(n, previous, entry)
-        lines.append(line)
+            lines.append(at(time_s, TracePoint(position_mm=place, kept=number + 1), tick))
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / f"20260302T090000Z_{trial_id}.journal").write_bytes(b"".join(lines))
+    (folder / f"20260302T090000Z_{trial_id}.journal").write_bytes(journal_bytes(lines))
     return tips
 
 

@@ -8,7 +8,7 @@ from rastrainer_headless.scene import HeadlessScene
 
 
 def load_bundle(application: HeadlessScene, path):
-    """Replace the scene by that of a bundle."""
+    """Replace the scene by the scene of a bundle."""
     scene, messages = application.scene, slicer.vtkMRMLMessageCollection()
     with tempfile.TemporaryDirectory() as cache_folder:
         cache = slicer.vtkCacheManager()

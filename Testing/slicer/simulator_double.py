@@ -26,6 +26,7 @@ from rastrainer.igtl.message import Message, MessageReader, pack
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
+from rastrainer_headless.connector import headlessKit
 from Testing.free_port import free_port
 
 HEARTBEAT_PERIOD_S = 1.0
@@ -152,6 +153,40 @@ class SimulatorDouble:
             peer.sendall(pack(Message(DeviceName.COMMAND, reply, metadata)))
 
 
+class LinkedLab:
+    """A link to a simulator double, and background work, driven without a host."""
+
+    def __init__(self, scene: Any, responder: Responder | None = None) -> None:
+        self.scene = scene
+        self.simulator = SimulatorDouble(responder)
+        self.link = Link(scene, headlessKit)
+        self.work = BackgroundWork()
+
+    def connect(self) -> None:
+        """Connect, and finish the work that begins with that."""
+        opened: list[bool] = []
+        self.link.opened.connect(lambda: opened.append(True))
+        self.link.connectTo(port=self.simulator.port)
+        self.run_until(lambda: opened and not self.work.isBusy)
+
+    def sent(self, name: str) -> list[dict[str, Any]]:
+        """Return the arguments of the received commands of a name."""
+        return [arguments for sent, arguments in self.simulator.commands if sent == name]
+
+    def all_sent(self, name: str) -> list[dict[str, Any]]:
+        """Return the arguments of all commands of a name, none of which is still in transit."""
+        run_until_received(self.link)
+        return self.sent(name)
+
+    def run_until(self, condition: Callable[[], Any]) -> None:
+        run_logic_until(self.link, self.work, condition)
+
+    def close(self) -> None:
+        self.link.disconnect()
+        self.work.close()
+        self.simulator.close()
+
+
 def _close(open_socket: socket.socket) -> None:
     # Shutting down wakes the thread in accept; closing alone leaves it there.
     with contextlib.suppress(OSError):
@@ -192,7 +227,7 @@ def run_link_until(link: Link, condition: Callable[[], Any], timeout: float = 12
 def run_until_received(link: Link) -> None:
     """Let the link work until the simulator has received all commands that were sent before.
 
-    They arrive in their order: once one that is sent now is answered, none is on its way.
+    They arrive in their order: once a later command is answered, all have arrived.
     """
     replies: list[Reply] = []
     link.send(CommandName.LIST_TASKS, onReply=replies.append)
@@ -202,7 +237,7 @@ def run_until_received(link: Link) -> None:
 def run_logic_until(
     link: Link, work: BackgroundWork, condition: Callable[[], Any], timeout: float = 180.0
 ) -> None:
-    """Let the link and what is done in the background work until `condition()`."""
+    """Let the link and the background work proceed until `condition()`."""
 
     def process() -> None:
         process_link(link)

@@ -12,9 +12,9 @@ from rastrainer.errors import InputError
 from rastrainer.journal.recording import find_track
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.logic import head_preview
-from rastrainer.slicer.logic.replay_logic import SLICES_A_TURN
-from rastrainer.slicer.logic.scenario_maker import NewScenarioOptions
+from rastrainer.sections import scenario_logic
+from rastrainer.sections.new_scenario_logic import NewScenarioOptions
+from rastrainer.sections.score_logic import SLICES_A_TURN
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints
 from rastrainer.slicer.scene.robot_description import readArmChain
 from rastrainer.slicer.scene.trial_replay import STATES_A_SLICE, showReplay
@@ -105,9 +105,9 @@ def test_a_head_found_in_a_closed_scenes_volume_is_not_used_for_the_next_scenes(
     volume = host.scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode", "former")
     slicer.util.updateVolumeFromArray(volume, np.zeros((20, 20, 20), np.int16))
 
-    monkeypatch.setattr(head_preview, "inBackground", lambda *_arguments: host.scene.Clear(0))
+    monkeypatch.setattr(scenario_logic, "inBackground", lambda *_arguments: host.scene.Clear(0))
     with pytest.raises(InputError, match="was removed before its head was found"):
-        session.scenarioMaker.preview(volume, NewScenarioOptions(), lambda _step, _share: None)
+        session.scenarioMaker.preview(NewScenarioOptions(volume), lambda _step, _share: None)
     assert findNode(host.scene, "vtkMRMLSegmentationNode", Role.HEAD_SEGMENT) is None
 
 

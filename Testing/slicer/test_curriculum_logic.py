@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.logic.trainee_logic import CurriculumLogic, TraineeLogic
+from rastrainer.sections.trainees_logic import CurriculumLogic, TraineeLogic
 from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.database.study import Study
 from Testing.domain.trial.trial_records import gentle_score, make_record

@@ -1,6 +1,6 @@
 """The tree that is registered: as Slicer's Extensions Index checks it, and small.
 
-The rules are those of the index's `scripts/check_description_files.py`, which clones the repository
+The rules come from the index's `scripts/check_description_files.py`, which clones the repository
 with its whole history and allows 100 MB, and of its review, which reads every `.py` and `.md`.
 """
 

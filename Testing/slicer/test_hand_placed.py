@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.logic.scenario_maker import handPlacedLists
+from rastrainer.sections.new_scenario_logic import handPlacedLists
 from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, setPoints
 
 

@@ -50,7 +50,7 @@ class PlayingDouble(SimulatorDouble):
             return {}
         head_to_world = self.scenario.perturbed_head_to_world(SEED)
         found = np.reshape(arguments["matrix"], (4, 4)) @ head_to_world
-        target = self.scenario.target_position
+        target = self.scenario.target.position_ras
         return {
             "headToWorld": head_to_world.ravel().tolist(),
             "trueTreMm": float(np.linalg.norm(transforms.apply(found, target) - target)),

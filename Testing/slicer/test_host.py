@@ -14,8 +14,6 @@ from Testing.slicer.host.members import (
     MODULES,
     OFFERED,
     TARGET,
-    members_of,
-    module_of,
     reduced,
     text_of,
 )
@@ -41,16 +39,6 @@ def test_a_property_is_an_attribute(qt):
     assert (button.text, button.enabled, button.isEnabled()) == ("c", True, True)
 
 
-def test_anything_that_is_not_a_property_is_a_method(qt):
-    item = qt.QTableWidgetItem("a")
-    assert item.text() == "a"
-    layout = qt.QVBoxLayout()
-    assert layout.count() == 0
-    widget = qt.QWidget()
-    widget.setLayout(layout)
-    assert widget.layout() is layout
-
-
 def test_an_unknown_member_raises_on_reading_and_on_assigning(qt):
     button = qt.QPushButton()
     with pytest.raises(AttributeError, match="QPushButton has no nosuch"):
@@ -63,51 +51,10 @@ def test_an_unknown_member_raises_on_reading_and_on_assigning(qt):
         qt.QCheckBox().checkStateChanged  # noqa: B018
 
 
-def test_a_python_subclass_may_have_new_attributes(qt):
-    class Plain(qt.QWidget):
-        def __init__(self, parent=None):
-            qt.QWidget.__init__(self, parent)
-            self.mine = 1
-
-    class Modern(qt.QWidget):
-        def __init__(self):
-            super().__init__()
-            self.mine = 2
-
-    assert (Plain().mine, Modern().mine) == (1, 2)
-    assert isinstance(qt.QLabel(), qt.QWidget)
-
-
 def test_an_unknown_signal_returns_false_and_raises_nothing(qt):
     button = qt.QPushButton()
     assert button.connect("clicked()", print) is True
     assert button.connect("nosuch()", print) is False
-
-
-def test_a_signal_passes_as_many_arguments_as_the_slot_takes(qt):
-    heard = []
-    button = qt.QPushButton()
-    button.checkable = True
-    button.connect("clicked()", lambda: heard.append("none"))
-    button.connect("clicked(bool)", lambda checked: heard.append(checked))
-    button.clicked.connect(lambda: heard.append("attribute"))
-    button.clicked.connect(lambda checked: heard.append(("attribute", checked)))
-    button.click()
-    assert heard == ["none", True, "attribute", ("attribute", True)]
-
-
-def test_a_slot_can_be_disconnected(qt):
-    heard = []
-
-    def slot():
-        heard.append(1)
-
-    button = qt.QPushButton()
-    button.connect("clicked()", slot)
-    assert button.disconnect("clicked()", slot) is True
-    assert button.disconnect("clicked()", slot) is False
-    button.click()
-    assert heard == []
 
 
 def test_an_exception_in_a_slot_is_recorded_and_the_click_continues(qt, host):
@@ -138,22 +85,6 @@ def test_what_a_slot_raises_is_a_failure_although_a_message_box_has_shown_it(
     assert host.messages[0].text.startswith("It failed.\n\n")
 
 
-def test_enumerations_are_ints(qt):
-    assert qt.Qt.AlignLeft | qt.Qt.AlignTop == 33
-    label = qt.QLabel()
-    label.setAlignment(qt.Qt.AlignLeft | qt.Qt.AlignTop)
-    assert label.alignment == 33
-    assert qt.QMessageBox.Yes == 16384
-
-
-def test_a_combo_box_returns_any_python_object(qt):
-    value = {"a": object()}
-    combo = qt.QComboBox()
-    combo.addItem("text", value)
-    assert combo.itemData(0)["a"] is value["a"]
-    assert combo.count == 1
-
-
 def test_keyword_arguments_and_numpy_numbers_are_refused(qt):
     with pytest.raises(TypeError, match="keyword"):
         qt.QPushButton().setText(text="a")
@@ -168,26 +99,6 @@ def test_a_program_that_cannot_start_is_reported(qt, host):
     process.start("/nosuch/program", [])
     host.wait_until(lambda: errors, "the error")
     assert errors == [0]
-
-
-def test_process_output_is_bytes(qt, host):
-    codes = []
-    process = qt.QProcess()
-    process.connect("finished(int,QProcess::ExitStatus)", lambda code, _status: codes.append(code))
-    process.start("echo", ["hello"])
-    host.wait_until(lambda: codes, "the end")
-    assert process.readAllStandardOutput().data() == b"hello\n"
-    assert codes == [0]
-
-
-def test_settings_keep_types_and_a_missing_key_is_none():
-    import slicer
-
-    settings = slicer.app.settings()
-    settings.setValue("RASTrainer/port", 3)
-    assert settings.value("RASTrainer/port") == 3
-    assert settings.value("RASTrainer/nosuch") is None
-    assert settings.value("RASTrainer/nosuch", "a") == "a"
 
 
 def test_a_missing_ui_file_or_child_raises():
@@ -223,34 +134,9 @@ def test_an_unanswered_question_fails_the_test(host):
     assert slicer.util.confirmYesNoDisplay("Delete all?") is True
 
 
-def test_a_node_combo_box_follows_the_scene():
-    import slicer
-
-    chosen = []
-    combo = slicer.qMRMLNodeComboBox()
-    combo.nodeTypes = ["vtkMRMLModelNode"]
-    combo.connect("currentNodeChanged(vtkMRMLNode*)", chosen.append)
-    combo.setMRMLScene(slicer.mrmlScene)
-    assert combo.nodeTypes == ("vtkMRMLModelNode",)
-    node = slicer.mrmlScene.AddNewNodeByClass("vtkMRMLModelNode", "Head")
-    assert combo.currentNode() is node
-    assert combo.currentNodeID == node.GetID()
-    slicer.mrmlScene.RemoveNode(node)
-    assert combo.currentNode() is None
-    assert chosen == [node, None]
-
-
 def test_the_table_covers_what_the_host_offers():
     for module in MODULES:
         assert list(FACTS[module]) == list(OFFERED[module])
-
-
-def test_every_widget_has_the_members_of_a_widget():
-    button = members_of("QPushButton")
-    assert {"enabled", "toolTip", "visible", "text"} <= button.properties
-    assert "clicked(bool)" in button.signals
-    assert {"setLayout", "click"} <= button.methods
-    assert module_of("QNoSuchWidget") is None
 
 
 def test_the_table_matches_the_measurement_if_available():

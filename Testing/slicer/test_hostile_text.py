@@ -11,11 +11,11 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.igtl.content import String
-from rastrainer.panels.plain_text import LONGEST_TEXT, toolTip
 from rastrainer.protocol import DeviceName
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
+from rastrainer.widgets.plain_text import LONGEST_TEXT, toolTip
 from rastrainer_simulator.assets import asset_path
 from Testing.slicer.simulator_double import connect_module
 
@@ -96,8 +96,10 @@ def test_choice_boxes_are_not_as_wide_as_their_longest_entry():
 
 
 def test_panels_fill_labels_through_the_functions_that_limit_the_text():
-    sources = {path.name: path.read_text() for path in (MODULE / "Logic").rglob("panels/*.py")}
-    widgets_file = sources.pop("widgets.py")
+    folders = ("sections", "widgets")
+    files = [path for each in folders for path in (MODULE / "Logic/rastrainer" / each).glob("*.py")]
+    sources = {path.name: path.read_text() for path in files}
+    widgets_file = sources.pop("controls.py")
     assert "qt.QLabel(" in widgets_file
     for name, source in sources.items():
         assert not re.findall(r"\w+Text\.(?:text|setText)\b *[=(]", source), name
@@ -109,7 +111,7 @@ def test_panels_fill_labels_through_the_functions_that_limit_the_text():
 
 def test_no_label_grows_with_a_long_word(open_module):
     host, before = open_module, open_module.minimum_width()
-    from rastrainer.panels.widgets import setText
+    from rastrainer.widgets.controls import setText
 
     names = [label.get("name") for label in labels() if label.get("name").endswith("Text")]
     for name in names:

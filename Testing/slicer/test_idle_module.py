@@ -1,4 +1,4 @@
-"""A module that has nothing to do costs Slicer nothing: it paints, lays out and asks nothing."""
+"""A module that has nothing to do costs Slicer nothing: no paint, no layout, no question."""
 
 import json
 
@@ -24,7 +24,7 @@ def idle_activity(host):
 
 @pytest.fixture
 def idle_state():
-    """What the simulator says of itself while no trial is open."""
+    """State of the simulator while no trial is open."""
     return String(json.dumps({"phase": "idle", "instruction": "Ask for a trial."}))
 
 
@@ -58,7 +58,7 @@ def test_behind_another_module_without_a_connection_no_timer_runs(host):
     host.open()
     host.leave()
     assert idle_activity(host).ticks == 0
-    # What happens meanwhile is shown at once all the same.
+    # Changes are shown at once all the same.
     host.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Mine")
     host.wait_until(lambda: host.widget.logic.session.restS(False) is None, "it rests again")
 
@@ -76,7 +76,7 @@ def test_a_state_of_a_trial_is_shown_without_a_poll(host, simulator):
 
 
 def test_a_sentence_is_shown_and_hidden_in_a_closed_section_without_a_layout(host):
-    from rastrainer.panels.widgets import setText
+    from rastrainer.widgets.controls import setText
 
     host.open()
     label = host.find("pairingText")

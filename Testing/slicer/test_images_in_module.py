@@ -52,7 +52,7 @@ def test_the_mri_is_behind_head_and_fiducials_in_each_slice_view(host, tmp_path)
     for name in manager.sliceViewNames():
         composite = manager.sliceWidget(name).mrmlSliceCompositeNode()
         assert composite.GetBackgroundVolumeID() == node.GetID()
-    np.testing.assert_allclose(place(host.scene), COLIN27.target_position, atol=1e-3)
+    np.testing.assert_allclose(place(host.scene), COLIN27.target.position_ras, atol=1e-3)
     host.window_screenshot(tmp_path / "window.png")
     gray, skin = gray_and_skin(tmp_path / "window.png")
     assert gray > 40_000

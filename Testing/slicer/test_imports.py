@@ -56,7 +56,7 @@ scipy may be imported, and VTK's."""
 
 @pytest.fixture(scope="module")
 def found():
-    """What was imported in a new interpreter: by whom, which names, and whether at file scope."""
+    """Imports in a new interpreter: importer, names, and whether at file scope."""
     environment = {**os.environ, "QT_QPA_PLATFORM": "offscreen"}
     ended = subprocess.run(
         [sys.executable, "-c", PROGRAM], env=environment, capture_output=True, text=True
@@ -80,9 +80,9 @@ def heavy(imported, *packages):
 
 
 def test_the_start_of_slicer_imports_no_library_and_hardly_anything_of_ours(found):
-    assert [name for name in found["started"] if name.count(".") > 1 or "panels" in name] == [
-        "rastrainer.panels",
-        "rastrainer.panels.sample_data",
+    assert [name for name in found["started"] if name.count(".") > 1 or "sections" in name] == [
+        "rastrainer.sections",
+        "rastrainer.sections.sample_data",
     ]
     assert heavy(found["at_start"], *HEAVY) == []
     assert any(importer == "RASTrainer" for importer, *_more in found["at_start"])
@@ -101,5 +101,5 @@ def test_opening_the_module_imports_nothing_that_only_a_button_or_a_process_need
 def test_the_module_opens_in_turns_of_few_imports_each(found):
     counts = [len(found["started"]), *found["counts"]]
     assert counts[-1] == len(found["opened"])
-    # A module comes with its packages, and with what it imports within a function.
+    # A module comes with its packages, and with its imports within functions.
     assert max(after - before for before, after in pairwise(counts)) <= 6

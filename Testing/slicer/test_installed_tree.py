@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from importlib import import_module
@@ -26,11 +27,18 @@ add_subdirectory("{source}" extension)
 """
 
 
+@pytest.fixture(scope="module")
+def clone(built_wheel, tmp_path_factory):
+    """The tree that Slicer's Extensions Index registers, which tests only read."""
+    folder = tmp_path_factory.mktemp("registered") / "clone"
+    extension_repository.write_tree(built_wheel, folder)
+    return folder
+
+
 @pytest.fixture
-def repository(built_wheel, tmp_path):
-    """The tree that Slicer's Extensions Index registers."""
-    extension_repository.write_tree(built_wheel, tmp_path / "clone")
-    return tmp_path / "clone"
+def repository(clone, tmp_path):
+    """A copy of it, to be changed."""
+    return shutil.copytree(clone, tmp_path / "clone")
 
 
 @pytest.fixture
@@ -53,11 +61,10 @@ def install(build, tree):
 
 
 @pytest.fixture(scope="module")
-def tree(built_wheel, tmp_path_factory):
+def tree(clone, tmp_path_factory):
     """The folder of modules in an installed tree, which tests only read."""
     folder = tmp_path_factory.mktemp("installed")
-    extension_repository.write_tree(built_wheel, folder / "clone")
-    status, said = configure(folder / "clone", folder / "build")
+    status, said = configure(clone, folder / "build")
     assert status == 0, said
     return install(folder / "build", folder / "tree")
 

@@ -82,7 +82,7 @@ def test_feedback_and_replay_read_the_journal_in_another_process(panel, records,
     assert len(set(pids)) == 2
     assert os.getpid() not in pids
     assert not any(map(runs, pids))
-    # What is in the scene already is not read again, unless one of its nodes is gone.
+    # A replay in the scene is not read again, unless one of its nodes is gone.
     panel.press("worstTouchButton")
     assert journals.pids() == pids
     panel.scene.RemoveNode(panel.scene.GetFirstNodeByName(TOOL))

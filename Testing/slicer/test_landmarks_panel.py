@@ -6,7 +6,7 @@ import pytest
 
 from rastrainer.scenario.library import user_library
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.logic.landmark_logic import LandmarkPoints
+from rastrainer.sections.landmarks_logic import LandmarkPoints
 from Testing.end_to_end.module.story import Story
 from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
 

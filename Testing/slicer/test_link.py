@@ -102,7 +102,7 @@ def test_a_slicer_that_was_itself_stalled_does_not_take_the_simulator_for_silent
 
 def test_a_simulator_of_another_version_is_named_and_sent_no_commands(link, simulator):
     connect(link, simulator)
-    # Of two heartbeats that come at once, the link sees the later alone.
+    # The link sees only the later of two heartbeats that come at once.
     other = Status(Status.OK, subcode=PROTOCOL_VERSION + 1)
     simulator.heartbeat = Message(DeviceName.SIM_SERVER, other)
     beat(simulator)

@@ -1,4 +1,4 @@
-"""What the status line says about the link, and what to do about it."""
+"""The status line about the link, with its advice."""
 
 from dataclasses import replace
 
@@ -59,12 +59,6 @@ def found(peer):
             LinkState.WRONG_VERSION,
             f"version {PROTOCOL_VERSION + 1} of the protocol",
             "Update the module",
-        ),
-        (
-            replace(WELL, isOpen=False, isListening=True),
-            LinkState.ABSENT,
-            "No simulator has connected",
-            "connects to this computer",
         ),
         (replace(WELL, hasHeartbeat=False), LinkState.GREETING, "waiting for its first", ""),
         (replace(WELL, silenceS=5.2), LinkState.STALE, "silent for 5 s", "restart"),

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rastrainer.slicer.logic.training_logic import LOADING
+from rastrainer.sections.training_logic import LOADING
 from Testing.slicer.simulator_double import SimulatorDouble, connect_module
 from Testing.slicer.training_room import LOADING_REFUSAL
 

@@ -8,8 +8,8 @@ import sys
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.logic.scenario_logic import compareMethods
-from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
+from rastrainer.sections.scenario_files import compareMethods
+from rastrainer.sections.simulator_logic import SimulatorLogic
 from Testing.end_to_end.module.story import Story
 from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
 

@@ -123,7 +123,7 @@ def test_every_choice_possible_without_a_simulator_works(host):
 
 
 ACTIONS = {"press", "press_slowly", "choose", "check", "click"}
-"""What a user does: to read the text of a widget, or whether it is enabled, is not to use it."""
+"""Actions of a user; reading a widget's text, or whether it is enabled, is none."""
 
 
 def used_by(path):

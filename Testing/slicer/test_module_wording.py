@@ -16,7 +16,7 @@ WORDS = re.compile(rf"(?<![\w-])--[a-z]|\brastrainer ({COMMANDS})\b|command line
 
 
 def sentences(path):
-    """Yield what is passed to the translation or to an error."""
+    """Yield the texts passed to the translation or to an error."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         name = isinstance(node, ast.Call) and ast.unparse(node.func)
         if name == "_" or (name and name.endswith("Error")):

@@ -12,10 +12,10 @@ from rastrainer.head.trial_head import Perturbation
 from rastrainer.scenario.library import pack, unpack, user_library
 from rastrainer.scenario.setup import SetUp
 from rastrainer.scenario.writer import new_folder, write_scenario
+from rastrainer.sections import new_scenario_logic, scenario_files, scenario_logic
+from rastrainer.sections.new_scenario_logic import editedHead
 from rastrainer.slicer.head.extraction import findHead
 from rastrainer.slicer.head.volume import HeadSettings, Volume, forSegment, volumeOfSegment
-from rastrainer.slicer.logic import head_preview, scenario_logic, scenario_maker
-from rastrainer.slicer.logic.head_preview import editedHead
 from rastrainer.slicer.scene.nodes import Role, findNode, setPoints
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario, png
 from Testing.slicer.head.phantoms import phantom
@@ -25,7 +25,7 @@ from Testing.slicer.host.cancels import cancels
 pytestmark = pytest.mark.usefixtures("module_widget")
 
 SIZE = 0.75
-"""Size of the heads: small ones are found faster."""
+"""Size of the heads: small heads are found faster."""
 
 EMPTY = Volume(np.zeros((16, 16, 16), np.float32), np.eye(4))
 
@@ -88,7 +88,7 @@ def test_adding_a_zip_file_may_be_canceled_and_leaves_nothing(host, package, mon
         finally:
             ended.set()
 
-    monkeypatch.setattr(scenario_logic, "unpack", unpack_when_told)
+    monkeypatch.setattr(scenario_files, "unpack", unpack_when_told)
     unfold(host, "shareGroupBox")
     host.answer("Add a scenario", package)
     with cancels(host, "importScenarioButton", begun.is_set):
@@ -172,9 +172,9 @@ def test_a_draft_is_hidden_once_a_scenario_is_made_and_shown_when_it_is_found_ag
     host, monkeypatch
 ):
     made = host.widget.logic.session.scenarios.find("colin27")
-    monkeypatch.setattr(scenario_maker, "planScenario", lambda *_arguments: [])
-    monkeypatch.setattr(scenario_logic, "load_scenario", lambda _folder: made)
-    monkeypatch.setattr(head_preview, "findSkin", found_once(head_preview.findSkin))
+    monkeypatch.setattr(new_scenario_logic, "planScenario", lambda *_arguments: [])
+    monkeypatch.setattr(scenario_files, "load_scenario", lambda _folder: made)
+    monkeypatch.setattr(new_scenario_logic, "findSkin", found_once(scenario_logic.findSkin))
     volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "phantom")
     rendering = host.scene.AddNode(slicer.vtkMRMLCPURayCastVolumeRenderingDisplayNode())
     volume.AddAndObserveDisplayNodeID(rendering.GetID())
@@ -256,12 +256,12 @@ def test_the_default_setup_is_shown_until_it_is_changed(host):
     unfold(host, "newScenarioCollapsibleButton", "setUpGroupBox")
     form = host.widget._panels._panels
     (panel,) = [each for each in form if type(each).__name__ == "NewScenarioPanel"]
-    assert panel._wanted()[1].setUp == SetUp()
+    assert panel._wanted().setUp == SetUp()
     host.type("head0SpinBox", "500")
     host.type("shift0SpinBox", "3")
     host.type("turn0SpinBox", "180")
     host.type("base1SpinBox", "-40")
-    changed = panel._wanted()[1].setUp
+    changed = panel._wanted().setUp
     assert changed.head.center_mm == (500.0, 0.0, 220.0)
     assert changed.perturbation == Perturbation(3.0, 180.0, 3.0)
     assert changed.robot_base_mm == (0.0, -40.0)
@@ -285,11 +285,11 @@ def test_a_plan_in_the_scene_is_included_in_the_scenario(host):
     (panel,) = [
         each for each in host.widget._panels._panels if type(each).__name__ == "NewScenarioPanel"
     ]
-    _volume, wishes = panel._wanted()
+    wishes = panel._wanted()
     assert not wishes.hasSkull
     assert not wishes.hasVolume
     assert (wishes.source, wishes.license) == ("The Head Study", "CC BY 4.0")
-    assert scenario_logic.planArguments(wishes.targets, wishes.trajectory) == [
+    assert scenario_files.planArguments(wishes.targets, wishes.trajectory) == [
         *("--target", "Tumor", "1.0", "2.0", "3.0", "--target", "Cyst", "4.0", "5.0", "6.0"),
         *("--trajectory", "Biopsy", "0.0", "0.0", "90.0", "1.0", "2.0", "3.0"),
     ]

@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.protocol import PROCEDURE_PHASES, Phase, StepKind
+from rastrainer.sections.next_step_logic import NextAction, Section, WorkflowState, nextStep
+from rastrainer.sections.simulator_logic import ANY, freePort
 from rastrainer.slicer.link.link_status import LinkState, LinkStatus
-from rastrainer.slicer.logic.next_step import NextAction, Section, WorkflowState, nextStep
-from rastrainer.slicer.logic.simulator_logic import ANY, freePort
 from rastrainer.slicer.program.simulator_program import ProgramState
 from Testing.slicer.simulator_double import SimulatorDouble
 

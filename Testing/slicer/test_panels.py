@@ -1,4 +1,4 @@
-"""Every panel in the host: what its buttons do, what they refuse, and the messages."""
+"""Every panel in the host: actions and refusals of its buttons, and the messages."""
 
 import csv
 import json
@@ -13,7 +13,6 @@ import slicer
 from PySide6 import QtCore
 
 from rastrainer import transforms
-from rastrainer.panels.plain_text import toolTip
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
@@ -21,6 +20,7 @@ from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, se
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
+from rastrainer.widgets.plain_text import toolTip
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli.main import main
 from Testing.end_to_end.module.installed_simulator import write_program
@@ -60,8 +60,8 @@ def study_path(panels):
 def add_trial(panels, make_record, colin):
     """Returns a function that puts a scored trial on the built-in head into the study.
 
-    The module does so itself: what another program has done, it would notice and show at any time,
-    in place of what has been said since.
+    The module's own connection is used: it would show a change by another program at any time, in
+    place of the last sentence.
     """
     study = panels.widget.logic.session.trainees.study
 
@@ -397,7 +397,7 @@ def test_one_small_legend_is_drawn_only_in_the_3d_view(panels, touched, tmp_path
     panels.check("headColoredCheckBox")
     panels.finish_work()
     seen.append(panels.legends())
-    # Through a translucent head the colors would not be those of the legend.
+    # Through a translucent head the colors would differ from the legend.
     assert head.GetOpacity() == 1.0
     panels.window_screenshot(tmp_path / "colored.png")
     assert panels.legends() == seen[-1]

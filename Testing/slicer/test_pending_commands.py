@@ -7,7 +7,7 @@ import pytest
 
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.link.link_status import LinkState
-from rastrainer.slicer.link.pending_commands import MAX_AT_ONCE, SENDING_S
+from rastrainer.slicer.link.pending_commands import MAX_AT_ONCE
 from rastrainer_headless.connector import headlessKit
 from Testing.slicer.crashes import take_crashes
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until, wait_until
@@ -155,30 +155,6 @@ def test_nothing_more_is_sent_to_a_simulator_that_does_not_answer(silent):
     silent.may_answer.set()
     silent.run_until(lambda: len(silent.replies) == BURST)
     assert all(reply.ok for reply in silent.replies)
-
-
-def test_sending_stops_for_this_turn_when_its_time_is_up(make_room, monkeypatch):
-    room = make_room()
-    connector = room.link.connector
-    send = connector.SendCommand
-
-    def send_slowly(command):
-        room.clock.ahead += 0.6 * SENDING_S
-        send(command)
-
-    monkeypatch.setattr(connector, "SendCommand", send_slowly)
-    room.link.process()
-    room.stop_clock()
-    first = connector._nextCommandId
-    sent = []
-    for _ in range(5):
-        room.ask()
-    for _ in range(3):
-        sent.append(connector._nextCommandId - first)
-        room.link.process()
-    assert sent == [2, 4, 5]
-    assert room.soon
-    room.run_until(lambda: len(room.replies) == 5)
 
 
 def test_commands_still_waiting_when_the_connection_is_lost_are_refused(silent):

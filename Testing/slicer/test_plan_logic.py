@@ -6,21 +6,27 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import slicer
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.scenario.points import LABELS, PlannedTarget, PlannedTrajectory
-from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic.registration_logic import RegistrationLogic
-from rastrainer.slicer.logic.target_plan_logic import PlanLogic, targetsOf
-from rastrainer.slicer.logic.views import jumpTo
-from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints, worldPoints
+from rastrainer.sections.registration_logic import RegistrationLogic
+from rastrainer.sections.target_plan_logic import PlanLogic, targetsOf
+from rastrainer.sections.views import jumpTo
+from rastrainer.slicer.scene.nodes import (
+    Role,
+    capturedPointsNode,
+    findNode,
+    removeNode,
+    setPoints,
+    worldPoints,
+)
 from rastrainer.slicer.scene.plan_points import startPlacing, stopPlacing
 from rastrainer.slicer.scene.scenario_nodes import showTask
 from rastrainer.trial.analysis import RevealedTruth
-from rastrainer_headless.connector import headlessKit
 from Testing.slicer.shown_scenario import show_whole
-from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
+from Testing.slicer.simulator_double import LinkedLab
 from Testing.slicer.work_at_once import WorkAtOnce
 
 TUMOR = np.array([20.0, -30.0, 40.0])
@@ -28,12 +34,11 @@ ENTRY = np.array([60.0, -40.0, 70.0])
 TRIAL = str(uuid.UUID(int=9))
 
 
-class Room:
+class Room(LinkedLab):
     def __init__(self, scene, scenario):
-        self.scene, self.head_to_world = scene, scenario.perturbed_head_to_world(4)
+        super().__init__(scene, lambda name, _a: {} if name == "Hello" else self.reply)
+        self.head_to_world = scenario.perturbed_head_to_world(4)
         self.reply = {"reachable": True, "reason": ""}
-        self.simulator = SimulatorDouble(lambda name, _a: {} if name == "Hello" else self.reply)
-        self.link = Link(scene, headlessKit)
         show_whole(scene, scenario)
         showTask(scene, scenario, "task-1")
         fiducials = scenario.task("task-1").fiducials
@@ -45,15 +50,6 @@ class Room:
     def register(self):
         setPoints(capturedPointsNode(self.scene), LABELS, self.touched)
         self.registration.process()
-
-    def connect(self):
-        opened = []
-        self.link.opened.connect(lambda: opened.append(True))
-        self.link.connectTo(port=self.simulator.port)
-        self.run_until(lambda: opened)
-
-    def run_until(self, condition):
-        run_link_until(self.link, condition)
 
     def target(self, *points):
         node = (
@@ -72,8 +68,7 @@ class Room:
 def room(scene, scenario):
     room = Room(scene, scenario)
     yield room
-    room.link.disconnect()
-    room.simulator.close()
+    room.close()
 
 
 def test_a_target_is_mapped_into_world_with_its_expected_error(room):
@@ -102,7 +97,7 @@ def test_each_planned_target_of_a_scenario_is_a_plan_and_so_is_its_trajectory(sc
     assert targetsOf(targets) == ("center", "Tumor")
     first, second = (room.logic.read(targets, row) for row in (0, 1))
     assert (first.name, second.name) == ("center", "Tumor")
-    np.testing.assert_allclose([*first.ends, *second.ends], [scenario.target_position, TUMOR])
+    np.testing.assert_allclose([*first.ends, *second.ends], [scenario.target.position_ras, TUMOR])
     assert second.expected == room.registration.comparison.targetError(TUMOR)
     line = findNode(scene, "vtkMRMLMarkupsLineNode", Role.TRAJECTORY)
     assert targetsOf(line) == ()
@@ -258,9 +253,13 @@ def test_without_a_point_or_a_registration_the_message_says_what_is_missing(room
         room.logic.read(room.target(TUMOR))
 
 
-def test_clicks_place_the_plan(room):
+def test_clicks_place_the_plan_even_while_a_scenario_is_shown(room, scenario):
+    markups = slicer.vtkSlicerMarkupsLogic()
+    markups.SetMRMLScene(room.scene)
+    removeNode(room.scene, "vtkMRMLMarkupsFiducialNode", Role.FIXED_FIDUCIALS)
     node = room.logic.points.newTarget()
     startPlacing(room.scene, node)
+    showTask(room.scene, scenario, "task-1")
     selection = room.scene.GetNodeByID("vtkMRMLSelectionNodeSingleton")
     interaction = room.scene.GetNodeByID("vtkMRMLInteractionNodeSingleton")
     assert selection.GetActivePlaceNodeID() == node.GetID()

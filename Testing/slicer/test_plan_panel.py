@@ -1,4 +1,4 @@
-"""The section Plan while a simulator is connected: what it says about the shown plan."""
+"""The section Plan while a simulator is connected: its sentences about the shown plan."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""A button does what its label said when it was pressed, whatever happens before its release."""
+"""A button acts by its label when it was pressed, no matter what happens before its release."""
 
 import json
 import uuid
@@ -53,7 +53,7 @@ def touched(host):
 
 
 class Trial:
-    """The module beside a simulator double that reports the state of a trial."""
+    """The module with a simulator double that reports the state of a trial."""
 
     def __init__(self, host, simulator):
         self.host, self.simulator = host, simulator

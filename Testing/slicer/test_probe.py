@@ -102,24 +102,6 @@ def test_an_unused_port_is_reported():
     assert ask("127.0.0.1", free_port()) == ProbeResult(Peer.UNREACHABLE, "127.0.0.1")
 
 
-def test_a_name_is_resolved_off_the_main_thread_and_only_once_at_a_time(monkeypatch):
-    answers, asked = threading.Event(), []
-
-    def look_up(host, *_more):
-        asked.append(host)
-        assert answers.wait(60)
-        return [(None, None, None, None, ("127.0.0.1", 0))]
-
-    monkeypatch.setattr("rastrainer.slicer.link.probe.socket.getaddrinfo", look_up)
-    with SimulatorDouble() as simulator:
-        probes = [Probe("a-computer", simulator.port, Clock()) for _ in range(2)]
-        assert [probe.process() for probe in probes] == [None, None]
-        answers.set()
-        wait_until(lambda: all(probe.process() for probe in probes), lambda: None)
-        assert probes[1].process().peer is Peer.SIMULATOR
-    assert asked == ["a-computer"]
-
-
 def test_a_name_lookup_that_takes_too_long_is_given_up(monkeypatch):
     answers, clock = threading.Event(), Clock()
 
@@ -153,10 +135,6 @@ def test_a_name_that_has_only_an_address_of_ipv6_is_reported_so(monkeypatch):
 
     monkeypatch.setattr("rastrainer.slicer.link.probe.socket.getaddrinfo", look_up)
     assert ask("an-ipv6-computer", 18944) == ProbeResult(Peer.WITHOUT_IPV4)
-
-
-def test_an_ipv4_address_in_the_notation_of_ipv6_is_used():
-    assert ask("::ffff:127.0.0.1", free_port()) == ProbeResult(Peer.UNREACHABLE, "127.0.0.1")
 
 
 def test_probing_leaves_no_socket_open():

@@ -10,10 +10,9 @@ from rastrainer import transforms
 from rastrainer.igtl.content import String
 from rastrainer.protocol import DeviceName
 from rastrainer.scenario.points import LABELS
-from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.logic.procedure_logic import ProcedureLogic, ProcedureStatus
-from rastrainer.slicer.logic.trial_services import TrialServices
-from Testing.slicer.simulator_double import run_logic_until, run_until_received
+from rastrainer.sections.procedure_logic import ProcedureLogic
+from rastrainer.sections.trial_services import TrialServices
+from Testing.slicer.simulator_double import run_until_received
 from Testing.slicer.training_room import TRIAL, Room
 
 VERIFYING = {"name": "dbs", "trajectory": 0, "trajectories": 2, "registrationInUse": False}
@@ -25,7 +24,6 @@ class Theater(Room):
     def __init__(self, scene, scenario):
         self.touches, self.refused = [], ""
         super().__init__(scene, scenario)
-        self.work = BackgroundWork()
         services = TrialServices(scene, self.link, lambda _name: scenario, None, self.work)
         self.procedure = ProcedureLogic(services)
         self.said = []
@@ -47,15 +45,8 @@ class Theater(Room):
         self.tell(phase=phase, procedure={**VERIFYING, **procedure})
         self.run_until(lambda: self.procedure.status.phase == phase)
 
-    def run_until(self, condition):
-        if hasattr(self, "work"):
-            run_logic_until(self.link, self.work, condition)
-        else:
-            super().run_until(condition)
-
     def close(self):
         self.procedure.close()
-        self.work.close()
         super().close()
 
 
@@ -75,7 +66,7 @@ def test_the_touches_are_registered_as_soon_as_the_procedure_waits_for_it(theate
     np.testing.assert_allclose(matrix @ scenario.head_to_world, np.eye(4), atol=1e-9)
     assert used["freMm"] == pytest.approx(0.0, abs=1e-9)
     theater.say("verifying", registrationInUse=True)
-    theater.run_until(lambda: theater.procedure.status.isRegistered)
+    theater.run_until(lambda: theater.procedure.status.procedure.registrationInUse)
     assert len(theater.all_sent("UseRegistration")) == 1
 
 
@@ -126,15 +117,11 @@ def test_a_malformed_procedure_state_causes_no_trouble(theater, procedure):
     state = {"trialId": TRIAL, "phase": "drilling", "procedure": procedure}
     theater.simulator.send(DeviceName.SIM_STATE, String(json.dumps(state)))
     theater.run_until(lambda: theater.procedure.status.phase == "drilling")
-    assert theater.procedure.status.feedMm == 0.0
-    assert theater.procedure.status.trajectories == 0
+    assert theater.procedure.status.procedure.feedMm == 0.0
+    assert theater.procedure.status.procedure.trajectories == 0
 
 
 def test_a_trial_with_a_procedure_is_started_with_its_name(theater):
     theater.logic.start("T001", "task-1", "desktop", procedure="dbs")
     theater.run_until(lambda: theater.sent("StartTask"))
     assert theater.sent("StartTask")[0]["procedure"] == "dbs"
-
-
-def test_a_trial_with_touches_only_has_no_procedure():
-    assert not ProcedureStatus.of({"phase": "running", "procedure": None}).isUnderWay

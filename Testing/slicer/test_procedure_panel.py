@@ -43,6 +43,7 @@ def surgery(host):
         host.open()
         connect_module(host, simulator)
         host.press("createTraineeButton")
+        host.find("procedureCollapsibleButton").collapsed = False
         yield host, simulator
 
 

@@ -1,4 +1,4 @@
-"""The plan of a procedure in the scene: read, with one message for what is missing, and stored."""
+"""The plan of a procedure in the scene: read, with one message for a missing part, and stored."""
 
 from dataclasses import replace
 
@@ -8,7 +8,7 @@ import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.procedure.plan import MAX_NO_GO_TRIANGLES
-from rastrainer.slicer.logic.procedure_plan_logic import (
+from rastrainer.sections.procedure_plan_logic import (
     PlanDescription,
     ProcedurePlanLogic,
     noGoMeshes,

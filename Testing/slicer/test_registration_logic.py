@@ -14,8 +14,8 @@ from rastrainer.registration.localization_error import error_along_surface
 from rastrainer.registration.registration import register, register_all_kinds
 from rastrainer.registration.target_error import expected_tre, target_error
 from rastrainer.scenario.points import LABELS
+from rastrainer.sections.registration_logic import RegistrationLogic
 from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.logic.registration_logic import RegistrationLogic
 from rastrainer.slicer.scene.error_colors import TRE_SCALARS
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints, worldPoints
 from rastrainer.slicer.scene.registration_input import Choices
@@ -26,7 +26,6 @@ from rastrainer.slicer.scene.trial_scene import (
     movingNode,
     setApplied,
 )
-from rastrainer.transforms import MM_PER_M
 from Testing.slicer.shown_scenario import show_whole
 from Testing.slicer.work_at_once import WorkAtOnce
 
@@ -74,7 +73,7 @@ def test_three_fits_are_shown_side_by_side_with_the_expected_error(table):
         assert fit.fre_mm == pytest.approx(again.fre_mm, abs=1e-5)
         normals = again.fixed_mm / np.linalg.norm(again.fixed_mm, axis=1, keepdims=True)
         localization = error_along_surface(again, normals)
-        error = target_error(again, table.scenario.target_position, localization)
+        error = target_error(again, table.scenario.target.position_ras, localization)
         assert table.logic.comparison.errors[kind].expected_mm == pytest.approx(
             error.expected_mm, rel=0.02
         )
@@ -153,41 +152,6 @@ def test_a_touch_that_is_deselected_in_slicer_is_left_out_until_it_is_selected(t
     assert table.logic.comparison.shown.fre_mm == before
 
 
-def test_swapped_touches_are_put_in_order_by_one_click(table):
-    order = [0, 1, 3, 2, *range(4, 15)]
-    table.touch(table.touched[order])
-    remedy = table.warn("order")
-    assert remedy.title == "Put in order"
-    table.logic.change(remedy.choices)
-    assert table.logic.comparison.remedies == ()
-    assert table.logic.comparison.shown.fre_mm < 2.0
-    table.logic.undo()
-    assert table.logic.comparison.shown.fre_mm > 5.0
-
-
-def test_of_two_touches_at_one_place_the_later_is_excluded(table):
-    twice = table.touched.copy()
-    twice[9] = twice[4]
-    table.touch(twice)
-    remedy = table.warn("duplicate")
-    assert remedy.warning.points == ("5", "10")
-    assert remedy.title == "Leave out 10"
-
-
-@pytest.mark.parametrize(
-    ("change", "code"),
-    [
-        (lambda points: points * [1.0, 1.0, -1.0], "mirrored"),
-        (lambda points: points / MM_PER_M, "scale"),
-    ],
-)
-def test_a_problem_that_only_new_points_can_fix_has_a_message_and_no_button(change, code, table):
-    table.touch(change(table.touched))
-    remedy = table.warn(code)
-    assert remedy.title == ""
-    assert len(remedy.warning.message) > 40
-
-
 def test_any_fiducial_may_be_left_out_until_too_few_are_left(table):
     table.touch()
     for label in LABELS[:12]:
@@ -210,7 +174,7 @@ def test_a_stated_localization_error_weights_only_the_rigid_fit_and_can_be_undon
     again = register(table.touched, fixed, "rigid", LABELS, weights)
     np.testing.assert_allclose(weighted.fits["rigid"].matrix, again.matrix, atol=1e-4)
     assert weighted.fits["affine"].fre_mm == plain.fits["affine"].fre_mm
-    expected = target_error(again, table.scenario.target_position)
+    expected = target_error(again, table.scenario.target.position_ras)
     assert weighted.errors["rigid"].expected_mm == pytest.approx(expected.expected_mm, rel=1e-3)
     table.logic.change(table.logic.choices.without(("1", "2")))
     assert len(table.logic.comparison.fits["rigid"].weights) == 13
@@ -289,7 +253,7 @@ def test_color_bars_beside_the_head_are_labeled_in_mm(table):
 def test_points_off_the_head_have_an_isotropic_error(table):
     setPoints(table.fixed, LABELS, 0.5 * table.scenario.task("task-1").fiducials)
     table.touch(transforms.apply(table.scenario.head_to_world, 0.5 * table.touched_on_mri))
-    shown, position = table.logic.comparison.shown, table.scenario.target_position
+    shown, position = table.logic.comparison.shown, table.scenario.target.position_ras
     assert table.logic.comparison.targetError(position) == target_error(shown, position)
 
 
@@ -327,7 +291,7 @@ def test_without_a_registration_no_arrows_of_an_old_one_are_shown(table):
 
 @pytest.fixture
 def threads(monkeypatch):
-    """Returns the threads in which fits and normals are computed, by what is computed."""
+    """Returns the threads in which fits and normals are computed, by function."""
     found = {}
 
     def watch(place, function):
@@ -335,12 +299,12 @@ def threads(monkeypatch):
             found.setdefault(function.__name__, set()).add(threading.get_ident())
             return function(*arguments)
 
-        monkeypatch.setattr(f"rastrainer.slicer.{place}.{function.__name__}", watched)
+        monkeypatch.setattr(f"rastrainer.{place}.{function.__name__}", watched)
 
-    watch("scene.registration_input", nearest_on_mesh)
-    watch("logic.registration_comparison", register_all_kinds)
-    watch("logic.registration_comparison", target_error)
-    watch("logic.registration_comparison", expected_tre)
+    watch("slicer.scene.registration_input", nearest_on_mesh)
+    watch("sections.registration_logic", register_all_kinds)
+    watch("sections.registration_logic", target_error)
+    watch("sections.registration_logic", expected_tre)
     return found
 
 
@@ -425,17 +389,6 @@ def test_with_turns_each_part_of_a_registration_is_shown_in_a_separate_turn(
     np.testing.assert_array_equal(
         arrayFromTransformMatrix(logic.transform), logic.comparison.shown.matrix
     )
-
-
-def test_with_turns_the_result_is_the_same_as_at_once(table, logic_in_turns, work):
-    table.touch()
-    logic_in_turns.process()
-    in_turns(work)
-    at_once, in_parts = table.logic.comparison, logic_in_turns.comparison
-    for kind in KINDS:
-        np.testing.assert_array_equal(in_parts.fits[kind].matrix, at_once.fits[kind].matrix)
-        assert in_parts.errors[kind] == at_once.errors[kind]
-    np.testing.assert_array_equal(in_parts.leaveOneOut[RIGID], at_once.leaveOneOut[RIGID])
 
 
 def test_lists_that_are_deleted_between_two_turns_are_not_shown(table, logic_in_turns, work):

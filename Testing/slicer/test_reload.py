@@ -11,10 +11,10 @@ from Testing.slicer.test_images_in_module import wait_for_images
 
 KEPT = (
     "RASTrainer.RASTrainerWidget",
-    "rastrainer.panels.panel_stack.PanelStack",
-    "rastrainer.panels.score_panel.ScorePanel",
+    "rastrainer.sections.panel_stack.PanelStack",
+    "rastrainer.sections.score_panel.ScorePanel",
     "rastrainer.slicer.link.link.Link",
-    "rastrainer.slicer.logic.module_session.ModuleSession",
+    "rastrainer.sections.module_session.ModuleSession",
 )
 
 
@@ -41,10 +41,9 @@ def living(host):
 
 
 def settled(host, before, threads):
-    """Return what lives once what was under way in the background has ended, with its threads.
+    """Return the objects that live once all background work and its threads have ended.
 
-    `before` is what lived before the module was opened, and `threads` how many: tests of before may
-    have left theirs.
+    `before` lived before the module was opened, and so did `threads` threads of earlier tests.
     """
 
     def is_one():

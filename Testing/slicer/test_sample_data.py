@@ -25,7 +25,7 @@ def test_a_slicer_without_sample_data_or_a_module_without_the_mri_registers_noth
     import SampleData
     import slicer
 
-    from rastrainer.panels.sample_data import registerSampleData
+    from rastrainer.sections.sample_data import registerSampleData
 
     del slicer.modules.sampleDataSources
     registerSampleData(tmp_path)

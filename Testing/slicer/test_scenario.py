@@ -10,6 +10,7 @@ import vtk
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import write_head_mesh
 from rastrainer.scenario.points import PlannedTarget, PlannedTrajectory
+from rastrainer.scenario.scenario import SkullFile, SkullKind
 from rastrainer.slicer.scene import scenario_nodes as shown
 from rastrainer.slicer.scene.nodes import Role, findNode, labelsOf, worldPoints
 from rastrainer.slicer.scene.scenario_nodes import showTask
@@ -30,8 +31,7 @@ def planned(scenario):
         name="planned",
         targets=(PlannedTarget("Cyst", np.array([10.0, 20.0, 30.0])),),
         trajectory=PlannedTrajectory("Biopsy", np.array([0.0, 0.0, 90.0]), np.array([1.0, 2, 3])),
-        skull_mesh=path,
-        is_skull_approximate=True,
+        skull=SkullFile(path, SkullKind.APPROXIMATION),
     )
 
 
@@ -41,7 +41,7 @@ def test_head_and_target_are_shown_in_ras(scene, scenario):
     findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL).GetRASBounds(bounds)
     np.testing.assert_allclose(bounds, [-90.0, 90.0] * 3, atol=1.0)
     target = findNode(scene, FIDUCIALS, Role.TARGET)
-    np.testing.assert_allclose(worldPoints(target), [scenario.target_position])
+    np.testing.assert_allclose(worldPoints(target), [scenario.target.position_ras])
     assert labelsOf(target) == ("center",)
 
 
@@ -65,7 +65,9 @@ def test_the_skull_is_visible_through_the_skin_and_named_for_what_it_is(scene, p
     skull.GetRASBounds(bounds)
     np.testing.assert_allclose(bounds, [-80.0, 80.0] * 3, atol=1.0)
     assert findNode(scene, MODEL, Role.HEAD_MODEL).GetDisplayNode().GetOpacity() < 1.0
-    show_whole(scene, replace(planned, name="ct", is_skull_approximate=False))
+    show_whole(
+        scene, replace(planned, name="ct", skull=SkullFile(planned.skull.file, SkullKind.BONE))
+    )
     assert skull.GetName() == "Skull"
 
 
@@ -119,8 +121,8 @@ def overwrite_mesh(path, mesh):
 def test_a_scenario_rebuilt_under_its_name_is_shown_again(scene, planned):
     show_whole(scene, planned)
     showTask(scene, planned, "task-1")
-    overwrite_mesh(planned.head_mesh, ball_head(70.0))
-    overwrite_mesh(planned.skull_mesh, ball_head(60.0))
+    overwrite_mesh(planned.head, ball_head(70.0))
+    overwrite_mesh(planned.skull.file, ball_head(60.0))
     task = planned.task("task-1")
     moved = replace(task, fiducials=task.fiducials * 70.0 / 90.0)
     rebuilt = replace(planned, tasks=(moved,))
@@ -137,7 +139,7 @@ def test_a_shown_mesh_is_not_read_again_and_a_missing_one_is_reported(scene, pla
     with monkeypatch.context() as patch:
         patch.setattr(shown, "read_head_mesh", None)
         show_whole(scene, planned)
-    planned.head_mesh.unlink()
+    planned.head.unlink()
     (problem,) = show_whole(scene, planned)
     assert problem.startswith("No head is shown: The mesh ")
     assert findNode(scene, MODEL, Role.HEAD_MODEL) is None

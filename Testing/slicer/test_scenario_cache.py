@@ -9,12 +9,12 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.scenario.library import list_folder, user_library
 from rastrainer.scenario.writer import new_folder, write_scenario
-from rastrainer.slicer.logic.scenario_cache import ScenarioCache
+from rastrainer.sections.scenario_files import ScenarioCache
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
 
 
 def build(folder, title):
-    """Replace what is there by the ball, a second later by the file's time."""
+    """Put the ball into the folder; its file is a second newer."""
     later = (folder / "scenario.json").stat().st_mtime + 1.0 if folder.exists() else 1.0
     shutil.rmtree(folder, ignore_errors=True)
     with new_folder(folder) as made:
@@ -38,7 +38,7 @@ def test_listing_reads_only_the_scenarios_whose_files_have_changed(tmp_path, mon
         read.append(folder.name)
         return list_folder(folder)
 
-    monkeypatch.setattr("rastrainer.slicer.logic.scenario_cache.list_folder", watched)
+    monkeypatch.setattr("rastrainer.sections.scenario_files.list_folder", watched)
     for name in ("ball", "egg"):
         build(tmp_path / name, name.title())
     cache = ScenarioCache(tmp_path)

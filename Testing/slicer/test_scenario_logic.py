@@ -7,8 +7,8 @@ import pytest
 import slicer
 
 from rastrainer.errors import InputError
+from rastrainer.sections.scenario_logic import ScenarioLogic
 from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.logic.scenario_logic import ScenarioLogic
 from rastrainer.slicer.program.child_process import runHere
 from rastrainer.slicer.scene.nodes import Role, findNode
 from rastrainer.slicer.scene.robot import missingLinks

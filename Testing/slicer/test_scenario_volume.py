@@ -9,6 +9,7 @@ import slicer
 
 from rastrainer.head.mesh import write_head_mesh
 from rastrainer.head.volume import VolumeFile, write_nrrd
+from rastrainer.scenario.scenario import SkullFile, SkullKind
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.scene import scenario_nodes
 from rastrainer.slicer.scene.nodes import Role, findNode
@@ -108,7 +109,7 @@ def test_meshes_and_images_are_read_beside_the_main_thread_and_shown_one_in_a_tu
         watch(name)
     skull = imaged.folder / "skull.ply"
     write_head_mesh(skull, ball_head(80.0))
-    showScenario(scene, replace(imaged, skull_mesh=skull))
+    showScenario(scene, replace(imaged, skull=SkullFile(skull, SkullKind.BONE)))
     assert threads == {}
     loading, filled = Loading(scene), []
     loading.loader.process()

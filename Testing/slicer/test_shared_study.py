@@ -4,7 +4,7 @@ import sqlite3
 
 import pytest
 
-from rastrainer.slicer.logic.trainee_logic import LOOK_EVERY_S, TraineeLogic
+from rastrainer.sections.trainees_logic import LOOK_EVERY_S, TraineeLogic
 from rastrainer.study.database.study import Study
 
 

@@ -112,7 +112,7 @@ def run_setup(setup, **source):
 
 
 def left_beside(setup):
-    """Return what is beside the private folder, once the removal has finished."""
+    """Return the names next to the private folder, once the removal has finished."""
     kept = setup.folder.parent
     wait_until(lambda: not any(".removed-" in path.name for path in kept.iterdir()), lambda: None)
     return [path.name for path in kept.iterdir()]
@@ -136,7 +136,7 @@ def test_the_simulator_is_set_up_from_a_folder_of_wheels_without_a_network(setup
     assert (setup.folder / "rastrainer_simulator" / "cli" / "main.py").is_file()
     assert (setup.folder / "bolt.py").is_file()
     assert setup.installedMB == 0
-    # Of the packages in the lock, those for this platform were counted.
+    # Only packages for this platform were counted.
     assert (setup.fetched, setup.count) == (2, 2)
     assert sorted(set(counts)) == [0, 1, 2]
     assert setup.isInstalling

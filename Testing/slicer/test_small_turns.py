@@ -1,4 +1,4 @@
-"""What the module hands to the scene comes in parts, between which Slicer's window answers."""
+"""The module changes the scene in parts, between which Slicer's window answers."""
 
 import uuid
 from pathlib import Path
@@ -48,9 +48,9 @@ def triangles(path):
 
 def test_a_scenario_comes_one_surface_and_one_view_at_a_time(opened, colin):
     load = shown(opened, lambda: opened.press("showScenarioButton"))
-    largest = max(triangles(colin.head_mesh), triangles(colin.skull_mesh))
+    largest = max(triangles(colin.head), triangles(colin.skull.file))
     assert load.most.cells == largest
-    assert load.total.cells == triangles(colin.head_mesh) + triangles(colin.skull_mesh)
+    assert load.total.cells == triangles(colin.head) + triangles(colin.skull.file)
     assert load.most.views == 1
     assert load.total.views > 1
 
@@ -81,7 +81,7 @@ def test_the_robot_comes_one_link_at_a_time_and_is_told_of_once(opened):
     cells = [robotNode(opened.scene, n).GetPolyData().GetNumberOfCells() for n in range(8)]
     assert load.most.cells == max(cells)
     assert load.total.cells == sum(cells)
-    # A model, its display and its pose, which are set before the scene is told of them.
+    # A model, its display and its pose, which are set before they are added to the scene.
     assert load.most.nodes <= 3
     assert load.most.events < 20
 
@@ -100,7 +100,7 @@ def test_touches_are_shown_in_parts_and_each_once(opened, colin):
     )
     assert opened.find("residualsTable").rowCount == 15
     # The arrows of both; the head is not handed over again.
-    assert 0 < load.most.cells < load.total.cells < triangles(colin.head_mesh)
+    assert 0 < load.most.cells < load.total.cells < triangles(colin.head)
     assert load.most.events < 50
 
 
@@ -120,6 +120,6 @@ def test_connecting_makes_one_node_at_a_time(opened):
     with SimulatorDouble() as simulator:
         opened.type("portSpinBox", str(simulator.port))
         load = shown(opened, connect)
-    # The list of touches and its display come with the module's own node and that of the state.
+    # The list of touches and its display come with the module's node and the node of the state.
     assert load.most.nodes <= 4
     assert load.total.nodes > 12

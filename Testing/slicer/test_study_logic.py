@@ -9,8 +9,8 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_from_json
 from rastrainer.protocol import StepKind
-from rastrainer.slicer.logic.study_logic import StudyLogic
-from rastrainer.slicer.logic.trainee_logic import TraineeLogic
+from rastrainer.sections.study_logic import StudyLogic
+from rastrainer.sections.trainees_logic import TraineeLogic
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import moment
 from rastrainer.study.protocol.study_progress import StudyProgress
@@ -108,7 +108,7 @@ def test_the_study_starts_only_what_comes_next(enrolled):
     room.needsTutorial = True
     logic.startStep()
     logic.startTrial("trial-run", "hmd", isTutorialFirst=False)
-    # What is received has not been answered yet: the answer is set below.
+    # A received command is not answered yet: the answer is set below.
     room.run_until(lambda: len(room.answers) == 2)
     assert room.logic.learner == "T001"
     assert len(room.sent("StartTutorial")) == 2
@@ -212,7 +212,7 @@ def test_a_trial_of_a_step_with_a_procedure_is_started_with_it(lab):
     state = {"phase": "running", "task": "task-1", "mode": "desktop", "trainee": "T001"}
     for name, is_asked in (("dbs", True), ("biopsy", False)):
         lab.room.tell(**state, procedure={"name": name})
-        lab.room.run_until(lambda name=name: lab.room.logic.status.procedure == name)
+        lab.room.run_until(lambda name=name: lab.room.logic.status.procedure.name == name)
         assert (lab.logic.offProtocolSentence() == "") is is_asked
     assert "with the procedure biopsy" in lab.logic.offProtocolSentence()
 

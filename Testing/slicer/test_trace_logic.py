@@ -1,4 +1,4 @@
-"""The trace of the trial in Slicer's scene: what is shown, how often, and when it goes."""
+"""The trace of the trial in Slicer's scene: its parts, its updates, and its end."""
 
 from __future__ import annotations
 
@@ -11,13 +11,12 @@ from vtk.util.numpy_support import vtk_to_numpy
 from rastrainer import transforms
 from rastrainer.scenario.points import Landmark
 from rastrainer.scenario.scenario import Camera
-from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.logic.trace_logic import DISTANCE_SCALARS, MODEL, TraceLogic
-from rastrainer.slicer.logic.trial_services import TrialServices
+from rastrainer.sections.trace_logic import DISTANCE_SCALARS, MODEL, TraceLogic
+from rastrainer.sections.trial_services import TrialServices
 from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.scenario_nodes import SceneFileLoader
 from Testing.slicer.scene_bundle import load_bundle
-from Testing.slicer.simulator_double import run_logic_until, run_until_received
+from Testing.slicer.simulator_double import run_until_received
 from Testing.slicer.training_room import TRIAL, Room
 
 LANDMARKS = {"Nose": (0.0, 90.0, 0.0), "Right": (90.0, 0.0, 0.0), "Top": (0.0, 0.0, 90.0)}
@@ -36,7 +35,6 @@ class Tracing(Room):
     def __init__(self, scene, scenario):
         self.to_world, self.places = scenario.head_to_world, np.zeros((0, 3))
         super().__init__(scene, scenario)
-        self.work = BackgroundWork()
         self.files = SceneFileLoader(scene, self.work)
         services = TrialServices(scene, self.link, None, None, self.work)
         self.traces = TraceLogic(services, lambda: self.now)
@@ -77,7 +75,7 @@ class Tracing(Room):
             self.traces.process()
             return condition()
 
-        run_logic_until(self.link, self.work, is_met)
+        super().run_until(is_met)
 
     @property
     def shown(self):
@@ -93,7 +91,6 @@ class Tracing(Room):
 
     def close(self):
         self.traces.close()
-        self.work.close()
         super().close()
 
 
@@ -177,7 +174,7 @@ def test_invalid_data_from_the_simulator_shows_nothing_and_breaks_nothing(tracin
     tracing.places = np.full((600, 3), np.nan)
     tracing.run_until(lambda: tracing.sent("GetTrial"))
     run_until_received(tracing.link)
-    # What was sent before its answer has arrived, too.
+    # The answer to an earlier command has arrived, too.
     tracing.run_until(lambda: not tracing.work.isBusy)
     assert tracing.shown is None
     tracing.draw(12)

@@ -33,9 +33,9 @@ def truth_of(scenario, seed=1):
 
 
 def true_tre(scenario, analysis, seed):
-    there = transforms.apply(scenario.perturbed_head_to_world(seed), scenario.target_position)
+    there = transforms.apply(scenario.perturbed_head_to_world(seed), scenario.target.position_ras)
     back = transforms.apply(analysis.rigid.matrix, there)
-    return float(np.linalg.norm(back - scenario.target_position))
+    return float(np.linalg.norm(back - scenario.target.position_ras))
 
 
 def test_the_true_error_lies_in_the_interval_nearly_always(scenario, make_record):

@@ -1,4 +1,4 @@
-"""A finished trial is stored once, acknowledged when stored, scored, and shown."""
+"""A trial is stored once and acknowledged when stored; a finished one is scored and shown."""
 
 import sqlite3
 import threading
@@ -11,57 +11,47 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.igtl.content import String
 from rastrainer.protocol import DeviceName
+from rastrainer.sections import trial_logic
+from rastrainer.sections.trial_logic import MAX_WAITING, TrialLogic
+from rastrainer.sections.trial_services import TrialServices
 from rastrainer.slicer import background_work
 from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic import delivery_queue, trial_logic
-from rastrainer.slicer.logic.trial_logic import TrialLogic
-from rastrainer.slicer.logic.trial_services import TrialServices
 from rastrainer.slicer.scene.nodes import Role, findNode
 from rastrainer.slicer.scene.trial_scene import isApplied
 from rastrainer.study.database.database import LockWait, StudyUnreachableError
 from rastrainer.study.database.study import Study
 from rastrainer.study.delivered_trial import scored_with_journal
 from rastrainer.trial.analysis import analyze_trial
-from rastrainer_headless.connector import headlessKit
-from Testing.slicer.simulator_double import SimulatorDouble, run_logic_until, run_until_received
+from Testing.domain.trial.trial_records import make_aborted
+from Testing.slicer.simulator_double import LinkedLab
 
 TRIAL = str(uuid.UUID(int=1))
 OTHER = str(uuid.UUID(int=2))
 SEED = 1
+ABORTED = make_aborted()["trialId"]
 
 
-class Lab:
+class Lab(LinkedLab):
     """A logic on a link to a simulator whose answers the test may change."""
 
     def __init__(self, scene, scenario, folder):
-        self.scene = scene
+        super().__init__(scene, self.answer)
         self.scenario = scenario
         self.path = folder / "study.db"
         self.refusal = None
         self.is_study_broken = False
         self.threads = set()
-        self.simulator = SimulatorDouble(self.answer)
-        self.link = Link(scene, headlessKit)
-        self.work = BackgroundWork()
-        self.logic = self.new_logic()
+        self.logic = TrialLogic(self.services())
         self.scored = []
         self.problems = []
+        self.kept = []
+        self.logic.abortedKept.connect(self.kept.append)
         self.logic.trialScored.connect(self.scored.append)
         self.logic.problemFound.connect(self.problems.append)
 
-    def new_logic(self):
-        services = TrialServices(
-            self.scene, self.link, self.find_scenario, self.open_study, self.work
-        )
-        return TrialLogic(services)
-
-    def connect(self):
-        opened = []
-        self.link.opened.connect(lambda: opened.append(True))
-        self.link.connectTo(port=self.simulator.port)
-        # The study is read as soon as the link is open.
-        self.run_until(lambda: opened and not self.work.isBusy)
+    def services(self):
+        find, open_study = self.find_scenario, self.open_study
+        return TrialServices(self.scene, self.link, find, open_study, self.work)
 
     def answer(self, name, arguments):
         if name != "SubmitRegistration":
@@ -69,7 +59,7 @@ class Lab:
         if self.refusal is not None:
             return self.refusal
         head_to_world = self.scenario.perturbed_head_to_world(SEED)
-        target = self.scenario.target_position
+        target = self.scenario.target.position_ras
         found = np.reshape(arguments["matrix"], (4, 4)) @ head_to_world
         return {
             "headToWorld": head_to_world.ravel().tolist(),
@@ -91,22 +81,10 @@ class Lab:
         with Study.open(self.path) as study:
             return study.trial(trial_id)
 
-    def sent(self, name):
-        return [arguments for sent, arguments in self.simulator.commands if sent == name]
-
-    def all_sent(self, name):
-        """Return the arguments of all commands of a name, none of which is still in transit."""
-        run_until_received(self.link)
-        return self.sent(name)
-
-    def run_until(self, condition):
-        run_logic_until(self.link, self.work, condition)
-
     def close(self):
         self.link.disconnect()
         self.logic.close()
-        self.work.close()
-        self.simulator.close()
+        super().close()
 
 
 @pytest.fixture
@@ -165,7 +143,7 @@ def test_delivering_twice_stores_once(lab, make_record):
 def test_a_trial_is_not_acknowledged_before_it_is_stored(lab, make_record):
     lab.is_study_broken = True
     lab.logic.close()
-    lab.logic = lab.new_logic()
+    lab.logic = TrialLogic(lab.services())
     lab.logic.problemFound.connect(lab.problems.append)
     for _ in range(3):
         lab.link.trialCompleted.emit(make_record(TRIAL))
@@ -242,7 +220,7 @@ def test_a_trial_is_scored_once_its_unreachable_study_is_back(
 
     lab.open_study = away_once
     lab.logic.close()
-    lab.logic = lab.new_logic()
+    lab.logic = TrialLogic(lab.services())
     lab.logic.trialScored.connect(lab.scored.append)
     lab.logic.problemFound.connect(lab.problems.append)
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
@@ -402,7 +380,7 @@ def test_a_flood_of_forged_trials_waits_in_a_short_queue_and_the_excess_is_repor
     lab, make_record, monkeypatch
 ):
     waiting = 8
-    monkeypatch.setattr(delivery_queue, "MAX_WAITING", waiting)
+    monkeypatch.setattr(trial_logic, "MAX_WAITING", waiting)
     lab.logic.trialKept.connect(lambda _record: kept.append(True))
     kept = []
     for number in range(3 * waiting):
@@ -448,7 +426,7 @@ def test_a_trial_stored_when_slicer_ends_is_acknowledged_and_counted_once_by_the
     assert lab.stored().true_tre_mm is None
     assert not lab.sent("AcknowledgeTrial")
     lab.work = BackgroundWork()
-    lab.logic = lab.new_logic()
+    lab.logic = TrialLogic(lab.services())
     lab.logic.trialScored.connect(lab.scored.append)
     lab.connect()
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
@@ -465,3 +443,96 @@ def test_after_switching_studies_trials_go_into_the_new_one(lab, make_record, tm
     lab.simulator.send_command("TrialCompleted", make_record(OTHER))
     lab.run_until(lambda: len(lab.scored) == 2)
     assert lab.stored(OTHER).record.trial_id == OTHER
+
+
+# Aborted trials
+
+
+def offer(lab, record):
+    lab.simulator.send_command("TrialAborted", record)
+
+
+def acknowledged(lab):
+    return [arguments["trialId"] for arguments in lab.sent("AcknowledgeTrial")]
+
+
+def test_an_aborted_trial_is_stored_before_it_is_acknowledged(lab):
+    offer(lab, make_aborted())
+    lab.run_until(lambda: acknowledged(lab) == [ABORTED])
+    with Study.open(lab.path) as study:
+        (stored,) = study.aborted("T-001")
+    assert stored.record == lab.kept[0]
+
+
+def test_delivering_an_aborted_trial_twice_stores_once(lab):
+    for count in range(1, 4):
+        offer(lab, make_aborted())
+        lab.run_until(lambda count=count: len(acknowledged(lab)) == count)
+    with Study.open(lab.path) as study:
+        assert len(study.aborted("T-001")) == 1
+
+
+def test_an_unstorable_aborted_trial_is_reported_once_and_not_acknowledged(lab):
+    lab.is_study_broken = True
+    for _ in range(3):
+        lab.link.trialAborted.emit(make_aborted())
+        lab.run_until(lambda: not lab.work.isBusy)
+    lab.is_study_broken = False
+    offer(lab, make_aborted())
+    lab.run_until(lambda: acknowledged(lab))
+    assert lab.problems == ["An aborted trial could not be stored: The disk is full."]
+    assert acknowledged(lab) == [ABORTED]
+
+
+def test_aborted_trials_are_stored_before_anything_that_arrives_later(lab):
+    """A repeat that was stored earlier would count without a reason."""
+    for number in (1, 2, 3):
+        lab.link.trialAborted.emit(make_aborted(number))
+
+    def stored():
+        with Study.open(lab.path) as study:
+            return len(study.aborted("T-001"))
+
+    found = []
+    lab.work.do(stored, found.append)
+    lab.run_until(lambda: found)
+    assert found == [3]
+
+
+@pytest.mark.parametrize(
+    "hostile",
+    [
+        pytest.param({}, id="empty"),
+        pytest.param(make_aborted(points=[{}] * 15), id="points"),
+        pytest.param(make_aborted(elapsedS="long"), id="elapsed"),
+        pytest.param(make_aborted(trainee=" "), id="trainee"),
+    ],
+)
+def test_a_hostile_record_is_reported_and_later_ones_are_stored(lab, hostile):
+    offer(lab, hostile)
+    lab.run_until(lambda: lab.problems)
+    offer(lab, make_aborted())
+    lab.run_until(lambda: acknowledged(lab) == [ABORTED])
+    assert len(lab.problems) == 1
+
+
+def test_an_aborted_trial_of_a_deleted_trainee_is_acknowledged_and_not_stored(lab):
+    offer(lab, make_aborted())
+    lab.run_until(lambda: acknowledged(lab) == [ABORTED])
+    with Study.open(lab.path) as study:
+        study.delete_trainee("T-001")
+    offer(lab, make_aborted())
+    lab.run_until(lambda: acknowledged(lab) == [ABORTED, ABORTED])
+    with Study.open(lab.path) as study:
+        assert study.trainees() == ()
+
+
+def test_aborted_trials_beyond_the_queue_limit_wait_for_the_next_offer(lab):
+    offered = [make_aborted(number) for number in range(1, MAX_WAITING + 10)]
+    for _ in range(2):
+        for record in offered:
+            lab.link.trialAborted.emit(record)
+        lab.run_until(lambda: not lab.work.isBusy)
+    lab.run_until(lambda: len(lab.kept) >= MAX_WAITING)
+    with Study.open(lab.path) as study:
+        assert MAX_WAITING <= len(study.aborted("T-001")) <= len(offered)

@@ -1,4 +1,4 @@
-"""What is cut off from libraries is what no loader reads."""
+"""Only those parts are cut off from libraries that no loader reads."""
 
 import ctypes
 import shutil

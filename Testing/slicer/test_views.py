@@ -5,7 +5,7 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.protocol import DeviceName
-from rastrainer.slicer.logic.views import LEAST_MOVE_MM, PERIOD_S, SliceFollower, jumpTo, poseOnHead
+from rastrainer.sections.views import LEAST_MOVE_MM, PERIOD_S, SliceFollower, jumpTo, poseOnHead
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, prepareNodes
 from rastrainer.slicer.scene.scenario_nodes import showTask
 from rastrainer.slicer.scene.trial_scene import showPlannedPlace
@@ -220,7 +220,7 @@ def test_the_slices_align_with_drill_and_instrument_and_are_then_restored(room, 
         axes = axes_of(room.scene, name)
         np.testing.assert_allclose(axes[:, 3], tip, atol=1e-4)
         assert abs(axes[:, 2] @ along) == pytest.approx(normal_along, abs=1e-6)
-        # As Slicer's own views are: their axes go round like those of a left hand, or a right one.
+        # Like Slicer's own views: their axes are left-handed or right-handed.
         turned = np.linalg.det(axes[:, :3]), np.linalg.det(before[name])
         assert turned[0] == pytest.approx(turned[1])
     room.tell(phase="registered")

@@ -1,4 +1,4 @@
-"""Poses are worth rendering only where someone may see them."""
+"""Poses are rendered only if someone may see them."""
 
 import pytest
 import slicer
@@ -23,7 +23,7 @@ from Testing.slicer.host.host import Host
 def test_visibility_depends_on_the_layout_and_on_the_module(
     host, layout, is_entered, in_slices, is_seen
 ):
-    from rastrainer.panels.application import isAnythingVisible
+    from rastrainer.sections.application import isAnythingVisible
 
     number = getattr(slicer.vtkMRMLLayoutNode, f"SlicerLayout{layout}")
     slicer.app.layoutManager().setLayout(number)
@@ -35,7 +35,7 @@ def test_visibility_depends_on_the_layout_and_on_the_module(
 
 
 def test_without_a_window_only_the_module_can_be_visible(tmp_path):
-    from rastrainer.panels.application import isAnythingVisible
+    from rastrainer.sections.application import isAnythingVisible
 
     bare = Host(tmp_path, window=False)
     try:

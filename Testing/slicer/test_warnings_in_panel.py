@@ -1,4 +1,4 @@
-"""What may be wrong with touches: the panel names the points, and offers remedies."""
+"""Faults of touches: the panel names the points, and offers remedies."""
 
 import numpy as np
 import pytest

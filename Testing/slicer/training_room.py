@@ -5,35 +5,29 @@ import uuid
 
 from rastrainer.igtl.content import Status, String
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
-from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic.training_logic import TrainingLogic
+from rastrainer.sections.training_logic import TrainingLogic
 from rastrainer.slicer.scene.nodes import findNode
-from rastrainer_headless.connector import headlessKit
 from rastrainer_simulator.texts.texts import ENGLISH
-from Testing.slicer.simulator_double import SimulatorDouble, run_link_until, run_until_received
+from Testing.slicer.simulator_double import LinkedLab
 
 TRIAL = str(uuid.UUID(int=5))
 LOADING_REFUSAL = ENGLISH["being set up"]
 
 
-class Room:
+class Room(LinkedLab):
     """A logic on a link to a simulator double that has the ball scenario.
 
     As the simulator does, it begins neither a trial nor another loading while `isLoading`.
     """
 
     def __init__(self, scene, scenario):
-        self.scene, self.now, self.refusal = scene, 100.0, None
+        super().__init__(scene, self.answer)
+        self.now, self.refusal = 100.0, None
         self.needsTutorial = self.isLoading = False
-        self.simulator = SimulatorDouble(self.answer)
-        self.link = Link(scene, headlessKit)
         self.logic = TrainingLogic(scene, self.link, lambda _name: scenario, lambda: self.now)
         self.answers = []
         self.logic.answered.connect(self.answers.append)
-        opened = []
-        self.link.opened.connect(lambda: opened.append(True))
-        self.link.connectTo(port=self.simulator.port)
-        self.run_until(lambda: opened)
+        self.connect()
         self.simulator.send(DeviceName.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
 
     def answer(self, name, _arguments):
@@ -49,21 +43,9 @@ class Room:
         values = {"trialId": TRIAL, "phase": "running", "task": "task-1", "trainee": "T001"}
         self.simulator.send(DeviceName.SIM_STATE, String(json.dumps({**values, **state})))
 
-    def sent(self, name):
-        return [arguments for sent, arguments in self.simulator.commands if sent == name]
-
-    def all_sent(self, name):
-        """Return the arguments of all commands of a name, none of which is still in transit."""
-        run_until_received(self.link)
-        return self.sent(name)
-
     def node(self, role, class_name="vtkMRMLMarkupsFiducialNode"):
         return findNode(self.scene, class_name, role)
 
-    def run_until(self, condition):
-        run_link_until(self.link, condition)
-
     def close(self):
         self.logic.close()
-        self.link.disconnect()
-        self.simulator.close()
+        super().close()

@@ -1,4 +1,4 @@
-"""Background work that is done at once, for tests of what comes of it."""
+"""Background work that is done at once, for tests of its results."""
 
 from __future__ import annotations
 

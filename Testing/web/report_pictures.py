@@ -79,7 +79,7 @@ def _add_trial(
         point["label"], point["positionMm"] = label, position.tolist()
     analysis = analyze_trial(record_from_json(TrialRecord, record), scenario)
     study.add_trial(record, analysis.fits.values(), analysis.target_errors, analysis.score)
-    target = scenario.target_position[None]
+    target = scenario.target.position_ras[None]
     there = transforms.apply(analysis.rigid.matrix @ head_to_world, target)
     study.add_results(
         trial_id,

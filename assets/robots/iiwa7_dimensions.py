@@ -58,15 +58,3 @@ COLORS: dict[str, Color] = {
     "metal": (0.62, 0.63, 0.65, 1.0),
     "blue": (0.05, 0.25, 0.95, 1.0),
 }
-
-
-def link_origins() -> dict[str, Vector]:
-    """Return each link's origin in the base frame with all joint angles zero, in meters."""
-    origins = {LINK_NAMES[0]: (0.0, 0.0, 0.0)}
-    position = (0.0, 0.0, 0.0)
-    for link, joint in zip(LINK_NAMES[1:8], JOINTS, strict=True):
-        position = tuple(round(p + o, 6) for p, o in zip(position, joint.origin, strict=True))
-        origins[link] = position
-    x, y, z = position
-    origins[TOOL_LINK] = (x, y, round(z + FLANGE_OFFSET, 6))
-    return origins

@@ -32,7 +32,7 @@ BALL, WAY, TEXT = (0.1, 0.35, 0.9), (0.9, 0.45, 0.1), (0.05, 0.1, 0.35)
 
 def main() -> int:
     scenario = load_scenario(FOLDER)
-    mesh = read_head_mesh(scenario.head_mesh)
+    mesh = read_head_mesh(scenario.head)
     window = vtk.vtkRenderWindow()
     window.OffScreenRenderingOn()
     window.SetMultiSamples(4)

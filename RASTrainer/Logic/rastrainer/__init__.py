@@ -1,3 +1,3 @@
-"""The domain of RASTrainer: registration, scoring, tasks, protocol and study, on numpy alone."""
+"""The domain of RASTrainer: registration, scoring, tasks, protocol, study; numpy and scipy only."""
 
 __version__ = "0.2.0"

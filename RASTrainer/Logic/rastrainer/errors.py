@@ -1,7 +1,7 @@
-"""Errors for users: each message is one sentence that says what is needed.
+"""Errors for users: each message is one sentence that says what the user needs to do.
 
-Whatever reads a file, a message or an argument raises `InputError` where it is not usable; its
-docstring says so only if that surprises.
+Readers of files, messages and arguments raise `InputError` if the input is unusable; a docstring
+says so only if that surprises.
 """
 
 

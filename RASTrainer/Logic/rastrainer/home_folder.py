@@ -8,7 +8,6 @@ from rastrainer.errors import InputError
 
 
 def home_folder() -> Path:
-    """Return the user's home folder."""
     try:
         return Path.home()
     except RuntimeError:

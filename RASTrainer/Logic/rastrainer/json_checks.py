@@ -22,9 +22,10 @@ from rastrainer.errors import InputError
 MAX_DEPTH = 64
 """Nesting of lists and objects; the interpreter's own limit depends on its version."""
 MAX_MESSAGE_VALUES = 1000
-"""Of a message to the simulator; ours have less than half as many."""
+"""Most values in a message to the simulator; ours have less than half as many."""
 MAX_RECORD_VALUES = 25_000
-"""Of a message from the simulator: a trial's record, with a procedure at all of its limits."""
+"""Most values in a message from the simulator: a trial's record, with a procedure at all of its
+limits."""
 
 
 def decode_finite_json(text: str, deepest: int = MAX_DEPTH) -> Any:
@@ -231,7 +232,7 @@ def transform(value: Any) -> np.ndarray:
 
 @dataclass(frozen=True)
 class SizeCheck:
-    """A check of how many values a list or an object has; each value needs one of its own."""
+    """A check of how many values a list or an object has; the values need another check."""
 
     check: Callable[[Any], Any]
 
@@ -240,7 +241,7 @@ class SizeCheck:
 
 
 def list_of(minimum: int = 0, maximum: int = sys.maxsize, what: str = "items") -> SizeCheck:
-    """Accept a list of `minimum` to `maximum` values, whatever they are."""
+    """Accept a list of `minimum` to `maximum` values of any kind."""
 
     def check(value: Any) -> tuple[Any, ...]:
         if not isinstance(value, (list, tuple)) or not minimum <= len(value) <= maximum:
@@ -254,7 +255,7 @@ def list_of(minimum: int = 0, maximum: int = sys.maxsize, what: str = "items") -
 def object_of(
     maximum: int = sys.maxsize, check_name: Callable[[Any], str] | None = None
 ) -> SizeCheck:
-    """Accept an object of at most `maximum` checked names, whatever their values are."""
+    """Accept an object of at most `maximum` checked names with any values."""
     accept_name = check_name or text()
 
     def check(value: Any) -> dict[str, Any]:
@@ -270,8 +271,6 @@ def object_of(
 
 
 def one_of(*choices: str) -> Callable[[Any], str]:
-    """Accept one of the given words."""
-
     def check(value: Any) -> str:
         if not isinstance(value, str) or value not in choices:
             raise ValueError("one of " + ", ".join(choices))
@@ -304,7 +303,6 @@ def texts(
 
 
 def yes_or_no(value: Any) -> bool:
-    """Accept true or false."""
     if not isinstance(value, bool):
         raise ValueError("true or false")
     return value

@@ -11,7 +11,7 @@ A field's annotation holds its check, and its key is its name in camel case:
 A plain `str` is a text of `json_checks.text()`. `bool`, enums, `Literal`, other records, and of
 these `X | None`, `tuple[X, ...]` and `Mapping[str, X]` need no check; all else does. A check sees
 the decoded JSON, and limits the length of lists and objects (`list_of`, `object_of`); the value is
-made of what it accepts. For rules of several fields, `__post_init__` raises `InputError`.
+made from its result. For rules of several fields, `__post_init__` raises `InputError`.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass, fields, is_dataclass
 from enum import Enum
 from functools import cache
+from pathlib import PurePath
 from typing import Annotated, Any, Literal, TypeVar, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -30,6 +31,8 @@ from rastrainer import json_checks
 from rastrainer.errors import InputError
 
 T = TypeVar("T")
+NOT_IN_JSON = {"json": False}
+"""Metadata of a field that the program fills in; it needs a default."""
 Reader = Callable[[Any, str, bool], Any]
 """Makes a field's value of decoded JSON, its place for errors, and `only_known`."""
 
@@ -100,7 +103,11 @@ def record_fields(kind: Any) -> tuple[RecordField, ...]:
 
 @cache
 def _keys(kind: Any) -> tuple[tuple[str, str, Callable[[], Any] | None], ...]:
-    return tuple((x.name, camel_case(x.name), _default(x)) for x in fields(kind) if x.init)
+    return tuple(
+        (x.name, camel_case(x.name), _default(x))
+        for x in fields(kind)
+        if x.init and x.metadata != NOT_IN_JSON
+    )
 
 
 def camel_case(name: str) -> str:
@@ -147,7 +154,7 @@ def _kind_and_checks(hint: Any) -> tuple[Any, list[Callable[[Any], Any]]]:
 
 
 def _builder(kind: Any, name: str) -> Reader | None:
-    """Return what makes a value of a type; None where the accepted value is that value."""
+    """Return the reader of a type's values; None if the accepted value is the value itself."""
     origin, parts = get_origin(kind), get_args(kind)
     if isinstance(kind, type) and is_dataclass(kind):
         return lambda value, place, only_known: (
@@ -185,6 +192,8 @@ def _plain(value: Any, with_defaults: bool) -> Any:
         return record_to_json(value, with_defaults)
     if isinstance(value, Enum):
         return value.value
+    if isinstance(value, PurePath):
+        return value.as_posix()
     if isinstance(value, np.ndarray):
         return value.ravel().tolist()
     if isinstance(value, Mapping):

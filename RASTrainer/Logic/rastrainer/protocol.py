@@ -61,7 +61,7 @@ class Phase(str, Enum):
 
 
 PROCEDURE_PHASES = (Phase.VERIFYING, Phase.ALIGNING, Phase.DRILLING, Phase.INSERTING)
-"""What follows the touches in a trial with a procedure; `aligning` to `inserting` come once for
+"""The phases after the touches in a trial with a procedure; `aligning` to `inserting` come once for
 each planned trajectory."""
 OPEN_PHASES = (Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE, *PROCEDURE_PHASES)
 """A trial that is running, paused, or not registered and delivered yet."""
@@ -81,7 +81,7 @@ COMMANDED_ABORTS = (AbortReason.TRAINEE, AbortReason.CLIENT, AbortReason.PRACTIC
 """In the simulator's menu, by a client's command, or at the end of a trial run's time. The other
 reason is for a trial interrupted by the end of the simulator and not resumed before another."""
 NUMBER_LIMIT = 1_000_000_000
-"""Of a trial, among those of its simulator's folder."""
+"""The largest number of a trial in its simulator's folder."""
 MIN_ABORTED_S = 10.0
 """An aborted trial without any touch is stored if it took longer than this."""
 
@@ -94,7 +94,7 @@ class Mode(str, Enum):
 
 
 class RegistrationMethod(str, Enum):
-    """How a head is registered: what is touched or traced on it."""
+    """How a head is registered: by touched points or a trace."""
 
     FIDUCIALS = "fiducials"
     LANDMARKS = "landmarks"
@@ -107,9 +107,9 @@ class RegistrationMethod(str, Enum):
 TRACED_METHODS = (RegistrationMethod.SURFACE, RegistrationMethod.LANDMARKS_SURFACE)
 """In a trial by one of them the skin is traced after the landmarks were touched."""
 PLAYED_METHODS = (RegistrationMethod.FIDUCIALS, RegistrationMethod.LANDMARKS, *TRACED_METHODS)
-"""By which a trial can be played."""
+"""The methods by which a trial can be played."""
 COARSE_LANDMARKS = 3
-"""That are touched before the skin is traced alone: the first ones of the scenario."""
+"""The first landmarks of the scenario, touched before the skin alone is traced."""
 
 
 class TouchRule(str, Enum):
@@ -133,10 +133,10 @@ class Guidance(str, Enum):
 
 
 class GhostRule(str, Enum):
-    """Which earlier trial of the same task is shown beside the arm.
+    """Which earlier trial of the same task is shown next to the arm.
 
-    `OWN`: the trainee's own best acceptable one. `EXPERT`: that of the expert whom the simulator's
-    settings name.
+    `OWN`: the trainee's own best acceptable one. `EXPERT`: a trial of the expert whom the
+    simulator's settings name.
     """
 
     OFF = "off"
@@ -184,7 +184,7 @@ class AssignmentState(str, Enum):
 
 
 MAX_ASSIGNMENTS, MAX_GATES, MAX_GOAL_TRIALS = 24, 6, 50
-"""Of a curriculum: assignments, how many one waits for, and trials in a row."""
+"""Limits of a curriculum: assignments, how many an assignment waits for, and trials in a row."""
 ALL_DONE, FREE, REPEAT = "all-done", "free", "repeat"
 """Instead of a step: none is left, the trainee follows no study, or the step's trial was aborted
 and needs a reason to be repeated."""
@@ -199,7 +199,7 @@ class Proximity(str, Enum):
 
 
 MAX_JOURNAL_BYTES = 1 << 28
-"""Of a trial that is delivered with its journal: more than ten hours."""
+"""The longest journal that is delivered with its trial: more than ten hours."""
 SPEED_LIMIT_MM_S = 500.0
 WORLD_LIMIT_MM = 5000.0
 STAND_OFF_LIMIT_MM = 80.0

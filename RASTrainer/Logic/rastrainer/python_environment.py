@@ -1,7 +1,7 @@
 """The environment in which a child process runs, free of Slicer's own packages.
 
-The launchers of Slicer and of its Python put Slicer's folders first in every search path, for
-whatever they start. A program with packages of its own would load Slicer's Qt, VTK or numpy.
+The launchers of Slicer and of its Python put Slicer's folders first in every search path of the
+programs they start. A program with its own packages would load Slicer's Qt, VTK or numpy.
 `clean_environment` restores the environment as it was before the launchers.
 
 The simulator runs on the packages of one folder, filled by `pip install --target`. Slicer's Python
@@ -45,14 +45,14 @@ SEARCHED = {
     "PIP_REQUIRE_VIRTUALENV": "how pip behaves",
     HOME: "Slicer itself",
 }
-"""What Slicer's launchers set, and what is looked for there."""
+"""The variables that Slicer's launchers set, and their use."""
 
 
 def clean_environment(environment: Mapping[str, str]) -> dict[str, str]:
     """Return an environment as Slicer's launchers found it; without them it is unchanged.
 
-    What the user had set in the variables of `SEARCHED` and in PATH comes back where the launchers
-    have saved it.
+    The user's own values of PATH and of the variables in `SEARCHED` come back if the launchers
+    saved them.
     """
     if LEVEL not in environment and HOME not in environment:
         return dict(environment)
@@ -88,7 +88,7 @@ LIBRARIES = "python-libraries"
 """Folder of links, in the private one: to shared libraries that Python itself needs."""
 
 _LINKED_MODULES = ("_bz2", "_ctypes", "_hashlib", "_lzma", "_sqlite3", "_ssl", "_uuid", "zlib")
-"""Of the standard library: what is made of shared libraries."""
+"""Modules of the standard library that need shared libraries."""
 _LOADER_VARIABLES = ("LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "DYLD_FRAMEWORK_PATH")
 _MAPS = Path("/proc/self/maps")
 
@@ -113,13 +113,13 @@ def run() -> None:
     environment = _own_environment(Path(folder))
     loader = [name for name in _LOADER_VARIABLES if environment.get(name) != os.environ.get(name)]
     if loader and os.name == "posix":
-        # What the loader has read once cannot be changed any more.
+        # The loader has read its variables already: only a new process sees the change.
         arguments = private_command(Path(sys.executable), Path(folder), module, *words)
         os.execve(sys.executable, arguments, environment)
     given = [place for place in os.environ.get("PYTHONPATH", "").split(os.pathsep) if place]
     os.environ.clear()
     os.environ.update(environment)
-    # Python puts those of PYTHONPATH first; one may be that of the standard library, too.
+    # Python puts the folders of PYTHONPATH first; the standard library's may be one of them.
     sys.path[:] = [place for place in sys.path if place not in ("", folder)][len(given) :]
     site.addsitedir(folder)
     _folder = Path(folder)
@@ -129,7 +129,7 @@ def run() -> None:
 
 
 def _own_environment(folder: Path) -> dict[str, str]:
-    """Return the environment for this Python and what it starts, without Slicer's folders."""
+    """Return the environment for this Python and its child processes, without Slicer's folders."""
     clean = clean_environment(os.environ)
     clean.pop("PYTHONPATH", None)
     # Slicer's Python lies in another folder than its standard library.

@@ -151,7 +151,7 @@ class Assignment:
     def is_played_as(
         self, scenario: str, task: str, mode: str, method: str, procedure: str
     ) -> bool:
-        """Return whether a trial of this kind counts for the assignment."""
+        """Return whether the assignment accepts a trial of this kind."""
         return (
             self.scenario in ("", scenario)
             and self.mode in ("", mode)

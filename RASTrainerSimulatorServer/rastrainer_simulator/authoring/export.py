@@ -163,7 +163,7 @@ def draw_face_removal(folder: Path, picture: Path) -> str:
     Each is drawn from three sides, and its images in the middle.
     """
     scenario = checked_scenario(folder)
-    head = read_head_mesh(scenario.head_mesh)
+    head = read_head_mesh(scenario.head)
     warning = check_front(head)
     volume = read_head_volume(scenario.volume) if scenario.volume else None
     _, shield = _faceless(scenario, head)
@@ -204,15 +204,15 @@ def pack_for_sharing(
             its head's surface.
     """
     scenario, taken = checked_scenario(folder), []
-    head = read_head_mesh(scenario.head_mesh)
-    skull = read_head_mesh(scenario.skull_mesh) if scenario.skull_mesh else None
+    head = read_head_mesh(scenario.head)
+    skull = read_head_mesh(scenario.skull.file) if scenario.skull else None
     volume = read_head_volume(scenario.volume) if scenario.volume else None
     preview = scenario.preview
     warning = "" if keeps_face else check_front(head)
     if not keeps_face:
         volume = without_face_in(volume, head) if volume else None
         scenario, head, skull = *_faceless(scenario, head), None
-        taken += ["the face", "the skull"] if scenario.skull_mesh else ["the face"]
+        taken += ["the face", "the skull"] if scenario.skull else ["the face"]
         if scenario.landmarks:
             scenario = replace(scenario, landmarks=())
             taken.append("the landmarks, most of which were on the face")

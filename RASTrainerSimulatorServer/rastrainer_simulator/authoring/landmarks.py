@@ -183,13 +183,6 @@ def read_placed_landmarks(path: Path) -> tuple[Landmark, ...]:
     return tuple(Landmark(label, place) for label, place in zip(labels, points, strict=True))
 
 
-def check_placed_landmarks(folder: Path, landmarks: Sequence[Landmark]) -> list[str]:
-    """Return a sentence for each fault of landmarks on the head of a scenario."""
-    scenario = load_scenario(folder)
-    planning = PlanningSetup(scenario, read_head_mesh(scenario.head_mesh))
-    return check_on_planned_head(planning, landmarks)
-
-
 def check_on_planned_head(planning: PlanningSetup, landmarks: Sequence[Landmark]) -> list[str]:
     """Return a sentence for each fault of landmarks: their positions, or the reach."""
     wrong = check_landmarks(planning.mesh, landmarks)
@@ -204,7 +197,7 @@ def check_on_planned_head(planning: PlanningSetup, landmarks: Sequence[Landmark]
 def write_proposal(folder: Path, path: Path) -> list[str]:
     """Write landmarks for the head of a scenario to a markups file; return sentences about them."""
     scenario = load_scenario(folder)
-    mesh = read_head_mesh(scenario.head_mesh)
+    mesh = read_head_mesh(scenario.head)
     found = landmarks_on(mesh)
     unreached = unreachable(PlanningSetup(scenario, mesh), found)
     # In the order of touching, the three that a trace begins with first.

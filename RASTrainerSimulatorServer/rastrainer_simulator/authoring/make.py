@@ -19,9 +19,18 @@ from rastrainer.procedure.plan import Procedure, read_all_no_go
 from rastrainer.python_environment import python_command
 from rastrainer.scenario.library import checked_scenario
 from rastrainer.scenario.points import Landmark, PlannedTarget, PlannedTrajectory, Task, on_skin
-from rastrainer.scenario.scenario import PREVIEW_NAME, Provenance, Scenario, load_scenario
+from rastrainer.scenario.scenario import (
+    FORMAT_VERSION,
+    PREVIEW_NAME,
+    Provenance,
+    Scenario,
+    SkullFile,
+    load_scenario,
+)
 from rastrainer.scenario.setup import SetUp
 from rastrainer.scenario.writer import (
+    HEAD_NAME,
+    SKULL_NAME,
     HeadDraft,
     new_folder,
     read_draft,
@@ -97,7 +106,7 @@ def make_scenario(
             scenario,
             tasks=tasks,
             provenance=replace(scenario.provenance, method=draft.method),
-            is_skull_approximate=draft.is_skull_approximate,
+            skull=SkullFile(SKULL_NAME, draft.skull_kind),
         )
         write_scenario(made, scenario, draft.head, draft.skull, draft.volume)
         load_scenario(made)
@@ -131,19 +140,18 @@ def without_tasks(
     middle = head.centroid.round(4)
     setup.check_height(float(head.vertices[:, 2].min()), middle)
     scenario = Scenario(
-        folder=Path(),
+        format_version=FORMAT_VERSION,
         name=scenario_name(options.title),
         title=options.title,
-        head_mesh=Path(),
-        target_name=CENTER,
-        target_position=middle,
+        head=HEAD_NAME,
+        target=PlannedTarget(CENTER, middle),
         head_to_world=setup.head_to_world(middle),
         perturbation=setup.perturbation,
         tasks=(),
         cameras=setup.cameras(),
-        furniture=setup.furniture(),
+        table=setup.table_in_world(),
+        stand=setup.stand,
         provenance=Provenance(options.source, draft.method, options.license),
-        is_skull_approximate=draft.is_skull_approximate,
         targets=options.targets,
         trajectory=options.trajectory,
     )
@@ -158,17 +166,12 @@ def _with_main_target(scenario: Scenario, head: HeadMesh, warn: Warn) -> Scenari
     if not scenario.targets:
         return scenario
     first, *others = scenario.targets
-    aimed = replace(
-        scenario,
-        target_name=first.name,
-        target_position=np.asarray(first.position_ras, dtype=float),
-        targets=tuple(others),
-    )
+    aimed = replace(scenario, target=first, targets=tuple(others))
     if start_clearance_mm(aimed, head) >= LEAST_START_CLEARANCE_MM:
         return aimed
     warn(
         f"{first.name} is too deep for trials to start above it; the target error is reported at "
-        f"{scenario.target_name}, and {first.name} remains a further target."
+        f"{scenario.target.name}, and {first.name} remains a further target."
     )
     return scenario
 
@@ -195,8 +198,8 @@ def copy_with_plan(
         landmarks: RAS mm, replacing all others; those near the skin are moved onto it.
     """
     before = checked_scenario(folder)
-    head = read_head_mesh(before.head_mesh)
-    skull = read_head_mesh(before.skull_mesh) if before.skull_mesh else None
+    head = read_head_mesh(before.head)
+    skull = read_head_mesh(before.skull.file) if before.skull else None
     volume = read_head_volume(before.volume) if before.volume else None
     scenario = replace(
         before, name=scenario_name(title), title=title, trajectory=trajectory or before.trajectory
@@ -216,7 +219,7 @@ def copy_with_plan(
     if landmarks is not None:
         wrong += check_on_planned_head(planning, landmarks)
     # Trials start above the target and turn the head about it, so that touching depends on it.
-    if not np.array_equal(scenario.target_position, before.target_position):
+    if not np.array_equal(scenario.target.position_ras, before.target.position_ras):
         wrong += check_tasks(planning, scenario.tasks)
     if wrong:
         raise InputError(" ".join(wrong))

@@ -68,7 +68,7 @@ class PlanningSetup:
         self.scenario = scenario
         self.mesh = mesh
         self.setup = replace(setup or load_setup(), scenario=scenario)
-        self.collision = head_collision(self.setup.shape, mesh, scenario.furniture)
+        self.collision = head_collision(self.setup.shape, mesh, scenario)
         self._planner = TouchPlanner(self.setup.robot, self.collision)
 
     @cached_property
@@ -96,7 +96,7 @@ class PlanningSetup:
         wide = Perturbation(
             wider * limits.translation_mm, wider * limits.yaw_deg, wider * limits.tilt_deg
         )
-        pivot = scenario.target_position
+        pivot = scenario.target.position_ras
         nominal = scenario.head_to_world
         return [nominal, *(perturbed_pose(nominal, pivot, wide, seed) for seed in seeds)]
 

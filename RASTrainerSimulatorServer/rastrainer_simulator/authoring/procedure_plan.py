@@ -73,7 +73,7 @@ def require_usable_procedures(setup: SimulationSetup) -> None:
     """
     scenario = setup.scenario
     require_usable_lines(scenario)
-    planning = PlanningSetup(scenario, read_head_mesh(scenario.head_mesh), setup)
+    planning = PlanningSetup(scenario, read_head_mesh(scenario.head), setup)
     wrong = [
         sentence
         for procedure in scenario.procedures
@@ -85,9 +85,8 @@ def require_usable_procedures(setup: SimulationSetup) -> None:
 
 def _check_on_head(planning: PlanningSetup, procedure: Procedure) -> list[str]:
     """Return a sentence for each error of a plan on the scenario's head, apart from the reach."""
-    skull = planning.scenario.skull_mesh
-    assert skull is not None, "a scenario with procedures has a skull"
-    return check_procedure(procedure, planning.mesh, read_procedure_meshes(procedure, skull))
+    meshes = read_procedure_meshes(procedure, planning.scenario.skull_path)
+    return check_procedure(procedure, planning.mesh, meshes)
 
 
 def _lines_held(
@@ -117,7 +116,7 @@ def measure_procedures(
     """Return the procedures of a scenario, or another one on its head, as measured."""
     scenario = load_scenario(folder)
     skull = _skull(scenario)
-    planning = PlanningSetup(scenario, read_head_mesh(scenario.head_mesh))
+    planning = PlanningSetup(scenario, read_head_mesh(scenario.head))
     measured = []
     for each in scenario.procedures if procedure is None else (procedure,):
         wrong = _check_on_head(planning, each)
@@ -163,9 +162,9 @@ def with_procedure(
 
 
 def _skull(scenario: Scenario) -> Path:
-    if scenario.skull_mesh is None:
+    if scenario.skull is None:
         raise InputError(
             f"The scenario {scenario.name} has no skull, which a procedure needs for drilling; "
             "make it again with a skull."
         )
-    return scenario.skull_mesh
+    return scenario.skull.file

@@ -15,7 +15,7 @@ from rastrainer.files.point_files import read_markups
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, outward_normals, read_head_mesh
 from rastrainer.procedure.checks import ENTRY_OFF_SKIN_MM
 from rastrainer.scenario.library import checked_scenario
-from rastrainer.scenario.points import LABELS, Task, touch_order
+from rastrainer.scenario.points import LABELS, Task, task_file, touch_order
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer.work_progress import Progress, Warn
@@ -33,9 +33,9 @@ ROBOT_FOOT_MM = 110.0
 
 def check_standing(scenario: Scenario, head: HeadMesh) -> list[str]:
     """Return a sentence for everything that is not on the table."""
-    table, wrong = scenario.furniture, []
-    half = np.array(table.table.size_mm[:2]) / 2.0
-    low, high = table.table.center_mm - half, table.table.center_mm + half
+    table, wrong = scenario.table, []
+    half = np.array(table.size_mm[:2]) / 2.0
+    low, high = table.center_mm - half, table.center_mm + half
     extent = f"The table reaches from {_place(low)} to {_place(high)} mm (x, y, from the robot)"
     if (low > -ROBOT_FOOT_MM).any() or (high < ROBOT_FOOT_MM).any():
         wrong.append(
@@ -43,7 +43,7 @@ def check_standing(scenario: Scenario, head: HeadMesh) -> list[str]:
             "would not stand on it; move the robot or the table."
         )
     foot = transforms.apply(scenario.head_to_world, head.base)[:2]
-    around = table.stand.diameter_mm / 2.0 + scenario.perturbation.translation_mm
+    around = scenario.stand.diameter_mm / 2.0 + scenario.perturbation.translation_mm
     if (foot - around < low).any() or (foot + around > high).any():
         wrong.append(
             f"{extent}: the head's stand at {_place(foot)} mm, which needs {around:.0f} mm around "
@@ -62,7 +62,7 @@ def lowest_in_trials_mm(scenario: Scenario, head: HeadMesh) -> float:
     """Return the height of the head's lowest point above the table in the worst trial, mm."""
     limits = scenario.perturbation
     vertices = transforms.apply(scenario.head_to_world, head.vertices)
-    pivot = transforms.apply(scenario.head_to_world, scenario.target_position)
+    pivot = transforms.apply(scenario.head_to_world, scenario.target.position_ras)
     aside = np.hypot(*(vertices - pivot)[:, :2].T)
     height = vertices[:, 2] - pivot[2]
     # A tilt lowers a point on its side until it is right below the pivot.
@@ -82,7 +82,7 @@ def check_plan(planning: PlanningSetup) -> list[str]:
     height = SimulationSettings().start_height
     if start_clearance_mm(scenario, planning.mesh) <= 0.0:
         wrong.append(
-            f"A trial starts {MM_PER_M * height:.0f} mm above {scenario.target_name}: that is "
+            f"A trial starts {MM_PER_M * height:.0f} mm above {scenario.target.name}: that is "
             "within the head. Let another target be the first."
         )
     try:
@@ -90,7 +90,7 @@ def check_plan(planning: PlanningSetup) -> list[str]:
     except InputError as error:
         wrong.append(str(error))
     pose_head(planning.collision, scenario.head_to_world)
-    targets = [(scenario.target_name, scenario.target_position)]
+    targets = [(scenario.target.name, scenario.target.position_ras)]
     targets += [(target.name, target.position_ras) for target in scenario.targets]
     if scenario.trajectory is not None:
         targets.append((scenario.trajectory.name, scenario.trajectory.target_ras))
@@ -104,7 +104,7 @@ def check_plan(planning: PlanningSetup) -> list[str]:
 def start_clearance_mm(scenario: Scenario, head: HeadMesh) -> float:
     """Return how far above the top of the head the tip is at least when a trial starts."""
     top = transforms.apply(scenario.head_to_world, head.vertices)[:, 2].max()
-    target = transforms.apply(scenario.head_to_world, scenario.target_position)[2]
+    target = transforms.apply(scenario.head_to_world, scenario.target.position_ras)[2]
     return float(target + MM_PER_M * SimulationSettings().start_height - top)
 
 
@@ -137,7 +137,7 @@ def _distance_mm(planning: PlanningSetup, position: np.ndarray) -> float:
 def check_scenario(folder: Path) -> list[str]:
     """Return a sentence for each error in the set-up, the plan and the tasks of a scenario."""
     scenario = checked_scenario(folder)
-    mesh = read_head_mesh(scenario.head_mesh)
+    mesh = read_head_mesh(scenario.head)
     wrong = []
     if mesh.euler_characteristic != 2:
         wrong.append("The head's surface has tunnels or loose parts; the skin must be one body.")
@@ -177,7 +177,7 @@ def check_tasks(planning: PlanningSetup, tasks: Iterable[Task], first_seed: int 
     for task in tasks:
         wrong += _wrong_places(planning, task) or [
             *(_untouchable(planning, task, first_seed) or _unseen(planning, task)),
-            *([] if planning.views.placement(task).has_room else [f"{task.title}: {NO_ROOM}"]),
+            *([] if planning.views.on_skin(task)[1].has_room else [f"{task.title}: {NO_ROOM}"]),
             *_wrong_measures(task, measured(planning, task)),
         ]
     for easier, harder in pairwise(tasks):
@@ -206,12 +206,12 @@ def _wrong_places(planning: PlanningSetup, task: Task) -> list[str]:
                 f"numbers need {APART_MM:g} mm."
             )
     try:
-        ratio = target_spread(task.fiducials, planning.scenario.target_position) ** 0.5
+        ratio = target_spread(task.fiducials, planning.scenario.target.position_ras) ** 0.5
     except np.linalg.LinAlgError:
         ratio = np.inf
     if not ratio <= WORST_SPREAD:
         wrong.append(
-            f"{task.title}: its fiducials locate {planning.scenario.target_name} badly "
+            f"{task.title}: its fiducials locate {planning.scenario.target.name} badly "
             f"(expected TRE {ratio:.1f} times FLE, at most {WORST_SPREAD:g}); "
             "spread them around it."
         )
@@ -316,4 +316,4 @@ def _read(mesh: HeadMesh, path: Path, plan: TaskPlan, warn: Warn) -> Task:
         )
     if len(np.unique(points, axis=0)) != len(LABELS):
         raise InputError("two fiducials are at the same place.")
-    return Task(plan.name, plan.title, LABELS, points, 0.0)
+    return Task(plan.name, plan.title, task_file(plan.name), 0.0, fiducials=points)

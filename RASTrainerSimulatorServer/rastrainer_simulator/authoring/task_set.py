@@ -9,7 +9,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, outward_normals
-from rastrainer.scenario.points import LABELS, Task
+from rastrainer.scenario.points import LABELS, Task, task_file
 from rastrainer.work_progress import Progress, no_progress
 from rastrainer_simulator.authoring.face_removal import face_vertices
 from rastrainer_simulator.authoring.planning_setup import WIDER, PlanningSetup
@@ -20,8 +20,7 @@ from rastrainer_simulator.authoring.task_proposal import (
     places_seen_from,
 )
 from rastrainer_simulator.authoring.touch_order import shortest_path_mm
-from rastrainer_simulator.scene.skin import Skin
-from rastrainer_simulator.scene.skin_marks import place_marks
+from rastrainer_simulator.scene.skin_marks import Skin, place_marks
 
 ABOVE_BASE_MM = 25.0
 SMOOTH_WITHIN_MM = 12.0
@@ -101,7 +100,7 @@ class TaskSetProposer:
                 planning.mesh,
                 self._places,
                 planning.eye,
-                planning.scenario.target_position,
+                planning.scenario.target.position_ras,
                 lambda one: place_marks(self._skin, one.fiducials, LABELS).has_room,
                 self._are_touchable,
             )
@@ -121,10 +120,10 @@ class TaskSetProposer:
                 Task(
                     one.plan.name,
                     one.plan.title,
-                    LABELS,
-                    one.fiducials,
+                    task_file(one.plan.name),
                     round(one.complexity.index, 2),
                     round(shortest_path_mm(one.fiducials, planning.mesh, planning.graph), 1),
+                    fiducials=one.fiducials,
                 )
                 for one in proposals
             )

@@ -31,12 +31,12 @@ from rastrainer_simulator.board.seats import (
     RefusedError,
     SeatClient,
     SeatEntry,
+    WatchedSeat,
     checked_address,
     checked_fingerprint,
     read_seats,
     write_seats,
 )
-from rastrainer_simulator.board.watched_seat import WatchedSeat
 from rastrainer_simulator.net.views.access_control import (
     ROLE,
     PairingCode,
@@ -118,7 +118,6 @@ class BoardServer:
         return await self._http.listen(host, port)
 
     async def close(self) -> None:
-        """Stop watching, and close the connections of all pages."""
         self._http.stop_listening()
         await asyncio.gather(*(seat.close() for seat in self._seats.values()))
         await self._http.close()

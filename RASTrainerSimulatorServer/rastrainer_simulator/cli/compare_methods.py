@@ -48,6 +48,8 @@ COLORS = {"expected TRE": "#0b6fa4", "true TRE": "#d1661b"}
 def compare_methods(arguments: argparse.Namespace) -> int:
     folder = arguments.scenario or asset_path("scenarios", "colin27")
     scenario = load_scenario(folder)
+    if arguments.output is not None:
+        make_empty_folder(arguments.output)
     notes: list[str] = [NOTE]
     if arguments.study is None:
         found = _simulated(arguments, scenario, notes)
@@ -59,7 +61,6 @@ def compare_methods(arguments: argparse.Namespace) -> int:
     text = "\n".join([comparison_text(methods), "", *notes])
     values = {"scenario": scenario.name, "methods": methods, "notes": notes}
     if arguments.output is not None:
-        make_empty_folder(arguments.output)
         as_json = json_text(values)
         write_text(arguments.output / "methods.txt", text + "\n")
         write_text(arguments.output / "methods.json", as_json + "\n")
@@ -91,7 +92,7 @@ def _simulated(arguments: argparse.Namespace, scenario: Scenario, notes: list[st
 
 
 def _played(place: StudyPlace, scenario: Scenario, notes: list[str]) -> Found:
-    mesh, targets = read_head_mesh(scenario.head_mesh), region_of(scenario).targets
+    mesh, targets = read_head_mesh(scenario.head), region_of(scenario).targets
     found: dict[RegistrationMethod, list[tuple[str, MethodResult]]] = {}
     others = 0
     with Study.open_for_reading(place) as opened:

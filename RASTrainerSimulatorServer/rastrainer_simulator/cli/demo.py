@@ -204,7 +204,7 @@ def _draw_pictures(
 
     robot = load_robot()
     task = scenario.task(record.task)
-    head = read_head_mesh(scenario.head_mesh)
+    head = read_head_mesh(scenario.head)
     moment = SceneMoment(
         link_to_world=make_kinematics(robot).links(state["q"]),
         head_to_world=head_to_world,

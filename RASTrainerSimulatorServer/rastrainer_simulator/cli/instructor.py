@@ -7,11 +7,9 @@ import asyncio
 import getpass
 import sys
 from functools import partial
-from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST
-from rastrainer.study.database.database import StudyPlace
 from rastrainer_simulator.board.board_server import BoardServer
 from rastrainer_simulator.board.seats import SeatClient
 from rastrainer_simulator.cli.printing import announce
@@ -21,23 +19,22 @@ from rastrainer_simulator.ops.system_paths import config_folder
 
 
 def serve_board(arguments: argparse.Namespace) -> int:
-    config = arguments.config or config_folder()
-    asyncio.run(_serve(config, arguments.port, arguments.study))
+    asyncio.run(_serve(arguments))
     return 0
 
 
-async def _serve(config: Path, port: int, place: StudyPlace | None) -> None:
+async def _serve(arguments: argparse.Namespace) -> None:
     tell, stop = partial(announce, "board"), asyncio.Event()
     async with SeatClient() as client:
         board = BoardServer(
-            config,
+            arguments.config or config_folder(),
             client,
             lambda code: tell(f"has a new pairing code for browsers: {code}"),
-            study=place,
+            study=arguments.study,
         )
         try:
             with stop_on_signals(stop):
-                found = await board.listen(DEFAULT_HOST, port)
+                found = await board.listen(DEFAULT_HOST, arguments.port)
                 address = f"http://{DEFAULT_HOST}:{found}"
                 code = board.code.code
                 tell(f"is on {address}, pairing code {code}; open {address}/#code={code}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 
 from rastrainer.errors import InputError
@@ -16,20 +17,19 @@ from rastrainer_simulator.cli.printing import json_text, text_table
 
 
 def verify(arguments: argparse.Namespace) -> int:
-    if arguments.study is None:
-        return max([_verify(path) for path in arguments.journal])
-    with Study.open_for_reading(arguments.study) as opened:
+    place = arguments.study
+    with nullcontext() if place is None else Study.open_for_reading(place) as opened:
         return max([_verify(path, opened) for path in arguments.journal])
 
 
-def _verify(path: Path, study: Study | None = None) -> int:
+def _verify(path: Path, study: Study | None) -> int:
     problem = ""
     try:
         reading = read_journal(path)
         if study is not None:
             sealed = [entry["sha256"] for entry in reading.of_kind("registered")]
             try:
-                record = study.trial(str(reading.header.get("trialId"))).record
+                record = study.trial(reading.header.trial_id).record
                 if record.journal_sha256 not in sealed:
                     problem = "; the trial in the study is not from this journal"
             except InputError:
@@ -43,7 +43,7 @@ def _verify(path: Path, study: Study | None = None) -> int:
 
 def measure(arguments: argparse.Namespace) -> int:
     reading = read_journal(arguments.journal)
-    motion = trial_motion(Recording.of(reading.entries).trajectory())
+    motion = trial_motion(Recording.of(reading.lines()).trajectory())
     if arguments.json:
         print(json_text(motion))
         return 0

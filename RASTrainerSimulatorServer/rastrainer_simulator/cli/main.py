@@ -6,7 +6,8 @@ import argparse
 import math
 import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
@@ -19,7 +20,7 @@ from rastrainer.study.database.database import study_place
 from rastrainer.work_progress import allow_any_text
 
 
-class CommandEntry(NamedTuple):
+class CliCommand(NamedTuple):
     """A command as `commands.txt` describes it; `run` is its module and function."""
 
     run: str
@@ -28,7 +29,7 @@ class CommandEntry(NamedTuple):
     arguments: list[str]
 
 
-def read_commands() -> dict[str, CommandEntry]:
+def read_commands() -> dict[str, CliCommand]:
     """Return every command by its name, such as `scenario build`."""
     text = Path(__file__).with_name("commands.txt").read_text(encoding="utf-8")
     shared: dict[str, list[str]] = {}
@@ -46,51 +47,41 @@ def read_commands() -> dict[str, CommandEntry]:
             shared[name] = arguments
         else:
             words, description = (" ".join(each.split()) for each in (*paragraphs, "")[:2])
-            commands[name] = CommandEntry(run, words, description, arguments)
+            commands[name] = CliCommand(run, words, description, arguments)
     return commands
-
-
-def path_of_user(text: str) -> Path:
-    """Return a path, in which ~ is the home folder."""
-    start, *rest = Path(text).parts or (".",)
-    return home_folder().joinpath(*rest) if start == "~" else Path(text)
 
 
 PATHS = (
     *("DIR", "DRAFT", "FILE", "FILE.webm", "HEAD.ply", "JOURNAL", "JSON", "MRK_JSON", "PNG"),
     *("PROTOCOL", "TRIALS.csv", "VOLUME", "ZIP"),
 )
-VALUES: dict[str, Callable[[str], object]] = {
-    **dict.fromkeys(PATHS, path_of_user),
-    **dict.fromkeys(("STUDY", "FROM", "TO"), study_place),
-}
-"""The types of values, by the names that `commands.txt` gives them; others are text."""
+STUDIES = ("STUDY", "FROM", "TO")
+"""Names of values in `commands.txt` that are not text."""
 
 
-def _reader(name: str, limits: str) -> Callable[[str], object]:
-    """Return the function that reads a value: a number if it has limits, such as `0..65535`."""
+def _read(name: str, limits: str, text: str) -> object:
+    """Return a value: a number if it has limits, such as `0..65535`; else a path, or a study."""
+    if not limits:
+        try:
+            start, *rest = Path(text).parts or (".",)
+            if name in STUDIES:
+                return study_place(text)
+            return home_folder().joinpath(*rest) if start == "~" else Path(text)
+        except InputError as error:
+            # Argparse's own sentence would repeat the text that was entered.
+            raise argparse.ArgumentTypeError(str(error)) from None
     least, is_range, most = limits.partition("..")
     kind = float if limits == "float" or "." in least else int
-
-    def read(text: str) -> object:
-        if not limits:
-            try:
-                return VALUES[name](text)
-            except InputError as error:
-                # Argparse's own sentence would repeat the text that was entered.
-                raise argparse.ArgumentTypeError(str(error)) from None
-        try:
-            value = kind(text)
-            if not is_range or kind(least) <= value <= float(most or math.inf):
-                return value
-        except (ValueError, OverflowError):
-            pass
-        words = "a whole number" if kind is int else "a number"
-        words += f" from {least}" if is_range else ""
-        words += f" to {most}" if most else ""
-        raise argparse.ArgumentTypeError(f"must be {words}")
-
-    return read
+    try:
+        value = kind(text)
+        if not is_range or kind(least) <= value <= (kind(most) if most else math.inf):
+            return value
+    except (ValueError, OverflowError):
+        pass
+    words = "a whole number" if kind is int else "a number"
+    words += f" from {least}" if is_range else ""
+    words += f" to {most}" if most else ""
+    raise argparse.ArgumentTypeError(f"must be {words}")
 
 
 ARGUMENT = re.compile(
@@ -128,8 +119,8 @@ def _add_argument(parser: Any, line: str) -> None:
             settings["nargs"] = len(values)
         elif is_optional or found["more"]:
             settings["nargs"] = "?" if is_optional else "+"
-        if found["limits"] or values[0] in VALUES:
-            settings["type"] = _reader(values[0], found["limits"] or "")
+        if found["limits"] or values[0] in (*PATHS, *STUDIES):
+            settings["type"] = partial(_read, values[0], found["limits"] or "")
     if default:
         several = len(values) > 1
         settings["default"] = tuple(map(float, default.split())) if several else default

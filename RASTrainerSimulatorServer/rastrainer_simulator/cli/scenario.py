@@ -12,20 +12,21 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.files.writing import write_json
-from rastrainer.head.mesh import RAS_LIMIT_MM
+from rastrainer.head.mesh import RAS_LIMIT_MM, read_head_mesh
 from rastrainer.json_records import record_to_json
 from rastrainer.number_text import fixed
 from rastrainer.procedure.checks import MeasuredProcedure
 from rastrainer.procedure.plan import Procedure, read_procedure
 from rastrainer.scenario.library import list_scenarios, unpack
 from rastrainer.scenario.points import PlannedTarget, PlannedTrajectory
+from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.setup import SetUp, read_setup
 from rastrainer.scenario.writer import read_draft, require_new, scenario_name
 from rastrainer.work_progress import print_progress, print_warning
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.export import draw_face_removal, pack_for_sharing
 from rastrainer_simulator.authoring.landmarks import (
-    check_placed_landmarks,
+    check_on_planned_head,
     read_placed_landmarks,
     write_proposal,
 )
@@ -37,6 +38,7 @@ from rastrainer_simulator.authoring.make import (
     make_scenario,
     without_tasks,
 )
+from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.procedure_plan import measure_procedures
 from rastrainer_simulator.authoring.scenario_check import check_scenario
 from rastrainer_simulator.cli.printing import aligned
@@ -151,7 +153,9 @@ def check_landmarks(arguments: argparse.Namespace) -> int:
     if arguments.propose:
         print(" ".join(write_proposal(arguments.dir, arguments.mrk_json)))
         return 0
-    wrong = check_placed_landmarks(arguments.dir, read_placed_landmarks(arguments.mrk_json))
+    landmarks, scenario = read_placed_landmarks(arguments.mrk_json), load_scenario(arguments.dir)
+    planning = PlanningSetup(scenario, read_head_mesh(scenario.head))
+    wrong = check_on_planned_head(planning, landmarks)
     print(" ".join(wrong) or "The landmarks can be used.")
     return 1 if wrong else 0
 

@@ -26,12 +26,15 @@ class Clearance(NamedTuple):
     """Signed clearances of one posture, in m (below zero: overlap); points and normals in World.
 
     `tip` is the very tip of the tool against the head, `shaft` the rest of the tool from 3 mm
-    behind the tip, None unless it is near (`SHAFT_NEAR`). The others are at most FAR: the links
-    against the head, the arm against itself, and arm and tool against table and stand.
+    behind the tip, None unless it is near (`SHAFT_NEAR`); `shaft_m` is then a lower bound, and
+    `tool_m` the clearance of the whole tool. The others are at most FAR: the links against the
+    head, the arm against itself, and arm and tool against table and stand.
     """
 
     tip: Nearest
     shaft: Nearest | None
+    shaft_m: float
+    tool_m: float
     links_m: float
     self_m: float
     table_m: float
@@ -39,18 +42,6 @@ class Clearance(NamedTuple):
     @property
     def tip_m(self) -> float:
         return self.tip.distance_m
-
-    @property
-    def tool_m(self) -> float:
-        """Signed clearance of the whole tool to the head, m: the clearance that is shown."""
-        return min(self.tip.distance_m, self.shaft_m)
-
-    @property
-    def shaft_m(self) -> float:
-        """Signed clearance of the tool without its tip, m; a lower bound if far."""
-        if self.shaft is not None:
-            return self.shaft.distance_m
-        return max(self.tip.distance_m, SHAFT_NEAR)
 
 
 _ROUGHLY_FAR = 0.2
@@ -89,7 +80,7 @@ class DistanceBounds:
         while due and due[0][0] <= traveled:
             rows.append(heappop(due)[1])
             if rough is not None and len(rows) > _FEW:
-                # Put off the far ones among all due rows.
+                # Put off all due rows that are far.
                 rows += [row for moment, row in due if moment <= traveled]
                 bounds = rough()
                 until = (traveled + (bounds - FAR - _ROUNDING) / self._closing).tolist()
@@ -101,17 +92,6 @@ class DistanceBounds:
                 break
         rows.sort()
         return rows
-
-    def nearest(
-        self, traveled: float, distance: Callable[[int], float], rough: Callable[[], np.ndarray]
-    ) -> float:
-        """Return the least distance, m, at most FAR; `distance` measures a row."""
-        best = FAR
-        for row in self.due(traveled, rough):
-            found = distance(row)
-            self.put_off(row, found, traveled)
-            best = min(best, found)
-        return best
 
     def put_off(self, row: int, distance: float, traveled: float) -> None:
         """Make a row due again when it may be below FAR; it is now at least `distance`, m."""
@@ -261,3 +241,64 @@ def _moved(rows: list[list[float]], point: Vector) -> Vector:
         b[0] * x + b[1] * y + b[2] * z + b[3],
         c[0] * x + c[1] * y + c[2] * z + c[3],
     )
+
+
+ABOVE_TABLE_M = 0.02
+"""An eye nearer to the table than this would look through its top."""
+_TINY = 1e-12
+
+
+def sight_clearances(
+    eyes: np.ndarray, places: np.ndarray, ends: np.ndarray, radii: np.ndarray
+) -> np.ndarray:
+    """Return how far m lines of sight pass n capsules, (m, n) float, m; below zero: covered.
+
+    Lines begin at `eyes` and end at `places`, (m, 3) float each; `ends` (n, 2, 3) and `radii` (n,)
+    are the capsules'. It is `vectors.segment_distance` for all pairs at once.
+    """
+    starts, axes = ends[:, 0], ends[:, 1] - ends[:, 0]
+    lines = places - eyes
+    uu = np.einsum("mi,mi->m", lines, lines)[:, None] + _TINY
+    vv = np.einsum("ni,ni->n", axes, axes) + _TINY
+    uv = lines @ axes.T
+    between = eyes[:, None] - starts
+    uw = np.einsum("mi,mni->mn", lines, between)
+    vw = np.einsum("ni,mni->mn", axes, between)
+    area = np.maximum(uu * vv - uv * uv, _TINY * uu * vv)
+    s = np.clip((uv * vw - vv * uw) / area, 0.0, 1.0)
+    t = np.clip((uv * s + vw) / vv, 0.0, 1.0)
+    s = np.clip((uv * t - uw) / uu, 0.0, 1.0)
+    apart = between + s[..., None] * lines[:, None] - t[..., None] * axes
+    return np.sqrt(np.einsum("mni,mni->mn", apart, apart)) - radii
+
+
+class LineOfSight:
+    """Finds what the head, the table and one posture of the arm leave visible; World, m."""
+
+    def __init__(
+        self, head: HeadClearance, arm: ArmCapsules, posed: PosedArm, table_height: float
+    ) -> None:
+        self._head = head
+        count = arm.link_count
+        self._links = posed.ends[:count], arm.radii[:count]
+        self._tool = posed.ends[count:], arm.radii[count:]
+        self._lowest = table_height + ABOVE_TABLE_M
+
+    def is_free(self, eye: Vector, place: Vector) -> bool:
+        """Return whether a point is seen from an eye past head, links and table.
+
+        The tool does not count.
+        """
+        off_links = self.off_links(np.array([eye]), np.array(place))
+        return self.is_past_head(eye, place) and bool(off_links[0] > 0.0)
+
+    def is_past_head(self, eye: Vector, place: Vector) -> bool:
+        return eye[2] > self._lowest and not self._head.is_crossed(eye, place)
+
+    def off_links(self, eyes: np.ndarray, place: np.ndarray) -> np.ndarray:
+        """Return how far the lines from eyes (m, 3) to a place (3,) pass the links, (m,), m."""
+        return sight_clearances(eyes, np.broadcast_to(place, eyes.shape), *self._links).min(axis=1)
+
+    def off_tool(self, eyes: np.ndarray, place: np.ndarray) -> np.ndarray:
+        """Return how far the lines from eyes (m, 3) to a place (3,) pass the tool, (m,), m."""
+        return sight_clearances(eyes, np.broadcast_to(place, eyes.shape), *self._tool).min(axis=1)

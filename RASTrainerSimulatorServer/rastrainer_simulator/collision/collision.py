@@ -9,16 +9,17 @@ from functools import partial
 import numpy as np
 
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.scenario.scenario import Furniture
+from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.clearance import (
+    FAR,
     SHAFT_NEAR,
     Clearance,
     DistanceBounds,
     HeadClearance,
+    LineOfSight,
 )
 from rastrainer_simulator.collision.head_surface import HeadSurface, Nearest
-from rastrainer_simulator.collision.line_of_sight import LineOfSight
 from rastrainer_simulator.collision.robot_shape import ArmCapsules, PosedArm, RobotShape
 from rastrainer_simulator.vectors import segment_distance
 
@@ -53,11 +54,17 @@ class TableClearance:
 
     def nearest(self, posed: PosedArm, traveled: float) -> float:
         """Return the least signed distance, m, at most FAR; the arm has moved `traveled` m."""
-        best = self._distance_bounds.nearest(
-            traveled, partial(self._distance, posed), partial(self._bounds, posed)
-        )
         # The tip is no part of a capsule.
-        return min(best, posed.tip[2] - self._table)
+        best = min(FAR, posed.tip[2] - self._table)
+        for row in self._distance_bounds.due(traveled, partial(self._bounds, posed)):
+            start, end = posed.ends[row].tolist()
+            distance = min(start[2], end[2]) - self._below[row]
+            if self._stand is not None:
+                radii = self._arm.capsules[row].radius + self._stand_radius
+                distance = min(distance, segment_distance(start, end, *self._stand) - radii)
+            self._distance_bounds.put_off(row, distance, traveled)
+            best = min(best, distance)
+        return best
 
     def _bounds(self, posed: PosedArm) -> np.ndarray:
         """Return a lower bound of the distance of each capsule, (n,) float, m."""
@@ -67,14 +74,6 @@ class TableClearance:
         away = posed.middles - self._stand[1]
         np.maximum(away[:, 2], 0.0, out=away[:, 2])
         return np.minimum(bounds, np.sqrt(np.einsum("ij,ij->i", away, away)) - self._around)
-
-    def _distance(self, posed: PosedArm, row: int) -> float:
-        start, end = posed.ends[row].tolist()
-        distance = min(start[2], end[2]) - self._below[row]
-        if self._stand is None:
-            return distance
-        radii = self._arm.capsules[row].radius + self._stand_radius
-        return min(distance, segment_distance(start, end, *self._stand) - radii)
 
 
 APART = 3
@@ -95,20 +94,21 @@ class SelfClearance:
         self._distance_bounds = DistanceBounds(len(self._pairs), closing=2.0)
 
     def nearest(self, posed: PosedArm, traveled: float) -> float:
-        return self._distance_bounds.nearest(
-            traveled, partial(self._distance, posed), partial(self._bounds, posed)
-        )
+        """Return the least signed distance, m, at most FAR; the arm has moved `traveled` m."""
+        best = FAR
+        for pair in self._distance_bounds.due(traveled, partial(self._bounds, posed)):
+            first, second = self._pairs[pair]
+            ends = *posed.ends[first].tolist(), *posed.ends[second].tolist()
+            distance = segment_distance(*ends) - self._radii[pair]
+            self._distance_bounds.put_off(pair, distance, traveled)
+            best = min(best, distance)
+        return best
 
     def _bounds(self, posed: PosedArm) -> np.ndarray:
         """Return a lower bound of the distance of each pair, (pairs,) float, m."""
         middles = posed.middles
         between = middles.take(self._first, 0) - middles.take(self._second, 0)
         return np.sqrt(np.einsum("ij,ij->i", between, between)) - self._reaches
-
-    def _distance(self, posed: PosedArm, pair: int) -> float:
-        first, second = self._pairs[pair]
-        ends = *posed.ends[first].tolist(), *posed.ends[second].tolist()
-        return segment_distance(*ends) - self._radii[pair]
 
 
 class Collision:
@@ -157,9 +157,14 @@ class Collision:
         posed = self._arm.pose(link_to_world)
         traveled = self._travel(posed)
         tip = self._head.nearest_to_point(posed.tip)
+        far = max(tip.distance_m, SHAFT_NEAR)
+        shaft = self._head.nearest_to_shaft(posed, far)
+        shaft_m = far if shaft is None else shaft.distance_m
         return Clearance(
             tip,
-            self._head.nearest_to_shaft(posed, max(tip.distance_m, SHAFT_NEAR)),
+            shaft,
+            shaft_m,
+            min(tip.distance_m, shaft_m),
             self._head.nearest_to_links(posed, traveled),
             self._self.nearest(posed, traveled),
             self._table.nearest(posed, traveled),
@@ -198,7 +203,7 @@ class Collision:
         return self._head.nearest_to_shaft(self._arm.pose(link_to_world), limit)
 
 
-def head_collision(shape: RobotShape, head: HeadMesh, furniture: Furniture) -> Collision:
+def head_collision(shape: RobotShape, head: HeadMesh, scenario: Scenario) -> Collision:
     """Return what measures a robot against a head, RAS mm, and the table and stand around it."""
-    stand_radius = furniture.stand.diameter_mm / 2.0 / MM_PER_M
+    stand_radius = scenario.stand.diameter_mm / 2.0 / MM_PER_M
     return Collision(shape, head.vertices / MM_PER_M, head.triangles, stand_radius)

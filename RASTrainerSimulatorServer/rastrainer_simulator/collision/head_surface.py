@@ -172,10 +172,11 @@ class HeadSurface:
         """Return the nearest place of the surface, the distance below zero inside the head."""
         position = np.array(point)
         self._point.setTranslation(position)
-        distance, on_head, triangle = self._query(self._point)
-        if distance <= 0.0:  # fcl sets no nearest points where shapes meet.
-            on_head = position
-        return self._signed(point, distance, on_head, triangle)
+        result = fcl.DistanceResult()
+        distance = fcl.distance(self._head, self._point, _REQUEST, result)
+        # fcl sets no nearest points where shapes meet.
+        on_head = position if distance <= 0.0 else result.nearest_points[0]
+        return self._signed(point, distance, on_head, result.b1)
 
     def nearest_to_segment(
         self, segment: fcl.CollisionObject, start: Vector, end: Vector, radius: float
@@ -185,7 +186,9 @@ class HeadSurface:
         `segment` is its axis from `start` to `end`, its pose already set. Where the axis itself
         goes through the surface, the distance is −radius: at least so deep is the capsule.
         """
-        distance, on_head, triangle = self._query(segment)
+        result = fcl.DistanceResult()
+        distance = fcl.distance(self._head, segment, _REQUEST, result)
+        on_head, triangle = result.nearest_points[0], result.b1
         if distance <= 0.0:
             point, normal = self._surface.crossing(triangle, start, end)
             return Nearest(-radius, point, normal, triangle)
@@ -202,11 +205,6 @@ class HeadSurface:
         """Return whether the segment between two points goes through the surface."""
         segment = thin_segment(np.array(start), np.array(end))
         return fcl.collide(self._head, segment, _ANY, fcl.CollisionResult()) > 0
-
-    def _query(self, other: fcl.CollisionObject) -> tuple[float, np.ndarray, int]:
-        result = fcl.DistanceResult()
-        distance = fcl.distance(self._head, other, _REQUEST, result)
-        return distance, result.nearest_points[0], result.b1
 
     def _signed(
         self,

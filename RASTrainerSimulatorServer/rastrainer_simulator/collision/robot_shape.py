@@ -6,15 +6,18 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.transforms import apply, rigid
 from rastrainer_simulator.robot.meshes import load_meshes
-from rastrainer_simulator.robot.model import RobotLink, RobotModel, read_prepared
+from rastrainer_simulator.robot.model import RobotModel, read_prepared
 from rastrainer_simulator.vectors import Vector
+
+if TYPE_CHECKING:
+    from rastrainer_simulator.robot.meshes import ColoredMesh
 
 _LONG = 1.35  # A solid longer than this times its width gets a capsule for each half.
 _FIRST_STEP, _LAST_STEP = 0.02, 0.0003
@@ -128,10 +131,6 @@ def sphere_directions(count: int = 200) -> np.ndarray:
 SHAFT_START = 0.003
 """Distance behind the tip, m, from which the tool is a shaft that must not touch the head."""
 
-Mesh = tuple[np.ndarray, np.ndarray]
-"""Vertices (n, 3) float, m, and triangles (m, 3) int."""
-
-_ROD_RADIUS = 0.003
 _LINK_SPACING = 0.01
 _TOOL_SPACING = 0.0005
 _DECIMALS = 9
@@ -177,30 +176,25 @@ def load_shape(model: RobotModel) -> RobotShape:
 def robot_shape(model: RobotModel) -> RobotShape:
     """Return the capsules that cover the collision meshes of a robot.
 
-    The tool is the link behind the last joint whose mesh comes nearest to the tip; where none has
-    a mesh, it is a thin rod from the tip to the wrist. Any other link without a collision mesh
-    collides with nothing, as in any URDF.
+    The tool is the outermost link with a mesh. Any other link without a collision mesh collides
+    with nothing, as in any URDF.
     """
-    links = {link.name: link for link in model.links}
-    meshes = {
-        name: [(np.asarray(mesh.vertices), np.asarray(mesh.faces)) for mesh, _ in parts]
-        for name, parts in load_meshes(model, "collision").items()
-    }
-
-    def distance_to_tip(link: RobotLink) -> float:
-        tip = (np.linalg.inv(link.offset) @ model.tip.offset)[:3, 3]
-        return min(
-            np.linalg.norm(vertices - tip, axis=1).min() for vertices, _ in meshes[link.name]
-        )
-
-    behind = [link for link in model.links if link.joint == 7 and link.name in meshes]
-    tool = min(behind, key=distance_to_tip, default=model.tip)
-    tool_capsules = _tool_capsules(model, tool, meshes.pop(tool.name, []))
+    meshes = load_meshes(model, "collision")
+    *links, tool = (link for link in model.links if link.name in meshes)
     shapes = []
-    for name, parts in meshes.items():
-        capsules = covering_capsules(_points(parts, _LINK_SPACING), _LINK_SPACING)
-        shapes.append(LinkShape(name, links[name].joint, _rounded(capsules)))
-    tool_shape = LinkShape(tool.name, tool.joint, _rounded(tool_capsules))
+    for link in links:
+        capsules = covering_capsules(_points(meshes[link.name], _LINK_SPACING), _LINK_SPACING)
+        shapes.append(LinkShape(link.name, link.joint, _rounded(capsules)))
+    # A frame in the tip's frame, whose z runs up the tool.
+    up = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
+    shaft_to_tip = rigid(up, np.zeros(3))
+    tool_to_shaft = np.linalg.inv(model.tip.offset @ shaft_to_tip) @ tool.offset
+    points = apply(tool_to_shaft, _points(meshes[tool.name], _TOOL_SPACING))
+    moved = []
+    for capsule in capsules_along(points, SHAFT_START):
+        start, end = apply(shaft_to_tip, np.array([capsule.start, capsule.end]))
+        moved.append(Capsule(start, end, capsule.radius))
+    tool_shape = LinkShape(tool.name, tool.joint, _rounded(tuple(moved)))
     return RobotShape(tuple(shapes), tool_shape, model.tip.name)
 
 
@@ -216,26 +210,13 @@ def _rounded(capsules: tuple[Capsule, ...]) -> tuple[Capsule, ...]:
     )
 
 
-def _points(parts: list[Mesh], spacing: float) -> np.ndarray:
-    return np.concatenate([surface_points(*part, spacing) for part in parts])
-
-
-def _tool_capsules(model: RobotModel, tool: RobotLink, parts: list[Mesh]) -> tuple[Capsule, ...]:
-    """Return the capsules, in the tip's frame, of a tool whose mesh is in its link's frame."""
-    # The pose, in the tip's frame, of a frame there whose z runs up the tool.
-    up = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
-    shaft_to_tip = rigid(up, np.zeros(3))
-    if parts:
-        tool_to_shaft = np.linalg.inv(model.tip.offset @ shaft_to_tip) @ tool.offset
-        capsules = capsules_along(apply(tool_to_shaft, _points(parts, _TOOL_SPACING)), SHAFT_START)
-    else:
-        ends = np.outer((SHAFT_START, model.arm.tool), (0.0, 0.0, 1.0))
-        capsules = (Capsule(ends[0], ends[1], _ROD_RADIUS),)
-    moved = []
-    for capsule in capsules:
-        start, end = apply(shaft_to_tip, np.array([capsule.start, capsule.end]))
-        moved.append(Capsule(start, end, capsule.radius))
-    return tuple(moved)
+def _points(parts: list[ColoredMesh], spacing: float) -> np.ndarray:
+    return np.concatenate(
+        [
+            surface_points(np.asarray(mesh.vertices), np.asarray(mesh.faces), spacing)
+            for mesh, _color in parts
+        ]
+    )
 
 
 _SLICE = 0.0005

@@ -88,7 +88,7 @@ def start_joints(robot: RobotModel, scenario: Scenario, height: float) -> tuple[
 def start_tip(scenario: Scenario, height: float) -> Vector:
     """Return where the tip is at the start: `height` m above the head's target, World, m."""
     rotation, shift = scenario.head_to_world[:3, :3], scenario.head_to_world[:3, 3]
-    x, y, z = (np.asarray(rotation @ scenario.target_position + shift) / MM_PER_M).tolist()
+    x, y, z = (np.asarray(rotation @ scenario.target.position_ras + shift) / MM_PER_M).tolist()
     return x, y, z + height
 
 

@@ -13,16 +13,32 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from rastrainer.commands import COMMANDS, CommandName, check_arguments
 from rastrainer.errors import InputError
+from rastrainer.journal.entries import (
+    Aborted,
+    Attempt,
+    CameraChange,
+    CommandDone,
+    Continued,
+    Entry,
+    JournalHeader,
+    Line,
+    PhaseChange,
+    ProximityChange,
+    Reach,
+    Registered,
+    Sample,
+    StartingPoint,
+    TracePoint,
+)
 from rastrainer.journal.folder import newest_journal
 from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, JournalReading, read_journal
 from rastrainer.protocol import Phase, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.procedure_motion import FEED_PHASES
-from rastrainer_simulator.state import OperatorCommand, StartingPoint
+from rastrainer_simulator.state import OperatorCommand
 from rastrainer_simulator.training.feed import NO_FEED, Feed, HeadAhead
 from rastrainer_simulator.training.rules import INTERRUPTED, RECORDING_FAILED, TRACED, TouchMoment
 from rastrainer_simulator.training.trial_start import DRAWN_SEED
@@ -43,15 +59,14 @@ def refusing_malformed(sentence: str) -> Iterator[None]:
 MALFORMED = "A journal entry is malformed"
 
 
-def seed_of(header: Mapping[str, Any]) -> int:
+def seed_of(header: JournalHeader) -> int:
     """Return the seed of the head's pose; raise `InputError` if the journal does not reveal it."""
-    if "seed" not in header:
+    if header.seed is None:
         raise InputError(
             "The journal of a trial that was not ended does not tell where the head was: keep the "
-            f"file of the same name with the ending {SEED_SUFFIX} beside it."
+            f"file of the same name with the ending {SEED_SUFFIX} next to it."
         )
-    seed: int = header["seed"]
-    return seed
+    return header.seed
 
 
 class RecordedFeed:
@@ -62,27 +77,31 @@ class RecordedFeed:
         self._ahead = HeadAhead()
         self._stage = Phase.RUNNING
 
-    def before(self, effect: Mapping[str, Any]) -> Feed:
-        """Return the feed with which a command had an effect."""
+    def before(self, effect: Entry) -> Feed:
+        if not isinstance(effect, PhaseChange):
+            return Feed(ahead=self._ahead)
+        found = effect.ahead
         ahead = self._ahead
-        if "ahead" in effect:
-            found = (effect["ahead"][name] for name in ("skinMm", "outerMm", "innerMm"))
-            ahead = HeadAhead(*(None if each is None else meters(each) for each in found))
-        drilled = meters(effect.get("drilledMm", 0.0))
-        return Feed(meters(effect.get("feedMm", 0.0)), drilled, ahead)
+        if found is not None:
+            distances = (found.skin_mm, found.outer_mm, found.inner_mm)
+            ahead = HeadAhead(*(None if mm is None else meters(mm) for mm in distances))
+        return Feed(meters(effect.feed_mm or 0.0), meters(effect.drilled_mm or 0.0), ahead)
 
-    def take(self, entry: Mapping[str, Any]) -> None:
-        if entry["kind"] == "sample" and "feedMm" in entry:
-            depth = meters(entry["feedMm"])
+    def take(self, entry: Entry) -> None:
+        if isinstance(entry, Sample) and entry.feed_mm is not None:
+            depth = meters(entry.feed_mm)
             deepest = depth if self._stage is Phase.DRILLING else 0.0
             drilled = max(self.feed.drilled, deepest)
             self.feed = replace(self.feed, depth=depth, drilled=drilled)
-        elif entry["kind"] == "phase" and "procedure" in entry:
-            stage, feed = Phase(entry["procedure"]["stage"]), self.before(entry)
-            if self._stage is Phase.DRILLING and stage is Phase.INSERTING:
-                feed = replace(feed, depth=0.0)  # The drill was exchanged for the electrode.
+        elif isinstance(entry, PhaseChange) and entry.procedure is not None:
+            stage = entry.procedure.stage
+            is_exchanged = self._stage is Phase.DRILLING and stage is Phase.INSERTING
+            feed = self.before(entry)
             self._stage, self._ahead = stage, feed.ahead
-            self.feed = feed if stage in FEED_PHASES else NO_FEED
+            if stage not in FEED_PHASES:
+                self.feed = NO_FEED
+            else:
+                self.feed = replace(feed, depth=0.0) if is_exchanged else feed
 
 
 def meters(value_mm: float) -> float:
@@ -92,7 +111,6 @@ def meters(value_mm: float) -> float:
     return next((each for each in candidates if MM_PER_M * each == value_mm), near)
 
 
-_OVER = frozenset({"registered", "aborted", "attempt"})
 _EFFECTS: Mapping[str, frozenset[str]] = {
     **{each: each.entries for each in COMMANDS.values() if each.entries},
     RECORDING_FAILED: frozenset({"phase"}),
@@ -102,7 +120,7 @@ _EFFECTS: Mapping[str, frozenset[str]] = {
 
 @dataclass(frozen=True)
 class InterruptedTrial:
-    """The point at which a trial resumes, by its last records.
+    """Where a trial is to be resumed, by what was recorded last.
 
     `steps` are the commands that were carried out, each with its moment; the last one pauses.
     `q` are joint angles in rad, None before the first sample.
@@ -119,30 +137,37 @@ class InterruptedTrial:
 
     @classmethod
     @refusing_malformed(MALFORMED)
-    def of(cls, entries: Sequence[Mapping[str, Any]]) -> InterruptedTrial | None:
-        """Read the entries of a journal; None if no trial is open."""
-        if any(entry["kind"] in _OVER for entry in entries):
+    def of(cls, lines: Sequence[Line]) -> InterruptedTrial | None:
+        """Read the lines of a journal; None if no trial is open."""
+        if any(isinstance(line.entry, Registered | Aborted | Attempt) for line in lines):
             return None
-        header = entries[0]
-        seed_of(header)
+        header = lines[0].entry
+        assert isinstance(header, JournalHeader), "a journal begins with one"
         recorded = RecordedFeed()
-        steps = list(_steps(entries, header["tickS"], recorded))
+        steps = list(_steps(lines, header, recorded))
         if not steps:
             return None
-        last = max(entries, key=lambda entry: entry["tick"])
-        steps.append((OperatorCommand(INTERRUPTED), TouchMoment(last["simTimeS"], ZERO, 0.0)))
-        latest = {entry["kind"]: entry for entry in entries}
-        cameras = [each["camera"] for each in entries if each["kind"] in ("camera", "continued")]
-        camera = cameras[-1] if cameras else header["before"]["camera"]
-        reach = latest.get("reach", {"isWithinReach": True, "obstacle": ""})
+        last = max(lines, key=lambda line: line.at.tick).at
+        steps.append((OperatorCommand(INTERRUPTED), TouchMoment(last.sim_time_s, ZERO, 0.0)))
+        camera, q, proximity, reach = header.before.camera, None, Proximity.FREE, Reach(True, "")
+        for _at, entry in lines:
+            match entry:
+                case CameraChange() | Continued():
+                    camera = entry.camera
+                case Sample():
+                    q = entry.q
+                case ProximityChange():
+                    proximity = entry.to
+                case Reach():
+                    reach = entry
         return cls(
-            revision_before=header["before"]["revision"],
+            revision_before=header.before.revision,
             steps=tuple(steps),
-            point=StartingPoint(last["tick"], last["simTimeS"], camera=camera),
-            q=tuple(map(float, latest["sample"]["q"])) if "sample" in latest else None,
-            proximity=Proximity(latest["proximity"]["to"] if "proximity" in latest else "free"),
-            is_within_reach=reach["isWithinReach"],
-            obstacle=reach["obstacle"],
+            point=StartingPoint(last.tick, last.sim_time_s, 0, camera),
+            q=q,
+            proximity=proximity,
+            is_within_reach=reach.is_within_reach,
+            obstacle=reach.obstacle,
             feed=recorded.feed,
         )
 
@@ -150,7 +175,8 @@ class InterruptedTrial:
 def find_interrupted(folder: Path) -> tuple[JournalReading, InterruptedTrial] | None:
     """Return the journal of the newest trial in a folder, and where to resume it.
 
-    None if that trial was registered or aborted; older trials are not looked at.
+    None if that trial was registered or aborted: anyone who has started another trial has left an
+    older one behind.
     """
     path = newest_journal(folder)
     if path is None or path.stat().st_size == 0:
@@ -158,51 +184,54 @@ def find_interrupted(folder: Path) -> tuple[JournalReading, InterruptedTrial] | 
     reading = read_journal(path)
     if reading.integrity is Integrity.ALTERED:
         raise InputError(f"{reading.path} is {reading.sentence}; the trial cannot be continued.")
-    trial = InterruptedTrial.of(reading.entries) if reading.entries else None
+    trial = InterruptedTrial.of(tuple(reading.lines())) if reading.entries else None
     return None if trial is None else (reading, trial)
 
 
-def recorded_command(entry: Mapping[str, Any], seed: int) -> OperatorCommand:
+def recorded_command(recorded: CommandDone, seed: int) -> OperatorCommand:
     """Return a recorded command; its arguments are checked, as the file may be forged."""
-    name = entry["name"]
-    arguments = {key: value for key, value in entry["arguments"].items() if value is not None}
+    name = recorded.name
+    arguments = {key: value for key, value in recorded.arguments.items() if value is not None}
     if name == RECORDING_FAILED:
         return OperatorCommand(name, arguments)
     own = {}
     if name == CommandName.START_TASK:
         own = {"trialId": arguments.pop("trialId"), DRAWN_SEED: seed}
-    return OperatorCommand(name, check_arguments(name, arguments) | own, 0, entry["sender"])
+    return OperatorCommand(name, check_arguments(name, arguments) | own, 0, recorded.sender)
 
 
 def _steps(
-    entries: Sequence[Mapping[str, Any]], tick_s: float, recorded: RecordedFeed
+    lines: Sequence[Line], header: JournalHeader, recorded: RecordedFeed
 ) -> Iterator[tuple[OperatorCommand, TouchMoment]]:
     """Yield what changed the trial.
 
     A command whose effect is not in the journal was refused, or the server ended before the effect
     was written: no client has seen it.
     """
-    for _tick, group in itertools.groupby(entries, key=lambda entry: entry["tick"]):
+    seed = seed_of(header)
+    for _tick, group in itertools.groupby(lines, key=lambda line: line.at.tick):
         together = list(group)
-        for number, entry in enumerate(together):
+        for number, (at, entry) in enumerate(together):
             recorded.take(entry)
-            if entry["kind"] == "continued":
-                yield OperatorCommand(INTERRUPTED), TouchMoment(entry["sinceS"], ZERO, 0.0)
-            if entry["kind"] == "trace":
+            if isinstance(entry, Continued):
+                yield OperatorCommand(INTERRUPTED), TouchMoment(entry.since_s, ZERO, 0.0)
+            if isinstance(entry, TracePoint):
                 # It was left at the end of its tick, unlike the effect of a command.
-                place = vector(map(meters, entry["positionMm"]))
-                yield OperatorCommand(TRACED), TouchMoment(entry["simTimeS"], place, 0.0)
-            if entry["kind"] != "command" or entry["name"] not in _EFFECTS:
+                place = vector(map(meters, entry.position_mm))
+                yield OperatorCommand(TRACED), TouchMoment(at.sim_time_s, place, 0.0)
+            if not isinstance(entry, CommandDone) or entry.name not in _EFFECTS:
                 continue
-            kinds = _EFFECTS[entry["name"]]
-            effect = next((each for each in together[number:] if each["kind"] in kinds), None)
+            kinds = _EFFECTS[entry.name]
+            effects = (each.entry for each in together[number:])
+            effect = next((each for each in effects if each.kind in kinds), None)
             if effect is not None:
                 # Commands are carried out at the state reached, one tick before their line.
+                place = getattr(effect, "position_mm", None) or ZERO
                 moment = TouchMoment(
-                    sim_time=entry["simTimeS"] - tick_s,
-                    tip=vector(map(meters, effect.get("positionMm", ZERO))),
-                    tip_clearance=float(effect.get("clearanceMm", 0.0)) / MM_PER_M,
-                    direction=vector(effect.get("direction", ZERO)),
+                    sim_time=at.sim_time_s - header.tick_s,
+                    tip=vector(map(meters, place)),
+                    tip_clearance=getattr(effect, "clearance_mm", 0.0) / MM_PER_M,
+                    direction=getattr(effect, "direction", None) or ZERO,
                     feed=recorded.before(effect),
                 )
-                yield recorded_command(entry, seed_of(entries[0])), moment
+                yield recorded_command(entry, seed), moment

@@ -8,14 +8,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.head.mesh import HeadMesh, mesh_crossings, read_head_mesh
+from rastrainer.journal.entries import FeedChange
 from rastrainer.procedure.checks import planned_bone
-from rastrainer.procedure.geometry import BoneAhead, bone_ahead, mesh_crossings
+from rastrainer.procedure.geometry import BoneAhead, bone_ahead
 from rastrainer.protocol import Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.state import Event, EventKind, OperatorInput
+from rastrainer_simulator.state import Event, OperatorInput
 from rastrainer_simulator.teleoperation.commanded_motion import FollowingPath
 from rastrainer_simulator.texts.texts import LocalizedText, say
 from rastrainer_simulator.training.feed import LONGEST_FEED_M, NO_FEED, Feed, FeedDrive, HeadAhead
@@ -68,15 +69,14 @@ class ProcedureMotion:
         self.drive = FeedDrive(settings.procedure, settings.teleoperation.response)
         self.planned_bone: PlannedBone = {}
         if scenario.procedures:
-            assert scenario.skull_mesh is not None, "a scenario with procedures has a skull"
-            self._skin, self._skull = head, read_head_mesh(scenario.skull_mesh)
+            self._skin, self._skull = head, read_head_mesh(scenario.skull_path)
             # Computed now, not in the tick in which the first guide is locked.
             _ = head.triangle_spheres, self._skull.triangle_spheres
             self.planned_bone = {
                 each.name: tuple(planned_bone(line, self._skull) for line in each.trajectories)
                 for each in scenario.procedures
             }
-            self._outline = HeadOutline(head.vertices, scenario.target_position)
+            self._outline = HeadOutline(head.vertices, scenario.target.position_ras)
 
     def reset(self, feed: Feed = NO_FEED) -> None:
         """Adopt a feed, and end a commanded one."""
@@ -115,10 +115,8 @@ class ProcedureMotion:
         has_moved = self.feed.depth != before.depth
         if layer is before.layer(phase):
             return Fed(has_moved, is_by_stick)
-        depth_mm = MM_PER_M * self.feed.depth
-        data = {"phase": phase.value, "layer": layer.value, "feedMm": depth_mm}
-        event = Event(EventKind.FEED, sim_time, data)
-        return Fed(has_moved, is_by_stick, (event,))
+        entry = FeedChange(phase, layer.value, MM_PER_M * self.feed.depth)
+        return Fed(has_moved, is_by_stick, (Event(sim_time, entry),))
 
     def way(
         self, guide: GuideAxis, procedure: ProcedureState | None, stand_off_mm: float

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
+from rastrainer.journal.entries import JournalHeader, RecordedContent, RecordedMethod, RecordedSetup
+from rastrainer.json_records import record_to_json
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import FILE_NAME, Scenario, load_scenario
 from rastrainer_simulator.assets import asset_path
@@ -18,33 +20,6 @@ from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.robot.model import RobotModel, load_robot
 
 DEFAULT_SCENARIO = ("scenarios", "colin27")
-
-
-@dataclass(frozen=True)
-class RecordedContent:
-    """Name and hash of a scenario or a procedure."""
-
-    name: str
-    sha256: str
-
-
-@dataclass(frozen=True)
-class RecordedMethod:
-    """The method of a trial without fiducials, and the hash of the scenario's landmarks."""
-
-    name: str
-    landmarks_sha256: str
-
-
-@dataclass(frozen=True)
-class RecordedSetup:
-    """Identifies a setup in the header of a journal."""
-
-    scenario: RecordedContent
-    robot: str
-    settings: SimulationSettings
-    procedure: RecordedContent | None = None
-    method: RecordedMethod | None = None
 
 
 @dataclass(frozen=True)
@@ -70,14 +45,14 @@ class SimulationSetup:
         return RecordedSetup(
             RecordedContent(self.scenario.name, self.scenario_sha256),
             self.robot.name,
-            self.settings,
+            record_to_json(self.settings, with_defaults=True),
             RecordedContent(procedure, self.procedure_sha256.get(procedure, ""))
             if procedure
             else None,
-            RecordedMethod(method.value, self.landmarks_sha256) if by_landmarks else None,
+            RecordedMethod(method, self.landmarks_sha256) if by_landmarks else None,
         )
 
-    def difference(self, recorded: RecordedSetup) -> str:
+    def difference(self, recorded: RecordedSetup | JournalHeader) -> str:
         """Return what a trial was recorded with that is not the same here, "" for nothing."""
         procedure, method = recorded.procedure, recorded.method
         if recorded.scenario.sha256 != self.scenario_sha256:
@@ -97,7 +72,6 @@ def load_setup(
     """Load a scenario and a robot; by default those that come with RASTrainer."""
     scenario = load_scenario(scenario_folder or asset_path(*DEFAULT_SCENARIO))
     robot = load_robot(robot_meshes)
-    skull = scenario.skull_mesh
     return SimulationSetup(
         scenario=scenario,
         robot=robot,
@@ -105,9 +79,10 @@ def load_setup(
         settings=settings or SimulationSettings(),
         scenario_sha256=scenario_sha256(scenario),
         landmarks_sha256=landmarks_sha256(scenario),
-        procedure_sha256={}
-        if skull is None
-        else {procedure.name: procedure.sha256(skull) for procedure in scenario.procedures},
+        procedure_sha256={
+            procedure.name: procedure.sha256(scenario.skull_path)
+            for procedure in scenario.procedures
+        },
     )
 
 
@@ -121,7 +96,7 @@ def scenario_sha256(scenario: Scenario) -> str:
     whole = hashlib.sha256()
     for content in (
         _without(scenario.folder / FILE_NAME, left_out),
-        scenario.head_mesh.read_bytes(),
+        scenario.head.read_bytes(),
     ):
         whole.update(hashlib.sha256(content).digest())
     for task in scenario.tasks:

@@ -10,6 +10,8 @@ import numpy as np
 
 from rastrainer.commands import CommandName
 from rastrainer.head.mesh import read_head_mesh
+from rastrainer.journal import entries
+from rastrainer.journal.entries import StartingPoint
 from rastrainer.protocol import Phase, Proximity
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
@@ -24,13 +26,11 @@ from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.state import (
     Answer,
     Event,
-    EventKind,
     Motion,
     OperatorCommand,
     OperatorInput,
     PlanInWorld,
     SimulationState,
-    StartingPoint,
     StepResult,
 )
 from rastrainer_simulator.teleoperation.commanded_motion import (
@@ -65,8 +65,8 @@ class Simulation:
     """The robot, the head and the trial.
 
     `step` is deterministic: the same setup, seed and inputs give the same states to the last bit.
-    A trial always starts with the arm above the head, whatever came before: a replay needs only
-    the trial's own inputs.
+    A trial always starts with the arm above the head and keeps nothing from before: a replay needs
+    only the trial's own inputs.
     """
 
     def __init__(self, setup: SimulationSetup, seed: int) -> None:
@@ -79,9 +79,9 @@ class Simulation:
         self._camera_axes = {name: axes_of(camera) for name, camera in cameras.items()}
         self._planned_target: PlanInWorld | None = None
         self._teleoperation = Teleoperation(settings.teleoperation)
-        head = read_head_mesh(setup.scenario.head_mesh)
+        head = read_head_mesh(setup.scenario.head)
         self._head_base = head.base / MM_PER_M
-        self._collision = head_collision(setup.shape, head, setup.scenario.furniture)
+        self._collision = head_collision(setup.shape, head, setup.scenario)
         kinematics = make_kinematics(setup.robot)
         self.kinematics_name = type(kinematics).__name__
         self._contact = Contact(self._collision, kinematics)
@@ -145,8 +145,7 @@ class Simulation:
         motion_request = self._motion_request(dt, operator_input)
         sim_time = before.sim_time + dt
         if motion_request.ended is not None:
-            data = {"outcome": motion_request.ended.value}
-            events.append(Event(EventKind.MOTION, sim_time, data))
+            events.append(Event(sim_time, entries.MotionEnd(motion_request.ended.value)))
         if motion_request.motion is not Motion.NONE:
             events.extend(self._move(dt, motion_request, sim_time))
             if motion_request.motion is Motion.STICK:
@@ -160,11 +159,14 @@ class Simulation:
         motion = Motion.FEED if fed.has_moved else motion_request.motion
         self.state = self._state(before.tick + 1, sim_time, motion)
         if self._proximity is not proximity:
-            change: dict[str, Any] = {"from": proximity.value, "to": self._proximity.value}
-            change["clearanceMm"] = MM_PER_M * self.state.clearance
-            if proximity is Proximity.CONTACT:
-                change["depthMm"] = MM_PER_M * self._pressing.deepest
-            events.append(Event(EventKind.PROXIMITY, sim_time, change))
+            was_contact = proximity is Proximity.CONTACT
+            change = entries.ProximityChange(
+                from_=proximity,
+                to=self._proximity,
+                clearance_mm=MM_PER_M * self.state.clearance,
+                depth_mm=MM_PER_M * self._pressing.deepest if was_contact else None,
+            )
+            events.append(Event(sim_time, change))
         return StepResult(self.state, tuple(events), tuple(answers))
 
     def _carry_out(self, command: OperatorCommand, sim_time: float) -> TrainingReply:
@@ -178,9 +180,10 @@ class Simulation:
             return TrainingReply(True, data=listed(self.setup.scenario))
         if command.name == CommandName.SET_CAMERA:
             self._camera = arguments["camera"]
-            return TrainingReply(True, events=(Event(EventKind.CAMERA, sim_time, dict(arguments)),))
+            event = Event(sim_time, entries.CameraChange(arguments["camera"]))
+            return TrainingReply(True, events=(event,))
         if command.name == CommandName.PLAN_TARGET:
-            return self._plan(arguments, sim_time)
+            return self._plan(arguments)
         if command.name == CommandName.FEED:
             self._procedure_motion.drive.start(arguments["velocityMmS"], arguments["durationS"])
             self._operator = command.sender
@@ -203,14 +206,13 @@ class Simulation:
         self._operator = command.sender
         return TrainingReply(True)
 
-    def _plan(self, arguments: Mapping[str, Any], sim_time: float) -> TrainingReply:
+    def _plan(self, arguments: Mapping[str, Any]) -> TrainingReply:
         """Show a planned target, and answer whether the robot can reach it."""
         position, entry = in_meters(arguments["positionMm"]), arguments["entryMm"]
         entry = None if entry is None else in_meters(entry)
         answer = self._plan_reach.judge(position, entry)
         self._planned_target = PlanInWorld(arguments["name"], position, entry, answer.reachable)
-        event = Event(EventKind.PLAN, sim_time, {**arguments, "reachable": answer.reachable})
-        return TrainingReply(True, data=answer._asdict(), events=(event,))
+        return TrainingReply(True, data=answer._asdict())
 
     def _motion_request(self, dt: float, operator_input: OperatorInput) -> MotionRequest:
         """Return the requested motion; none while the trial is paused or the guide locked."""
@@ -278,8 +280,7 @@ class Simulation:
         self._obstacle = moved.stopped_by if moved.stopped_by in BEHIND_THE_TOOL else ""
         if before == (self._is_within_reach, self._obstacle):
             return []
-        data = {"isWithinReach": self._is_within_reach, "obstacle": self._obstacle}
-        return [Event(EventKind.REACH, sim_time, data)]
+        return [Event(sim_time, entries.Reach(self._is_within_reach, self._obstacle))]
 
     def _reached(self, dt: float, motion_request: MotionRequest) -> Moved:
         q, tip = self._moved.q, self._tip.position

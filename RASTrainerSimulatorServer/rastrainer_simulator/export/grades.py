@@ -26,8 +26,8 @@ def grade(
     """Return the score of the trial that counts, 0 to 100; None without an acceptable one.
 
     A trial that is not acceptable gives no grade: its registration would have misled an
-    instrument. Of a trainee's attempts, in order of starting, those of `task`, `mode` (None for
-    any) and `method` count: scores of different methods are not compared.
+    instrument. The trials are a trainee's attempts, in order of starting. A trial counts if it has
+    the `task`, the `mode` (None for any) and the `method`, since methods are not compared.
     """
     scores = [
         trial.score

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from rastrainer.commands import CommandName
+from rastrainer.journal.entries import FeedChange, PhaseChange, Reach, Rejected
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.pages.session_page import clickable_hint
 from rastrainer_simulator.flow.session.operator_device import SHOW, TILT
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
 from rastrainer_simulator.presentation.screen import PRESS, Hint, Screen, ScreenMessage, Tone
-from rastrainer_simulator.state import Event, EventKind, SimulationState, TouchStage
+from rastrainer_simulator.state import Event, SimulationState, TouchStage
 from rastrainer_simulator.teleoperation.steering import ROBOT_AXES, Axes, AxesChoice, camera_axes
 from rastrainer_simulator.vectors import (
     ZERO,
@@ -62,15 +63,16 @@ class ArmEvents:
     layer: str = ""
 
     def note_event(self, event: Event, tip: Vector) -> None:
-        if event.kind is EventKind.REJECTED:
-            self.refusal, self.refused_at = event.data["message"], tip
-        elif event.kind is EventKind.REACH:
-            self.is_within_reach = event.data["isWithinReach"]
-            self.obstacle = event.data["obstacle"]
-        elif event.kind is EventKind.FEED:
-            self.layer = event.data["layer"]
-        elif event.kind is EventKind.PHASE:
-            self.layer = ""
+        match event.entry:
+            case Rejected(message=message):
+                self.refusal, self.refused_at = message, tip
+            case Reach():
+                self.is_within_reach = event.entry.is_within_reach
+                self.obstacle = event.entry.obstacle
+            case FeedChange(layer=layer):
+                self.layer = layer
+            case PhaseChange():
+                self.layer = ""
 
 
 class ArmScreen:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from rastrainer.journal.entries import GhostReport, GuidanceReport
 from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, GhostRule, Guidance, Phase
 from rastrainer_simulator.flow.arm_screen import ArmEvents
 from rastrainer_simulator.flow.pages.experiment import open_experiment
@@ -28,7 +29,6 @@ from rastrainer_simulator.flow.tutorial_screen import TutorialScreen
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.feedback_event import touch_feedback
 from rastrainer_simulator.presentation.screen import Hint, Menu, Screen, ScreenMessage, Tone
-from rastrainer_simulator.record.trial_context import GhostReport, GuidanceReport
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.state import Answer, SimulationState, StepResult, TouchStage, TrialResult
 from rastrainer_simulator.texts.texts import key_of

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from rastrainer.commands import CommandName
+from rastrainer.journal.entries import DisplayReport, ViewReport
 from rastrainer.protocol import Mode
 from rastrainer_simulator.flow.flow import Flow
 from rastrainer_simulator.flow.operated_views import OperatedView, OperatedViews
@@ -34,7 +35,6 @@ from rastrainer_simulator.presentation.feedback_event import (
 from rastrainer_simulator.presentation.messages import Hello, InstructorOrder, Seat
 from rastrainer_simulator.presentation.presenter import Control, Presenter, TraceGuidance
 from rastrainer_simulator.presentation.screen import PRESS, Tone
-from rastrainer_simulator.record.trial_context import DisplayReport, ViewReport
 from rastrainer_simulator.replay.playback import PlaybackSwitch
 from rastrainer_simulator.state import (
     NEUTRAL_STICKS,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rastrainer.commands import CommandName
+from rastrainer.journal.entries import GUIDED_TOUCHES
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.arm import start_tip
 from rastrainer_simulator.flow.arm_screen import ArmEvents, ArmScreen
@@ -20,7 +21,6 @@ from rastrainer_simulator.flow.tutorial.tutorial import CENTERED_M, Tutorial
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 from rastrainer_simulator.presentation.screen import ErrorArrow, Hint, Screen, ScreenMessage, Tone
-from rastrainer_simulator.record.trial_context import GUIDED_TOUCHES
 from rastrainer_simulator.state import SimulationState, TouchStage
 from rastrainer_simulator.training.training import TrainingReply
 from rastrainer_simulator.vectors import Vector, distance

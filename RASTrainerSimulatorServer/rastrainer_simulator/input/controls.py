@@ -73,7 +73,7 @@ class Controls:
         self.situation = ControlContext.MENU
         self._listener = listener
         self._may_be_taken = may_be_taken
-        self._states: dict[Source, InputState] = {}
+        self._states: dict[Source | None, InputState] = {}
         self._idle = 0.0
         self._repeating: tuple[Source, str, ControlName] | None = None
         self._repeat_in = 0.0
@@ -87,13 +87,13 @@ class Controls:
     @property
     def held(self) -> OperatorInput:
         """The deflection of the holder's sticks, whether or not they move the arm."""
-        state = self._held_state
+        state = self._states.get(self.holder)
         return NEUTRAL_STICKS if state is None else state.sticks(self.bindings)
 
     @property
     def view(self) -> tuple[float, float, float]:
         """The holder's commands to the view: around to the right, higher, nearer; −1…1 each."""
-        state = self._held_state
+        state = self._states.get(self.holder)
         if state is None or self.situation is ControlContext.MENU:
             return 0.0, 0.0, 0.0
         around, higher, nearer = state.pushed(self.bindings.table(state.device), VIEW)
@@ -103,16 +103,12 @@ class Controls:
         return self.holder is None or self.holder.station == source.station
 
     @property
-    def _held_state(self) -> InputState | None:
-        """The inputs of the holder; None if no one has control or they are unknown."""
-        return None if self.holder is None else self._states.get(self.holder)
-
-    @property
     def has_gamepad(self) -> bool:
         """Whether a gamepad is plugged in here, or a browser's gamepad has moved."""
         return any(
             source.kind in (SourceKind.GAMEPAD, SourceKind.BROWSER_GAMEPAD)
             for source in self._states
+            if source
         )
 
     def add(self, source: Source) -> InputState:
@@ -175,7 +171,7 @@ class Controls:
         """Advance presses, repeated steps in menus, and idle time by `dt` seconds."""
         for state in self._states.values():
             state.advance(dt)
-        held = self._held_state
+        held = self._states.get(self.holder)
         self._idle = self._idle + dt if held is None or held.is_at_rest else 0.0
         if self._repeating is None:
             return
@@ -192,7 +188,7 @@ class Controls:
         """Let pushed sticks pass on control within a station, or to a first operator."""
         if source == self.holder or state.is_at_rest:
             return
-        holding = self._held_state
+        holding = self._states.get(self.holder)
         if self.holder is None or (
             self.holder.station == source.station and (holding is None or holding.is_at_rest)
         ):

@@ -15,7 +15,8 @@ from typing import Any
 
 from rastrainer.commands import COMMANDS, CommandName
 from rastrainer.errors import RASTrainerError
-from rastrainer.journal.journal_file import JournalReading, stamp
+from rastrainer.journal.entries import PlayingSession, Report, Stamp
+from rastrainer.journal.journal_file import JournalReading
 from rastrainer.protocol import FINISHED_PHASES, OPEN_PHASES
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
@@ -29,7 +30,6 @@ from rastrainer_simulator.loop.timing import (
     sleep_until,
 )
 from rastrainer_simulator.record.trial_archive import TrialArchive
-from rastrainer_simulator.record.trial_context import NotedReport, PlayingSession
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
 from rastrainer_simulator.state import (
     NEUTRAL_STICKS,
@@ -37,7 +37,6 @@ from rastrainer_simulator.state import (
     OperatorCommand,
     OperatorInput,
     SimulationState,
-    StartingPoint,
     StepResult,
 )
 from rastrainer_simulator.texts.texts import say
@@ -104,7 +103,7 @@ class ControlLoop:
         self._held = DurableResults(self._state.training)
         self._sticks = NEUTRAL_STICKS
         self._arrived: deque[OperatorCommand] = deque()
-        self._displayed: deque[NotedReport] = deque()
+        self._displayed: deque[Report] = deque()
         self.note_display = self._displayed.append
         """Records in the trial's journal what its views show."""
         self._answers = PendingAnswers()
@@ -211,7 +210,7 @@ class ControlLoop:
         if self._successor is not None and not self._held.is_waiting:
             self.simulation, ticket = self._successor
             self._successor = None
-            self.simulation.restart_from(StartingPoint.after(self._state))
+            self.simulation.restart_from(self._state.starting_point)
             self._answers.give(Answer(ticket, True))
         commands = self._commands()
         operator_input = replace(self._sticks, commands=commands) if commands else self._sticks
@@ -279,11 +278,11 @@ class ControlLoop:
         return not is_present or training.phase in FINISHED_PHASES
 
     def _query_archive(self, command: OperatorCommand) -> None:
-        times = stamp(self._state.tick, self._state.sim_time) | {"sender": command.sender}
+        at = Stamp.now(self._state.tick, self._state.sim_time)
 
         def query() -> None:
             try:
-                data = self.archive.answer(command.name, command.arguments, times)
+                data = self.archive.answer(command.name, command.arguments, at, command.sender)
             except RASTrainerError as error:
                 # Not str(error), which would have no code.
                 self._answers.give(Answer(command.ticket, False, error.args[0]))

@@ -14,13 +14,13 @@ from concurrent.futures import Future
 from dataclasses import replace
 from typing import Generic, Protocol, TypeVar
 
+from rastrainer.journal.entries import PhaseChange
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.loop.timing import LoopStatistics
 from rastrainer_simulator.record.trial_recorder import Written
 from rastrainer_simulator.state import (
     Answer,
     Event,
-    EventKind,
     SimulationState,
     StepResult,
     TrainingState,
@@ -174,7 +174,7 @@ def trial_log(loop: asyncio.AbstractEventLoop) -> Callable[[StepResult], None]:
         _log.info("The trial is %s.", training.phase.value, extra={"data": data})
 
     def take(result: StepResult) -> None:
-        if any(event.kind is EventKind.PHASE for event in result.events):
+        if any(isinstance(event.entry, PhaseChange) for event in result.events):
             loop.call_soon_threadsafe(note, result.state.training)
 
     return take

@@ -4,9 +4,18 @@ from __future__ import annotations
 
 from enum import Enum
 
+from rastrainer.journal.entries import (
+    AcceptedCheckpoint,
+    AcceptedTouch,
+    FeedChange,
+    PhaseChange,
+    ProximityChange,
+    Rejected,
+    Undo,
+)
 from rastrainer.protocol import PROCEDURE_PHASES, Phase, Proximity
 from rastrainer_simulator.presentation.messages import Feedback
-from rastrainer_simulator.state import TOUCH_ERRORS, Event, EventKind, TouchStage
+from rastrainer_simulator.state import TOUCH_ERRORS, Event, TouchStage
 from rastrainer_simulator.training.feed import FeedLayer
 
 
@@ -53,10 +62,10 @@ def feedback_of(what: FeedbackEvent, number: int, volume: float = 1.0) -> Feedba
 
 
 _OF_A_KIND = {
-    EventKind.TOUCH: FeedbackEvent.TOUCH,
-    EventKind.UNDO: FeedbackEvent.UNDO,
-    EventKind.REJECTED: FeedbackEvent.ERROR,
-    EventKind.CHECKPOINT: FeedbackEvent.CHECKPOINT,
+    AcceptedTouch: FeedbackEvent.TOUCH,
+    Undo: FeedbackEvent.UNDO,
+    Rejected: FeedbackEvent.ERROR,
+    AcceptedCheckpoint: FeedbackEvent.CHECKPOINT,
 }
 _OF_A_LAYER = {
     FeedLayer.BONE.value: FeedbackEvent.BONE,
@@ -74,17 +83,18 @@ def feedback_event(
     `touch` is how the touch is going when it happens: a contact where a touch counts is no alarm.
     `not_recorded` says that a change of the phase undid what the disk had refused.
     """
-    if event.kind is EventKind.FEED:
-        return _OF_A_LAYER.get(event.data["layer"])
-    if event.kind is EventKind.PROXIMITY:
-        return _of_proximity(Proximity(event.data["from"]), Proximity(event.data["to"]), touch)
-    if event.kind is not EventKind.PHASE:
-        return _OF_A_KIND.get(event.kind)
+    entry = event.entry
+    if isinstance(entry, FeedChange):
+        return _OF_A_LAYER.get(entry.layer)
+    if isinstance(entry, ProximityChange):
+        return _of_proximity(entry.from_, entry.to, touch)
+    if not isinstance(entry, PhaseChange):
+        return _OF_A_KIND.get(type(entry))
     if not_recorded:
         return FeedbackEvent.ERROR
-    if event.data["phase"] == Phase.REGISTERED:
+    if entry.phase is Phase.REGISTERED:
         return FeedbackEvent.FINISH
-    return FeedbackEvent.STEP if event.data["phase"] in PROCEDURE_PHASES else None
+    return FeedbackEvent.STEP if entry.phase in PROCEDURE_PHASES else None
 
 
 def touch_feedback(before: TouchStage, after: TouchStage) -> FeedbackEvent | None:

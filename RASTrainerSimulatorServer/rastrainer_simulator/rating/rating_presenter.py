@@ -16,7 +16,7 @@ from rastrainer_simulator.input.inputs import ControlContext, ControlName, Input
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_of
 from rastrainer_simulator.presentation.screen import Fact, Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.rating.rating_work import RatingWork
-from rastrainer_simulator.replay.playback import Playback, ShownPlayback
+from rastrainer_simulator.replay.playback import Playback, PlaybackSwitch
 from rastrainer_simulator.replay.replay_presenter import RATE, ReplayPresenter
 from rastrainer_simulator.state import StepResult
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label, pair_label
@@ -40,7 +40,8 @@ class RatingPresenter(ReplayPresenter):
         """Begin with a replay; `load` begins to load another, by its trial's UUID."""
         self.work = work
         self.pages = OpenPages(self._happened)
-        self.shown = ShownPlayback(first)
+        self.shown = PlaybackSwitch(first)
+        self.shown.show(first)
         self.leave = end
         self._load = load
         self._loading: Future[Playback] | None = None
@@ -76,7 +77,6 @@ class RatingPresenter(ReplayPresenter):
         self._refresh()
 
     def load(self, go: Callable[[], object]) -> None:
-        """Go to another replay and load it."""
         go()
         self._loading = self._load(self.work.trial_id)
         self.pages.show(LoadingPage(self, self._loading))
@@ -215,6 +215,7 @@ class RatingPage(Page):
         self.actions = actions
 
     def say(self, key: str, **values: object) -> str:
+        """Return a sentence with the replay's number."""
         return self.actions.say(key, **values)
 
     def rows(self, *names: str) -> tuple[PageRow, ...]:
@@ -257,7 +258,6 @@ class DomainPage(RatingPage):
         return PageContent(said, rows=(*marks, *others), title=title, first="watch")
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """Store a typed mark."""
         if device is not InputDevice.KEYBOARD or name not in _KEYS:
             return False
         self._give(_KEYS[name])

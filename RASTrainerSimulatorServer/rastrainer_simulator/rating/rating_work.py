@@ -52,7 +52,6 @@ class RatingWork:
 
     @property
     def rated(self) -> int:
-        """How many replays are rated."""
         return sum(self._open_of(marks) is None for marks in self._marks.values())
 
     def give(self, mark: int) -> None:
@@ -79,7 +78,6 @@ class RatingWork:
         return False
 
     def go_back(self) -> None:
-        """Go to the previous replay, to view its marks or to correct them."""
         self.place = max(0, self.place - 1)
 
     def _open_of(self, marks: dict[str, int]) -> tuple[RatingForm, RatingDomain] | None:

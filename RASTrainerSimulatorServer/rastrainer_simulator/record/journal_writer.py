@@ -9,7 +9,7 @@ from __future__ import annotations
 import contextlib
 import os
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from datetime import datetime, timezone
 from pathlib import Path
@@ -17,6 +17,7 @@ from typing import Any
 
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.files.writing import keep_others_out, make_private_folder, open_private
+from rastrainer.journal.entries import Entry, Line, Stamp
 from rastrainer.journal.folder import (
     LOCK_NAME,
     STARTED_BY,
@@ -43,14 +44,14 @@ class RecordError(RASTrainerError):
 class Journal:
     """One trial's journal file.
 
-    Entries that could not be written are kept and written with the next ones, in order: nothing is
+    Entries that could not be written are kept, and written in order with later entries: nothing is
     lost while the program runs, and the chain has no gap. Not safe for several threads.
     """
 
     def __init__(self, path: Path, seed: int | None = None) -> None:
         """Prepare a new file, which the first `write` creates and never overwrites.
 
-        The seed of the head's pose is kept beside it until an entry reveals it.
+        A file next to it keeps the seed of the head's pose until an entry reveals the seed.
         """
         self.path = path
         self._seed = seed
@@ -66,7 +67,7 @@ class Journal:
     def reopened(cls, reading: JournalReading) -> Journal:
         """Return the journal of an existing file that was not altered, to append to it.
 
-        What follows its last complete line was never acknowledged: the first `write` removes it.
+        The first `write` removes an incomplete last line, which was never acknowledged.
         """
         journal = cls(reading.path)
         journal._is_new = False
@@ -107,9 +108,12 @@ class Journal:
         self._count, self.last_hash, self._size = count, last_hash, size + len(data)
         self._unwritten.clear()
 
-    def append(self, entry: Mapping[str, Any]) -> None:
+    def write_lines(self, lines: Iterable[Line], sync: bool) -> None:
+        self.write([line.to_json() for line in lines], sync)
+
+    def append(self, at: Stamp, entry: Entry) -> None:
         try:
-            self.write([entry], sync=True)
+            self.write_lines([Line(at, entry)], sync=True)
         finally:
             self.close()
 

@@ -14,13 +14,25 @@ import numpy as np
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError, RASTrainerError
-from rastrainer.journal.folder import SUFFIX, JournalNumber, journals_of
-from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal, stamp
+from rastrainer.journal.entries import (
+    AcceptedTouch,
+    Acknowledged,
+    Attempt,
+    Continued,
+    FinalRegistration,
+    JournalHeader,
+    Line,
+    PhaseChange,
+    Scored,
+    Stamp,
+    read_line,
+)
+from rastrainer.journal.folder import SUFFIX, journals_of
+from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
 from rastrainer.journal.recording import WholeRecording
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.procedure.record import UsedRegistration
 from rastrainer.protocol import PROCEDURE_PHASES, AbortReason, Phase
-from rastrainer.scenario.scenario import method_of
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TouchedPoint, TrialRecord
 from rastrainer_simulator.core.interrupted_trial import (
@@ -31,7 +43,6 @@ from rastrainer_simulator.core.interrupted_trial import (
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training.head_pose import Truth
-from rastrainer_simulator.vectors import vector
 
 FIRST_REACH = 1 << 16
 """Bytes at the end of a journal that are read first."""
@@ -48,24 +59,28 @@ _AFTER_THE_TRIAL = frozenset(
 
 @dataclass(frozen=True)
 class ArchivedTrial:
-    """A registered trial; its truth and seed are revealed with the registration.
+    """A registered or aborted trial.
 
-    `registration` and `scored` are the arguments of SubmitRegistration and TrialScored; None before
-    those.
+    Attributes:
+        truth: revealed with the registration, like the seed; None of an aborted trial, for which
+            they are never revealed.
+        registration: the arguments of SubmitRegistration, None before.
+        scored: the arguments of TrialScored, None before.
     """
 
-    record: TrialRecord
-    truth: Truth
-    seed: int
+    record: TrialRecord | AbortedTrial
+    truth: Truth | None = None
+    seed: int | None = None
     registration: Mapping[str, Any] | None = None
     scored: Mapping[str, Any] | None = None
     acknowledged: bool = False
 
     def summary(self) -> dict[str, Any]:
         """Return the data of GetTrial: with the truth if a registration was submitted."""
+        phase = "registered" if self.scored is None else "scored"
         data: dict[str, Any] = {
             "trialId": self.record.trial_id,
-            "phase": "registered" if self.scored is None else "scored",
+            "phase": "aborted" if self.truth is None else phase,
             "record": record_to_json(self.record),
             "acknowledged": self.acknowledged,
         }
@@ -75,20 +90,22 @@ class ArchivedTrial:
 
     def revealed(self) -> dict[str, Any]:
         """Return the data that SubmitRegistration reveals."""
-        if self.registration is None:
+        if self.registration is None or self.truth is None:
             raise InputError("No registration of the trial was submitted.")
         matrix = np.array(self.registration["matrix"], dtype=np.float64).reshape(4, 4)
-        touches = zip(self.record.labels, self.record.positions_mm, strict=True)
+        touches = ((point.label, point.position_mm) for point in self.record.points)
         return self.truth.revealed(matrix, touches)
 
-    def after(self, command: str, arguments: Mapping[str, Any]) -> tuple[str, ArchivedTrial]:
-        """Return the trial after a command, and the kind of its entry; "" if nothing changes.
+    def after(
+        self, command: str, arguments: Mapping[str, Any]
+    ) -> tuple[type[FinalRegistration | Scored] | None, ArchivedTrial]:
+        """Return the trial after a command, and its kind of entry; None if nothing changes.
 
         A registration is final, because it reveals the truth.
         """
         if command == CommandName.SUBMIT_REGISTRATION:
             if self.registration is None:
-                return "registration", replace(self, registration=arguments)
+                return FinalRegistration, replace(self, registration=arguments)
             kept, given = map(UsedRegistration.from_arguments, (self.registration, arguments))
             if not kept.agrees_with(given):
                 raise InputError(say("registration is final"))
@@ -96,29 +113,8 @@ class ArchivedTrial:
             if self.registration is None:
                 raise InputError(say("no registration"))
             if self.scored != arguments:
-                return "scored", replace(self, scored=arguments)
-        return "", self
-
-
-@dataclass(frozen=True)
-class ArchivedAttempt:
-    """An aborted trial, and whether a client has acknowledged its record."""
-
-    record: AbortedTrial
-    acknowledged: bool = False
-
-    def summary(self) -> dict[str, Any]:
-        """Return the data of GetTrial; the head's pose in an aborted trial is never revealed."""
-        return {
-            "trialId": self.record.trial_id,
-            "phase": "aborted",
-            "record": record_to_json(self.record),
-            "acknowledged": self.acknowledged,
-        }
-
-
-def attempt_entry(record: AbortedTrial, times: Mapping[str, Any]) -> dict[str, Any]:
-    return {"kind": "attempt", **times, "record": record_to_json(record)}
+                return Scored, replace(self, scored=arguments)
+        return None, self
 
 
 def interrupted_attempt(reading: JournalReading) -> AbortedTrial | None:
@@ -127,55 +123,55 @@ def interrupted_attempt(reading: JournalReading) -> AbortedTrial | None:
     A trial that was interrupted by the end of the simulator and never resumed counts as aborted:
     otherwise ending the simulator would be a way to discard a bad trial.
     """
-    if not reading.entries or InterruptedTrial.of(reading.entries) is None:
+    lines = tuple(reading.lines())
+    if not lines or InterruptedTrial.of(lines) is None:
         return None
     with refusing_malformed(MALFORMED):
-        return _aborted(reading.entries)
+        return _aborted(reading.header, lines)
 
 
-def _aborted(entries: tuple[Mapping[str, Any], ...]) -> AbortedTrial:
-    header, trajectory = entries[0], WholeRecording.of(entries).trajectory()
-    touches = {entry["label"]: entry for entry in entries if entry["kind"] == "touch"}
+def _aborted(header: JournalHeader, lines: tuple[Line, ...]) -> AbortedTrial:
+    trajectory = WholeRecording.of(lines).trajectory()
+    touches = {entry.label: (at, entry) for at, entry in lines if isinstance(entry, AcceptedTouch)}
     points = tuple(
         TouchedPoint(
-            label=touch["label"],
+            label=label,
             # Where the tip was, unless the skin had shifted.
-            position_mm=vector(touch.get("measuredMm", touch["positionMm"])),
-            sim_time_s=touch["simTimeS"] - header["tickS"],
-            utc=touch["utc"],
+            position_mm=touch.measured_mm or touch.position_mm,
+            sim_time_s=at.sim_time_s - header.tick_s,
+            utc=at.utc,
         )
-        for touch in (touches[each.label] for each in trajectory.touches)
+        for label, (at, touch) in ((each.label, touches[each.label]) for each in trajectory.touches)
     )
-    phases = [entry["phase"] for entry in entries if entry["kind"] in ("phase", "continued")]
-    stage = next((phase for phase in reversed(phases) if phase != Phase.PAUSED.value), "")
-    # A procedure that is paused is aborted in what it was paused in.
-    phase = stage if stage in {phase.value for phase in PROCEDURE_PHASES} else phases[-1]
-    if phase == Phase.COMPLETE.value:
+    phases = [line.entry.phase for line in lines if isinstance(line.entry, PhaseChange | Continued)]
+    stage = next((phase for phase in reversed(phases) if phase is not Phase.PAUSED), None)
+    # A paused procedure is aborted in the phase before the pause.
+    phase = stage if stage in PROCEDURE_PHASES else phases[-1]
+    if phase is Phase.COMPLETE:
         elapsed_s = trajectory.intended[-1].time_s
     else:
         # Samples are taken while the trial's time runs.
         elapsed_s = float(trajectory.times_s[-1]) if len(trajectory.times_s) else 0.0
-    number = record_from_json(JournalNumber, header)
     record = AbortedTrial(
-        trial_id=header["trialId"],
-        trainee=header["trainee"],
-        task=header["task"],
-        mode=header["mode"],
-        scenario=header["scenario"]["name"],
-        started_utc=header["utc"],
-        aborted_utc=entries[-1]["utc"],
+        trial_id=header.trial_id,
+        trainee=header.trainee,
+        task=header.task,
+        mode=header.mode,
+        scenario=header.scenario.name,
+        started_utc=lines[0].at.utc,
+        aborted_utc=lines[-1].at.utc,
         elapsed_s=elapsed_s,
-        phase=phase,
+        phase=phase.value,
         reason=AbortReason.ABANDONED.value,
         points=points,
         rejected_touches=len(trajectory.refused),
         undone_touches=trajectory.undone,
-        versions=header["versions"],
-        touch_rule=header["settings"]["training"]["touchRule"],
-        method=method_of(header["method"]["name"] if "method" in header else None),
+        versions=header.versions,
+        touch_rule=header.settings["training"]["touchRule"],
+        method=header.registration_method,
         traced=len(trajectory.traced),
-        number=number.number,
-        series=number.series,
+        number=header.number,
+        series=header.series,
     )
     return record_from_json(AbortedTrial, record_to_json(record))
 
@@ -192,26 +188,26 @@ class TrialArchive:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._kept: dict[str, tuple[ArchivedTrial | ArchivedAttempt, Journal]] = {}
+        self._kept: dict[str, tuple[ArchivedTrial, Journal]] = {}
         self.problems: list[str] = []
         self.arrivals = 0
         for path in find_unacknowledged(folder):
             self._load(path)
 
     def unacknowledged(self) -> tuple[AbortedTrial | TrialRecord, ...]:
-        """Return the records that no client has acknowledged: aborted trials, then finished ones.
+        """Return the records that no client has acknowledged: aborted trials, then finished trials.
 
-        Of each kind the oldest come first.
+        The oldest of each kind come first.
         """
         waiting = [trial for trial, _ in list(self._kept.values()) if not trial.acknowledged]
-        waiting.sort(key=lambda trial: isinstance(trial, ArchivedTrial))
+        waiting.sort(key=lambda trial: trial.truth is not None)
         return tuple(trial.record for trial in waiting)
 
     def was_played(self, seed: int) -> bool:
         revealed = f'"seed":{seed},'.encode()
         return any(revealed in _end(path) for path in self._folder.glob(f"*{SUFFIX}"))
 
-    def add(self, trial: ArchivedTrial | ArchivedAttempt, journal: Journal) -> None:
+    def add(self, trial: ArchivedTrial, journal: Journal) -> None:
         self._kept[trial.record.trial_id] = trial, journal
         self.arrivals += 1
 
@@ -226,20 +222,20 @@ class TrialArchive:
             record = interrupted_attempt(reading)
             if record is None:
                 return
-            journal, last = Journal.reopened(reading), reading.entries[-1]
-            entry = attempt_entry(record, stamp(last["tick"], last["simTimeS"]))
-            journal.append({**entry, "seed": reading.header["seed"]})
+            journal, last = Journal.reopened(reading), read_line(reading.entries[-1]).at
+            attempt = Attempt(record_to_json(record), reading.seed)
+            journal.append(Stamp.now(last.tick, last.sim_time_s), attempt)
         except RASTrainerError as error:
             self.problems.append(str(error))
         else:
-            self.add(ArchivedAttempt(record), journal)
+            self.add(ArchivedTrial(record), journal)
 
     def answer(
-        self, command: str, arguments: Mapping[str, Any], times: Mapping[str, Any]
+        self, command: str, arguments: Mapping[str, Any], at: Stamp, sender: str = ""
     ) -> dict[str, Any]:
         """Carry out a command about one of the trials and return the answer's data.
 
-        `times` are the stamps of the entry that is appended to the trial's journal.
+        `at` is for the entry that is appended to the trial's journal.
 
         Raises:
             RecordError: its journal cannot be written.
@@ -250,26 +246,26 @@ class TrialArchive:
         arguments = json.loads(json.dumps(arguments))
         if command == CommandName.ACKNOWLEDGE_TRIAL:
             if not trial.acknowledged:
-                journal.append({"kind": "acknowledged", **times})
+                journal.append(at, Acknowledged(sender))
                 trial = replace(trial, acknowledged=True)
-        elif isinstance(trial, ArchivedTrial):
+        elif trial.truth is not None:
             kind, changed = trial.after(command, arguments)
-            if kind:
-                journal.append({"kind": kind, **times, "arguments": arguments})
+            if kind is not None:
+                journal.append(at, kind(sender, arguments))
                 trial = changed
         elif command != CommandName.GET_TRIAL:
             raise InputError(f"The trial {trial_id} was aborted; it has no score.")
         # A trial is kept in memory until nothing more is expected.
-        is_scored = isinstance(trial, ArchivedAttempt) or trial.scored is not None
+        is_scored = trial.truth is None or trial.scored is not None
         if trial.acknowledged and is_scored:
             del self._kept[trial_id]
         else:
             self._kept[trial_id] = trial, journal
         if command == CommandName.GET_TRIAL:
             return trial.summary()
-        if isinstance(trial, ArchivedTrial) and command == CommandName.GET_JOURNAL:
+        if command == CommandName.GET_JOURNAL:
             return self._journal_piece(trial, arguments["start"])
-        if isinstance(trial, ArchivedTrial) and command == CommandName.SUBMIT_REGISTRATION:
+        if command == CommandName.SUBMIT_REGISTRATION:
             return {"trialId": trial_id, **trial.revealed()}
         return {"trialId": trial_id}
 
@@ -287,7 +283,7 @@ class TrialArchive:
             raise InputError(f"{path.name} cannot be read: {error.strerror}.") from None
         return {"text": piece.decode("ascii"), "next": start + len(piece) if is_more else None}
 
-    def _found(self, trial_id: str) -> tuple[ArchivedTrial | ArchivedAttempt, Journal]:
+    def _found(self, trial_id: str) -> tuple[ArchivedTrial, Journal]:
         if trial_id not in self._kept:
             for path in journals_of(self._folder, trial_id):
                 self._load(path)
@@ -298,11 +294,7 @@ class TrialArchive:
     def _load(self, path: Path) -> None:
         try:
             reading = read_journal(path)
-            trial: ArchivedTrial | ArchivedAttempt | None = archived_trial(reading)
-            aborted = reading.of_kind("attempt")
-            if trial is None and aborted:
-                record = record_from_json(AbortedTrial, aborted[-1].get("record"))
-                trial = ArchivedAttempt(record, bool(reading.of_kind("acknowledged")))
+            trial = archived_trial(reading)
         except InputError as error:
             self.problems.append(str(error))
         else:
@@ -311,23 +303,27 @@ class TrialArchive:
 
 
 def archived_trial(reading: JournalReading) -> ArchivedTrial | None:
-    """Return the trial of a journal, None if it was never registered."""
+    """Return the trial of a journal, None if it was neither registered nor aborted."""
     if reading.integrity is Integrity.ALTERED:
         raise InputError(f"{reading.path} is {reading.sentence}; the trial is not delivered.")
+    kinds = ("registered", "attempt", "registration", "scored")
+    registered, aborted, registrations, scores = map(reading.of_kind, kinds)
+    acknowledged = bool(reading.of_kind("acknowledged"))
+    if not registered and not aborted:
+        return None
+    if not registered:
+        attempt = record_from_json(AbortedTrial, aborted[-1].get("record"))
+        return ArchivedTrial(attempt, acknowledged=acknowledged)
     try:
-        registered, registrations, scores = map(
-            reading.of_kind, ("registered", "registration", "scored")
-        )
-        if not registered:
-            return None
-        record = record_from_json(TrialRecord, registered[-1]["record"])
+        values = registered[-1]
+        record = record_from_json(TrialRecord, values.get("record"))
         trial = ArchivedTrial(
-            record=replace(record, journal_sha256=registered[-1]["sha256"]),
-            truth=record_from_json(Truth, registered[-1]["truth"]),
-            seed=reading.header["seed"],
+            record=replace(record, journal_sha256=values["sha256"]),
+            truth=record_from_json(Truth, values.get("truth")),
+            seed=values["seed"],
             registration=registrations[0]["arguments"] if registrations else None,
             scored=scores[-1]["arguments"] if scores else None,
-            acknowledged=bool(reading.of_kind("acknowledged")),
+            acknowledged=acknowledged,
         )
         # Check that the data of GetTrial and SubmitRegistration can be computed.
         replace(trial, registration=trial.registration or {"matrix": np.eye(4)}).summary()

@@ -4,60 +4,64 @@ from __future__ import annotations
 
 import hashlib
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.commands import CommandName
+from rastrainer.journal.entries import (
+    FORMAT,
+    FORMAT_VERSION,
+    REAL_TIME,
+    Aborted,
+    AcceptedCheckpoint,
+    AcceptedTouch,
+    CommandDone,
+    Continued,
+    Entry,
+    FinalRegistration,
+    Input,
+    JournalHeader,
+    Line,
+    PhaseChange,
+    PlayingSession,
+    Registered,
+    Report,
+    Sample,
+    Stamp,
+    Stroke,
+    TracePoint,
+    TutorialReport,
+    Undo,
+)
 from rastrainer.journal.folder import UNNUMBERED, JournalNumber
-from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, stamp
 from rastrainer.journal.recording import Recording
-from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import PROCEDURE_PHASES, Phase, RegistrationMethod
 from rastrainer.scenario.scenario import method_of, task_by_method
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.how_played import MovedBy
-from rastrainer_simulator.record.trial_context import (
-    DRAWING_REPORTS,
-    REAL_TIME,
-    NotedReport,
-    PlayingSession,
-    report_entry,
-)
+from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.record.trial_records import TrialRecords, UnmeasuredRecord
 from rastrainer_simulator.state import (
-    Event,
-    EventKind,
     Motion,
     OperatorCommand,
     OperatorInput,
     SimulationState,
-    StartingPoint,
     StepResult,
 )
 from rastrainer_simulator.training.trial_start import DRAWN_SEED
 from rastrainer_simulator.trial_state import Tool
+from rastrainer_simulator.vectors import in_millimeters
 
 if TYPE_CHECKING:
     from rastrainer_simulator.core.simulation import Simulation
 
 SAMPLE_HZ = 50.0
-MUST_LAST = frozenset(
-    {
-        EventKind.PHASE,
-        EventKind.REGISTRATION,
-        EventKind.TOUCH,
-        EventKind.UNDO,
-        EventKind.STROKE,
-        EventKind.CHECKPOINT,
-    }
-)
-"""Events that are not published before they are on the disk."""
+MUST_LAST = (PhaseChange, FinalRegistration, AcceptedTouch, Undo, Stroke, AcceptedCheckpoint)
+"""Entries that are not published before they are on the disk."""
 
-_KIND_OF_PHASE = {Phase.REGISTERED: "registered", Phase.IDLE: "aborted"}
 _SAMPLED = (Phase.RUNNING, Phase.COMPLETE, *PROCEDURE_PHASES)
-_TOUCHED = (EventKind.TOUCH.value, EventKind.CHECKPOINT.value)
-_DATED = (*_TOUCHED, EventKind.TRACE.value)
 _Q = struct.Struct("<7d")
 _MOVED_BY = {
     Motion.STICK: MovedBy.STICKS.value,
@@ -82,7 +86,7 @@ class TrialEntries:
         self._trajectory = hashlib.sha256()
         self._recording = Recording()
         self._moved_by = ""
-        self.pending: list[dict[str, Any]] = []
+        self.pending: list[Line] = []
 
     @classmethod
     def started(
@@ -101,31 +105,27 @@ class TrialEntries:
         state = result.state
         training = state.training
         task = task_by_method(simulation.setup.scenario, training.task, training.method)
-        times = stamp(state.tick, state.sim_time)
-        entries = cls(simulation, training.trial_id, times["utc"], dt)
+        at = Stamp.now(state.tick, state.sim_time)
+        entries = cls(simulation, training.trial_id, at.utc, dt)
         entries.records.number = number
         procedure = "" if training.procedure is None else training.procedure.name
-        recorded = simulation.setup.recorded(procedure, training.method)
-        entries._append(
-            {
-                "kind": "header",
-                "format": FORMAT,
-                "version": FORMAT_VERSION,
-                **record_to_json(number, with_defaults=True),
-                **times,
-                "trialId": training.trial_id,
-                "trainee": training.trainee,
-                "task": training.task,
-                "shortestPathMm": task.shortest_path_mm,
-                "mode": training.mode,
-                "tickS": dt,
-                "session": record_to_json(session, with_defaults=True),
-                "before": record_to_json(StartingPoint.after(before), with_defaults=True),
-                **record_to_json(recorded),
-                "settings": record_to_json(recorded.settings, with_defaults=True),
-                "versions": entries.records.versions,
-            }
+        header = JournalHeader(
+            format=FORMAT,
+            version=FORMAT_VERSION,
+            number=number.number,
+            series=number.series,
+            trial_id=training.trial_id,
+            trainee=training.trainee,
+            task=training.task,
+            shortest_path_mm=task.shortest_path_mm,
+            mode=training.mode,
+            tick_s=dt,
+            session=session,
+            before=before.starting_point,
+            versions=entries.records.versions,
+            **vars(simulation.setup.recorded(procedure, training.method)),
         )
+        entries._append(at, header)
         return entries
 
     @classmethod
@@ -133,43 +133,38 @@ class TrialEntries:
         cls,
         simulation: Simulation,
         state: SimulationState,
-        earlier: Sequence[Mapping[str, Any]],
+        earlier: Sequence[Line],
         since: float,
         dt: float,
         session: PlayingSession = REAL_TIME,
     ) -> TrialEntries:
         """Continue from a state of a trial that was interrupted.
 
-        `earlier` are its entries before; since their last one, at the simulated time `since` in s,
+        `earlier` are its lines before; since their last one, at the simulated time `since` in s,
         the trial's time is stopped.
         """
-        training = state.training
-        entries = cls(simulation, training.trial_id, earlier[0]["utc"], dt)
+        training, header = state.training, earlier[0].entry
+        assert isinstance(header, JournalHeader), "a journal begins with one"
+        entries = cls(simulation, training.trial_id, earlier[0].at.utc, dt)
         records = entries.records
-        records.number = record_from_json(JournalNumber, earlier[0])
-        for entry in earlier:
-            entries._collect(entry)
-            kind = entry["kind"]
-            if kind in _TOUCHED:
-                records.dates[entry["simTimeS"] - dt] = entry["utc"]
-            elif kind == EventKind.TRACE.value:
-                records.dates[entry["simTimeS"]] = entry["utc"]
-            elif kind in DRAWING_REPORTS:
-                report = record_from_json(DRAWING_REPORTS[kind], entry, f"The entry {kind}")
-                records.display.add(report)
-        entries._append(
-            {
-                "kind": "continued",
-                **stamp(state.tick, state.sim_time),
-                "sinceS": since,
-                "session": record_to_json(session, with_defaults=True),
-                "camera": state.camera,
-                "phase": training.phase.value,
-                "kept": len(training.touches),
-                "nextPoint": training.next_point,
-                "versions": entries.records.versions,
-            }
+        records.number = JournalNumber(header.number, header.series)
+        for line in earlier:
+            entries._collect(line)
+            if isinstance(line.entry, AcceptedTouch | AcceptedCheckpoint):
+                records.dates[line.at.sim_time_s - dt] = line.at.utc
+            elif isinstance(line.entry, TracePoint):
+                records.dates[line.at.sim_time_s] = line.at.utc
+            records.display.add(line.entry)
+        continued = Continued(
+            since_s=since,
+            session=session,
+            camera=state.camera,
+            phase=training.phase,
+            kept=len(training.touches),
+            next_point=training.next_point,
+            versions=records.versions,
         )
+        entries._append(Stamp.now(state.tick, state.sim_time), continued)
         return entries
 
     def add(
@@ -187,99 +182,85 @@ class TrialEntries:
         quiet = sticks == self._sticks and not operator_input.commands and not result.events
         if quiet and not is_sampled:
             return None
-        times = stamp(state.tick, state.sim_time)
+        at = Stamp.now(state.tick, state.sim_time)
         if sticks != self._sticks:
             self._sticks = sticks
-            self._append(
-                {
-                    "kind": "input",
-                    **times,
-                    "translation": operator_input.translation,
-                    "rotation": operator_input.rotation,
-                    "fine": operator_input.fine,
-                    "operator": operator_input.operator,
-                }
-            )
+            self._append(at, Input(*sticks, operator_input.operator))
         for command in operator_input.commands:
-            self._append(self._command_entry(times, command))
-        registered = None
+            self._append(at, self._command_entry(command))
+        is_registered = False
         for event in result.events:
-            if event.kind.value in _DATED:
-                self.records.dates[event.sim_time] = times["utc"]
-            entry = self._event_entry(times, event)
-            if entry["kind"] == "registered":
-                entry["truth"] = record_to_json(simulation.truth)
-                registered = entry
-            self._append(entry)
+            if isinstance(event.entry, AcceptedTouch | AcceptedCheckpoint | TracePoint):
+                self.records.dates[event.sim_time] = at.utc
+            entry = self._event_entry(event.entry, simulation)
+            is_registered = is_registered or isinstance(entry, Registered)
+            self._append(at, entry)
         if is_sampled:
-            self._append_sample(times, state)
-        if registered is None:
+            self._append(at, self._sample(state))
+        if not is_registered:
             return None
-        # Of the whole tick: the tip may have touched the head after the command in it.
+        # The record covers the whole tick: the tip may have touched the head after the command.
         record = self.records.registered(state)
-        return UnmeasuredRecord(record, self._recording.trajectory(), registered)
+        return UnmeasuredRecord(record, self._seed, self._recording.trajectory())
 
-    def add_display(self, report: NotedReport, state: SimulationState) -> None:
+    def add_display(self, report: Report, state: SimulationState) -> None:
         self.records.display.add(report)
-        self._append(report_entry(report) | stamp(state.tick, state.sim_time))
+        if isinstance(report, TutorialOutcome):
+            # The rest is in the tutorial's own file.
+            names = [each.name for each in fields(TutorialReport)]
+            report = TutorialReport(**{name: getattr(report, name) for name in names})
+        self._append(Stamp.now(state.tick, state.sim_time), report)
 
-    def _append(self, entry: dict[str, Any]) -> None:
-        self.pending.append(entry)
-        self._collect(entry)
+    def _append(self, at: Stamp, entry: Entry) -> None:
+        line = Line(at, entry)
+        self.pending.append(line)
+        self._collect(line)
 
-    def _collect(self, entry: Mapping[str, Any]) -> None:
-        self._recording.add(entry)
-        self.records.feeds.add(entry)
-        self.records.play.add(entry)
+    def _collect(self, line: Line) -> None:
+        self._recording.add(line)
+        self.records.feeds.add(line)
+        self.records.play.add(line)
 
-    def _append_sample(self, times: dict[str, Any], state: SimulationState) -> None:
-        entry = {
-            "kind": "sample",
-            **times,
-            "q": state.q,
-            "tipMm": [MM_PER_M * float(value) for value in state.tool_tip_to_world[:3, 3]],
-            "clearanceMm": MM_PER_M * state.clearance,
-            "depthMm": MM_PER_M * state.depth,
-        }
-        if state.tool in (Tool.DRILL, Tool.ELECTRODE):
-            entry["feedMm"] = MM_PER_M * state.feed
-        self._append({**entry, "movedBy": self._moved_by})
-        self._moved_by = ""
+    def _sample(self, state: SimulationState) -> Sample:
+        moved_by, self._moved_by = self._moved_by, ""
+        is_fed = state.tool in (Tool.DRILL, Tool.ELECTRODE)
+        return Sample(
+            q=state.q,
+            tip_mm=in_millimeters(state.tool_tip_to_world[:3, 3].tolist()),
+            clearance_mm=MM_PER_M * state.clearance,
+            depth_mm=MM_PER_M * state.depth,
+            feed_mm=MM_PER_M * state.feed if is_fed else None,
+            moved_by=moved_by,
+        )
 
     def motion(self) -> dict[str, float]:
         return trial_motion(self._recording.trajectory())
 
-    def taken(self) -> list[dict[str, Any]]:
+    def taken(self) -> list[Line]:
         taken, self.pending = self.pending, []
         return taken
 
-    def _command_entry(self, times: dict[str, Any], command: OperatorCommand) -> dict[str, Any]:
+    def _command_entry(self, command: OperatorCommand) -> CommandDone:
         arguments = dict(command.arguments)
         if command.name == CommandName.START_TASK:
             arguments["trialId"] = self.trial_id
             arguments.pop(DRAWN_SEED, None)
-            # As in journals older than procedures, methods and shifts of the skin.
+            # They say nothing about a trial of fiducials alone.
             for later in ("procedure", "skin"):
                 if not arguments.get(later):
                     arguments.pop(later, None)
             if method_of(arguments.get("method")) is RegistrationMethod.FIDUCIALS:
                 arguments.pop("method", None)
-        return {
-            "kind": "command",
-            **times,
-            "name": command.name,
-            "arguments": arguments,
-            "sender": command.sender,
-        }
+        return CommandDone(command.name, arguments, command.sender)
 
-    def _event_entry(self, times: dict[str, Any], event: Event) -> dict[str, Any]:
-        kind = event.kind.value
-        if event.kind is EventKind.PHASE:
-            kind = _KIND_OF_PHASE.get(Phase(event.data["phase"]), kind)
-        entry = {"kind": kind, **times, **event.data}
-        if kind in _KIND_OF_PHASE.values():
-            # Until then it is as secret as the head's pose.
-            entry["seed"] = self._seed
-        if event.kind in MUST_LAST:
-            entry["trajectorySha256"] = self._trajectory.hexdigest()
+    def _event_entry(self, entry: Entry, simulation: Simulation) -> Entry:
+        if isinstance(entry, PhaseChange) and entry.phase in (Phase.REGISTERED, Phase.IDLE):
+            # Until then the seed is as secret as the head's pose.
+            state = {**vars(entry), "seed": self._seed}
+            if entry.phase is Phase.IDLE:
+                entry = Aborted(**state)
+            else:
+                entry = Registered(**state, truth=simulation.truth)
+        if isinstance(entry, PhaseChange | AcceptedTouch | Undo | Stroke | AcceptedCheckpoint):
+            return replace(entry, trajectory_sha256=self._trajectory.hexdigest())
         return entry

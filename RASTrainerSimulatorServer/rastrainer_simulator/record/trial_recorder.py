@@ -9,20 +9,27 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.commands import CommandName
+from rastrainer.journal.entries import (
+    REAL_TIME,
+    Attempt,
+    Line,
+    PlayingSession,
+    Report,
+    Stamp,
+    Stopped,
+)
 from rastrainer.journal.folder import UNNUMBERED, newest_journal, number_of
-from rastrainer.journal.journal_file import JournalReading, file_stamp, stamp
+from rastrainer.journal.journal_file import JournalReading, file_stamp
+from rastrainer.json_records import record_to_json
 from rastrainer.protocol import AbortReason, Phase
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_archive import (
     SUFFIX,
-    ArchivedAttempt,
     ArchivedTrial,
     TrialArchive,
-    attempt_entry,
 )
-from rastrainer_simulator.record.trial_context import REAL_TIME, NotedReport, PlayingSession
 from rastrainer_simulator.record.trial_entries import MUST_LAST, TrialEntries
-from rastrainer_simulator.record.trial_records import UnmeasuredRecord
+from rastrainer_simulator.record.trial_records import UnmeasuredRecord, with_record
 from rastrainer_simulator.state import OperatorInput, SimulationState, StepResult
 from rastrainer_simulator.training.rules import ENDING_A_TRIAL, RECORDING_FAILED
 
@@ -112,7 +119,8 @@ class TrialRecorder:
         training = result.state.training
         if training.trial_id and training.trial_id != before.training.trial_id:
             self._start(simulation, before, result)
-        if self._waiting is not None and any(e.kind in MUST_LAST for e in result.events):
+        is_lasting = any(isinstance(event.entry, MUST_LAST) for event in result.events)
+        if self._waiting is not None and is_lasting:
             self._resume(simulation, before)
         trial = self._open
         if trial is None:
@@ -120,7 +128,6 @@ class TrialRecorder:
         if any(command.name == RECORDING_FAILED for command in operator_input.commands):
             self._keep_refused(trial, simulation, operator_input, result)
             return None
-        is_lasting = any(event.kind in MUST_LAST for event in result.events)
         if trial.is_registered:
             # Nothing but the final registration or the score comes after the record.
             return self._write_answer(operator_input, result) if is_lasting else None
@@ -135,7 +142,7 @@ class TrialRecorder:
         is_due = trial.entries.pending and result.state.tick % FLUSH_TICKS == 0
         return self._submit(trial, is_awaited=False) if is_due and not trial.is_stuck else None
 
-    def note_display(self, report: NotedReport, state: SimulationState) -> None:
+    def note_display(self, report: Report, state: SimulationState) -> None:
         if self._open is not None and self._open.registering is None:
             self._open.entries.add_display(report, state)
 
@@ -144,7 +151,7 @@ class TrialRecorder:
         trial = self._open
         if trial is None or trial.registering is not None:
             return
-        trial.entries.pending.append({"kind": "stopped", **stamp(state.tick, state.sim_time)})
+        trial.entries.pending.append(Line(Stamp.now(state.tick, state.sim_time), Stopped()))
         self._submit(trial, is_awaited=False)
         self._end(trial.journal.close)
 
@@ -164,7 +171,7 @@ class TrialRecorder:
         assert self._waiting is not None
         (reading, since), self._waiting = self._waiting, None
         entries = TrialEntries.resumed(
-            simulation, state, reading.entries, since, self._dt, self._session
+            simulation, state, tuple(reading.lines()), since, self._dt, self._session
         )
         self._open = _OpenTrial(entries, Journal.reopened(reading))
 
@@ -190,18 +197,19 @@ class TrialRecorder:
             trial.entries.add(simulation, operator_input, result)
 
     def _submit(self, trial: _OpenTrial, is_awaited: bool) -> Written:
-        future = self._writer.submit(trial.journal.write, trial.entries.taken(), sync=is_awaited)
+        lines = trial.entries.taken()
+        future = self._writer.submit(trial.journal.write_lines, lines, sync=is_awaited)
         return Written(future, is_awaited)
 
     def _register(
         self, trial: _OpenTrial, simulation: Simulation, record: UnmeasuredRecord
     ) -> Written:
         truth, seed = simulation.truth, simulation.trial_seed
-        journal, entries = trial.journal, trial.entries.taken()
+        journal, lines = trial.journal, trial.entries.taken()
 
         def write() -> None:
             measured = record.measured(self._archive.was_played)
-            journal.write(entries, sync=True)
+            journal.write_lines(with_record(lines, measured), sync=True)
             journal.close()
             sealed = replace(measured, journal_sha256=journal.last_hash)
             self._archive.add(ArchivedTrial(sealed, truth, seed), journal)
@@ -220,20 +228,18 @@ class TrialRecorder:
 
         It is offered even if it cannot be written: the journal writes it with the next entry.
         """
-        times = stamp(result.state.tick, result.state.sim_time)
+        at = Stamp.now(result.state.tick, result.state.sim_time)
         given = [c for c in operator_input.commands if c.name == CommandName.ABORT]
         reason = given[-1].arguments.get("reason") if given else None
-        record = trial.entries.records.aborted(
-            before, reason or AbortReason.CLIENT.value, times["utc"]
-        )
-        trial.entries.pending.append(attempt_entry(record, times))
-        journal, entries = trial.journal, trial.entries.taken()
+        record = trial.entries.records.aborted(before, reason or AbortReason.CLIENT.value, at.utc)
+        trial.entries.pending.append(Line(at, Attempt(record_to_json(record))))
+        journal, lines = trial.journal, trial.entries.taken()
 
         def write() -> None:
             try:
-                journal.write(entries, sync=True)
+                journal.write_lines(lines, sync=True)
             finally:
-                self._archive.add(ArchivedAttempt(record), journal)
+                self._archive.add(ArchivedTrial(record), journal)
 
         written = Written(self._writer.submit(write), is_awaited=False)
         self._end(trial.journal.close)
@@ -241,8 +247,10 @@ class TrialRecorder:
 
     def _write_answer(self, operator_input: OperatorInput, result: StepResult) -> Written:
         ending = [c for c in operator_input.commands if c.name in ENDING_A_TRIAL][-1]
-        times = stamp(result.state.tick, result.state.sim_time) | {"sender": ending.sender}
-        future = self._writer.submit(self._archive.answer, ending.name, ending.arguments, times)
+        at = Stamp.now(result.state.tick, result.state.sim_time)
+        future = self._writer.submit(
+            self._archive.answer, ending.name, ending.arguments, at, ending.sender
+        )
         return Written(future, is_awaited=True)
 
     def _end(self, leave: Callable[[], None]) -> None:

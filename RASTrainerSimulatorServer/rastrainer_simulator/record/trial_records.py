@@ -7,7 +7,17 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from rastrainer.errors import InputError
+from rastrainer.journal.entries import (
+    AcceptedCheckpoint,
+    Continued,
+    Line,
+    PhaseChange,
+    Registered,
+    Sample,
+)
 from rastrainer.journal.folder import UNNUMBERED
+from rastrainer.journal.recording import RecordedEvent
 from rastrainer.json_records import record_to_json
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.motion.trial_motion import trial_motion
@@ -18,7 +28,6 @@ from rastrainer.procedure.record import (
     RecordedAttempt,
     RegisteredTouch,
     TouchedCheckpoint,
-    UsedRegistration,
 )
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
@@ -42,7 +51,7 @@ if TYPE_CHECKING:
 
 
 class TrialRecords:
-    """Makes the records of a trial from its state and from what is recorded with it.
+    """Makes the records of a trial from its state and its journal.
 
     Attributes:
         dates: when a point was touched or traced, by its simulated time.
@@ -66,7 +75,7 @@ class TrialRecords:
         return AbortedTrial(
             aborted_utc=utc,
             elapsed_s=before.elapsed,
-            # A procedure that is paused is aborted in what it was paused in.
+            # A paused procedure is aborted in the phase before the pause.
             phase=(stage if stage in PROCEDURE_PHASES else training.phase).value,
             reason=reason,
             traced=0 if training.trace is None else len(training.trace.points),
@@ -123,30 +132,36 @@ class TrialRecords:
 class UnmeasuredRecord:
     """Work that the tick of Register leaves to another thread.
 
-    A long trial's motion metrics take longer than a tick.
+    A long trial's motion metrics take longer than a tick. `seed` gives the head's pose.
     """
 
-    _record: TrialRecord
-    _trajectory: Trajectory
-    _entry: dict[str, Any]
+    record: TrialRecord
+    seed: int
+    trajectory: Trajectory
 
     def measured(self, was_played: Callable[[int], bool] = lambda _seed: False) -> TrialRecord:
-        """Return the record with its motion metrics, and put it into the entry of Register.
+        """Return the record with its motion metrics.
 
-        `was_played` tells of a seed of a head's pose whether an earlier trial had it.
+        `was_played` returns whether an earlier trial had a seed.
         """
-        played = self._record.played
+        played = self.record.played
         if played is not None and played.seed_source != SeedSource.DRAWN.value:
-            played = replace(played, is_seed_repeated=was_played(self._entry["seed"]))
-        motion = trial_motion(self._trajectory)
-        record = replace(self._record, motion=motion, played=played)
-        self._entry["record"] = record_to_json(record)
-        return record
+            played = replace(played, is_seed_repeated=was_played(self.seed))
+        return replace(self.record, motion=trial_motion(self.trajectory), played=played)
+
+
+def with_record(lines: Iterable[Line], record: TrialRecord) -> list[Line]:
+    """Return the lines of a trial with its record in the entry of Register."""
+    whole = record_to_json(record)
+    return [
+        Line(at, replace(entry, record=whole) if isinstance(entry, Registered) else entry)
+        for at, entry in lines
+    ]
 
 
 MEANINGFUL_MM = 0.05
 """Distance back after which a feed counts as reversed."""
-_NAMES = {Phase.DRILLING.value: "drill", Phase.INSERTING.value: "instrument"}
+_NAMES = {Phase.DRILLING: "drill", Phase.INSERTING: "instrument"}
 
 
 @dataclass
@@ -178,7 +193,7 @@ class _Feeding:
 
 
 class FeedRecording:
-    """Collects the samples of drill and instrument; `metrics` are those of a trajectory so far."""
+    """Collects the samples of drill and instrument; `metrics` describe a trajectory so far."""
 
     def __init__(self) -> None:
         self._trajectory = 0
@@ -186,9 +201,10 @@ class FeedRecording:
         self._last: tuple[float, float] | None = None
         self._feedings: dict[tuple[int, str], _Feeding] = defaultdict(_Feeding)
 
-    def add(self, entry: Mapping[str, Any]) -> None:
-        if entry["kind"] == "sample" and "feedMm" in entry:
-            sim_time, depth_mm = entry["simTimeS"], entry["feedMm"]
+    def add(self, line: Line) -> None:
+        entry = line.entry
+        if isinstance(entry, Sample) and entry.feed_mm is not None:
+            sim_time, depth_mm = line.at.sim_time_s, entry.feed_mm
             feeding = self._feedings[self._trajectory, self._tool]
             if self._last is None:
                 # Another hole begins, or the same one after a pause: that is no reversal.
@@ -197,11 +213,11 @@ class FeedRecording:
                 time, depth = self._last
                 feeding.move(depth_mm, depth_mm - depth, sim_time - time)
             self._last = sim_time, depth_mm
-        elif entry["kind"] == "phase" and "procedure" in entry:
-            self._trajectory = entry["procedure"]["trajectory"]
-            self._tool = _NAMES.get(entry["procedure"]["stage"], "")
+        elif isinstance(entry, PhaseChange) and entry.procedure is not None:
+            self._trajectory = entry.procedure.trajectory
+            self._tool = _NAMES.get(entry.procedure.stage, "")
             self._last = None
-        elif entry["kind"] == "continued":
+        elif isinstance(entry, Continued):
             self._last = None
 
     def metrics(self, trajectory: int) -> dict[str, float]:
@@ -280,41 +296,37 @@ def _times(parts: Iterable[Mapping[Phase, float]]) -> dict[str, float]:
 
 
 def procedure_after(
-    before: ProcedureState, entry: Mapping[str, Any], time_s: float, plan: Procedure
+    before: ProcedureState, event: RecordedEvent, plan: Procedure
 ) -> ProcedureState:
-    """Return the progress of a procedure after an event of its trial, at the trial's time.
-
-    Raises:
-        KeyError, TypeError, ValueError: the entry is not as it should be.
-    """
-    if entry["kind"] == "checkpoint":
+    """Return the progress of a procedure after an event of its trial."""
+    entry = event.entry
+    if isinstance(entry, AcceptedCheckpoint):
         touched = CheckedPoint(
-            entry["checkpoint"],
-            in_meters(entry["positionMm"]),
-            entry["errorMm"] / MM_PER_M,
-            entry["simTimeS"],
-            time_s,
+            entry.checkpoint,
+            in_meters(entry.position_mm),
+            entry.error_mm / MM_PER_M,
+            event.sim_time_s,
+            event.time_s,
         )
         return replace(before, checkpoints=(*before.checkpoints, touched))
-    if "procedure" not in entry:
+    if not isinstance(entry, PhaseChange) or entry.procedure is None:
         return before
-    if "registration" in entry:
-        registration = UsedRegistration.from_arguments(entry["registration"])
-        registered = RegisteredPlan.of(registration.matrix)
+    if entry.registration is not None:
+        registered = RegisteredPlan.of(entry.registration.matrix)
         if registered is None:
-            raise ValueError("its registration is not rigid")
+            raise InputError("A journal entry is malformed: its registration is not rigid.")
         lines = tuple(TrajectoryState(registered.line(each)) for each in plan.trajectories)
-        before = replace(before, registration=registration, trajectories=lines)
-    stage, number = Phase(entry["procedure"]["stage"]), entry["procedure"]["trajectory"]
+        before = replace(before, registration=entry.registration, trajectories=lines)
+    stage, number = entry.procedure.stage, entry.procedure.trajectory
     if before.stage is Phase.INSERTING and stage is not Phase.INSERTING:
-        here, depth = before.trajectories[before.trajectory], entry.get("feedMm", 0.0) / MM_PER_M
+        here, depth = before.trajectories[before.trajectory], (entry.feed_mm or 0.0) / MM_PER_M
         before = before.with_present(replace(here, instrument_depth=depth))
     after = replace(before, stage=stage, trajectory=number)
     if stage is Phase.RUNNING:
         return replace(after, registration=None, checkpoints=(), trajectories=())
-    if "ahead" in entry:
+    if entry.ahead is not None and entry.position_mm and entry.direction:
         here = after.trajectories[number]
-        guide = GuideAxis(in_meters(entry["positionMm"]), vector(entry["direction"]))
+        guide = GuideAxis(in_meters(entry.position_mm), entry.direction)
         locked = replace(here, alignments=here.alignments + 1, guide=guide)
         return after.with_present(locked)
     return after

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -51,7 +51,7 @@ def write_film(
     """Write a trial's touches as a film (VP9 in WebM), whole or not at all.
 
     The picture is the best view of the next fiducial, with the far view in its corner. `speed` is
-    in seconds of the trial per second of the film; `progress` is told the share that is done.
+    in seconds of the trial per second of the film; `progress` gets the finished share.
     """
     if path.suffix.lower() != ".webm":
         raise InputError(f"The film {path.name} must be named *.webm.")
@@ -66,7 +66,7 @@ def write_film(
     if not encoder.isOpened():
         raise InputError(f"The film {path} cannot be written: is its folder there and writable?")
     count = max(1, round(trial.duration_s / speed * RATE_HZ))
-    shown = filmed(trial, setup, [number * speed / RATE_HZ for number in range(count)])
+    shown = filmed(trial, setup, (number * speed / RATE_HZ for number in range(count)))
     try:
         for number, pixels in enumerate(shown, start=1):
             encoder.write(pixels[..., ::-1])
@@ -80,21 +80,20 @@ def write_film(
 
 
 def filmed(
-    trial: RecordedTrial, setup: SimulationSetup, times_s: Sequence[float]
+    trial: RecordedTrial, setup: SimulationSetup, times_s: Iterable[float]
 ) -> Generator[np.ndarray]:
     """Yield pictures of a trial with touches and clock, (height, width, 3) uint8.
 
-    Each picture is `1 / RATE_HZ` s after the one before for the view, which moves gently.
+    The view moves gently, as if the pictures were `1 / RATE_HZ` s apart.
     """
     import cv2
 
     scene = _FilmedScene(trial, setup)
-    states = [trial.state_at(time_s) for time_s in times_s]
-    shown = frames(scene.renderer, scene.shots(states))
+    shown = frames(scene.renderer, scene.shots(map(trial.state_at, times_s)))
     try:
-        for state in states:
-            pixels = next(shown)
+        for pixels in shown:
             lay_in_corner(pixels, next(shown))
+            state = scene.state
             text = f"{len(state.training.touches)}/{scene.count}   {clock(state.completion_time)}"
             for color, width in (((20, 20, 20), 6), ((255, 255, 255), 2)):
                 cv2.putText(
@@ -106,12 +105,12 @@ def filmed(
 
 
 class _FilmedScene:
-    """The scene of a trial, whose moving parts follow a state from frame to frame."""
+    """The scene of a trial, whose moving parts follow `state` from frame to frame."""
 
     def __init__(self, trial: RecordedTrial, setup: SimulationSetup) -> None:
         scenario = setup.scenario
-        head = read_head_mesh(scenario.head_mesh)
-        first = trial.state_at(0.0)
+        head = read_head_mesh(scenario.head)
+        self.state = first = trial.state_at(0.0)
         task = task_by_method(scenario, trial.task, first.training.method)
         self.count = len(task.labels)
         self._scenario, self._robot, self._head_base = scenario, setup.robot, head.base
@@ -128,11 +127,11 @@ class _FilmedScene:
         self.renderer = vtkRenderer()
         light_room(self.renderer, Shadows.NONE)
 
-    def shots(self, states: Sequence[SimulationState]) -> Iterator[tuple[Camera, tuple[int, int]]]:
+    def shots(self, states: Iterable[SimulationState]) -> Iterator[tuple[Camera, tuple[int, int]]]:
         """Show each state in turn; yield its camera and the corner's, each with its size."""
         inset = tuple(round(INSET_SHARE * length) for length in SIZE)
         for state in states:
-            training = state.training
+            self.state, training = state, state.training
             moment = SceneMoment(
                 self._kinematics.links(state.q),
                 self._head_to_world,

@@ -10,10 +10,10 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import ReplayTrack, read_track
-from rastrainer.json_records import record_from_json
 from rastrainer.protocol import GhostRule, Phase
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.core.setup import RecordedSetup, SimulationSetup
+from rastrainer_simulator.core.interrupted_trial import seed_of
+from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.net.views.outgoing import GHOST_LINKS
 from rastrainer_simulator.replay.recorded_trial import JournalLoading
 from rastrainer_simulator.robot.kinematics import make_kinematics
@@ -32,12 +32,12 @@ class Ghost:
     """
 
     def __init__(self, track: ReplayTrack, setup: SimulationSetup, head_to_world: np.ndarray):
-        """Prepare; HeadToWorld is that of the present trial, (4, 4) float, mm."""
+        """Prepare for the HeadToWorld of the present trial, (4, 4) float, mm."""
         header, touches = track.header, track.trajectory.touches
-        other = setup.difference(record_from_json(RecordedSetup, header, "The journal's header"))
+        other = setup.difference(header)
         if other in ("scenario", "robot") or not touches:
             raise InputError("The trial cannot be a ghost: it has another head, or no touch.")
-        then = setup.scenario.perturbed_head_to_world(header["seed"])
+        then = setup.scenario.perturbed_head_to_world(seed_of(header))
         self._moved = head_to_world @ np.linalg.inv(then)
         self._moved[:3, 3] /= MM_PER_M
         self._track = track
@@ -88,7 +88,7 @@ class TrialGhost:
 
         def load(check: Callable[[], None]) -> Ghost | None:
             for journal in journals:
-                # Of another head, damaged, or deleted meanwhile: try the next best.
+                # It has another head, is damaged or was deleted meanwhile: try the next best.
                 with suppress(InputError, LookupError, TypeError, ValueError, AttributeError):
                     return Ghost(read_track(journal, check), setup, head_to_world)
             return None

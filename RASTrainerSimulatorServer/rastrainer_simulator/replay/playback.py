@@ -1,4 +1,4 @@
-"""What the views show: the live arm, the tutorial's points on the head, or recorded trials."""
+"""Sources of the states that views show: the live arm, or recorded trials."""
 
 from __future__ import annotations
 
@@ -94,45 +94,47 @@ async def play_on(advance: Callable[[float], None]) -> None:
 
 
 class PlaybackSwitch:
-    """A `StateSource` that passes on the control loop's states, or those of a playback.
+    """A `StateSource` that passes on the states of another source, or of a playback.
 
-    The control loop runs on unchanged. Subscribers are called in its or the playback's thread.
+    The other, such as the control loop, runs on unchanged. Subscribers are called in its or the
+    playback's thread.
 
     Attributes:
-        alter: changes a state of the control loop before it is shown, in any thread; None shows it
-            as it is.
+        alter: changes a state of the other before it is shown, in any thread; None shows it as it
+            is.
+        playback: the playback that is shown; None for the other source.
     """
 
-    def __init__(self, control_loop: ControlLoop) -> None:
+    def __init__(self, source: ControlLoop | Playback) -> None:
         self.alter: Callable[[SimulationState], SimulationState] | None = None
-        self._control_loop = control_loop
-        self._playback: Playback | None = None
+        self.playback: Playback | None = None
+        self._source = source
         self._subscribers: Subscribers[StepResult] = Subscribers()
         self.subscribe = self._subscribers.add
         self._end_playback: Callable[[], None] = lambda: None
-        self._unsubscribe = control_loop.subscribe(self._take_tick)
+        self._unsubscribe = source.subscribe(self._take_tick)
 
     @property
     def latest(self) -> SimulationState:
-        if self._playback is not None:
-            return self._playback.latest
-        alter, now = self.alter, self._control_loop.latest
+        if self.playback is not None:
+            return self.playback.latest
+        alter, now = self.alter, self._source.latest
         return now if alter is None else alter(now)
 
     @property
     def setup(self) -> SimulationSetup:
-        return self._control_loop.setup
+        return (self.playback or self._source).setup
 
     @property
     def statistics(self) -> LoopStatistics:
-        return self._control_loop.statistics
+        return self._source.statistics
 
     def show(self, playback: Playback | None) -> None:
-        """Show a playback from now on, or the live arm for None."""
-        if playback is self._playback:
+        """Show a playback from now on, or the other source for None."""
+        if playback is self.playback:
             return
         self._end_playback()
-        self._playback = playback
+        self.playback = playback
         if playback is not None:
             self._end_playback = playback.subscribe(self._subscribers.publish)
 
@@ -141,32 +143,7 @@ class PlaybackSwitch:
         self._unsubscribe()
 
     def _take_tick(self, result: StepResult) -> None:
-        if self._playback is None:
+        if self.playback is None:
             alter = self.alter
             shown = result if alter is None else replace(result, state=alter(result.state))
             self._subscribers.publish(shown)
-
-
-class ShownPlayback:
-    """A `StateSource` of the playback that is shown now, in the event loop's thread."""
-
-    statistics = LoopStatistics()
-
-    def __init__(self, playback: Playback) -> None:
-        self.playback = playback
-        self._subscribers: Subscribers[StepResult] = Subscribers()
-        self.subscribe = self._subscribers.add
-        self._end = playback.subscribe(self._subscribers.publish)
-
-    @property
-    def latest(self) -> SimulationState:
-        return self.playback.latest
-
-    @property
-    def setup(self) -> SimulationSetup:
-        return self.playback.setup
-
-    def show(self, playback: Playback) -> None:
-        self._end()
-        self.playback = playback
-        self._end = playback.subscribe(self._subscribers.publish)

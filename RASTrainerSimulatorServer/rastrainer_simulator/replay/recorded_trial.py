@@ -12,25 +12,34 @@ from typing import Generic, TypeVar
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
+from rastrainer.journal.entries import (
+    AcceptedTouch,
+    CameraChange,
+    PhaseChange,
+    ProximityChange,
+    Registered,
+    Rejected,
+    Stroke,
+    TracePoint,
+    Undo,
+)
 from rastrainer.journal.recording import RecordedEvent, ReplayTrack, read_track
 from rastrainer.json_records import record_from_json
 from rastrainer.procedure.plan import Procedure
-from rastrainer.protocol import TRACED_METHODS, Phase, Proximity, RegistrationMethod
-from rastrainer.scenario.scenario import method_of, task_by_method
+from rastrainer.protocol import TRACED_METHODS, Phase, Proximity
+from rastrainer.scenario.scenario import task_by_method
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.analysis import analyze_trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.collision.collision import stand_pose
 from rastrainer_simulator.core.interrupted_trial import refusing_malformed, seed_of
-from rastrainer_simulator.core.setup import RecordedSetup, SimulationSetup
+from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.record.trial_records import procedure_after
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.state import (
     Event,
-    EventKind,
     Motion,
-    PlanInWorld,
     SimulationState,
     TrainingState,
 )
@@ -50,12 +59,11 @@ AFTER_S = 0.25
 
 @dataclass(frozen=True)
 class _Situation:
-    """What is visible besides the arm, from one event to the next."""
+    """The visible state besides the arm, from one event to the next."""
 
     training: TrainingState
     proximity: Proximity
     camera: str
-    planned_target: PlanInWorld | None = None
 
 
 class RecordedTrial:
@@ -73,8 +81,7 @@ class RecordedTrial:
         """Prepare a trial; `setup` has the scenario and the robot that it was recorded with."""
         with refusing_malformed("The trial cannot be shown again: an entry is not as it should be"):
             header, scenario = track.header, setup.scenario
-            recorded = record_from_json(RecordedSetup, header, "The journal's header")
-            other = setup.difference(recorded)
+            other = setup.difference(header)
             if other:
                 words = {"procedure": "another procedure", "landmarks": "other landmarks"}
                 raise InputError(
@@ -82,33 +89,29 @@ class RecordedTrial:
                 )
             if not track.events:
                 raise InputError("The trial cannot be shown again: its journal holds no event.")
-            self.trainee, self.task = str(header["trainee"]), str(header["task"])
+            self.trainee, self.task = header.trainee, header.task
             self._track = track
             self._kinematics = make_kinematics(setup.robot)
             self._links = tuple(link.name for link in setup.robot.moving_links)
             self._tip = setup.robot.tip.name
             self._head_to_world = scenario.perturbed_head_to_world(seed_of(header))
             self._head_to_world[:3, 3] /= MM_PER_M
-            base = read_head_mesh(scenario.head_mesh).base / MM_PER_M
+            base = read_head_mesh(scenario.head).base / MM_PER_M
             self._stand_to_world = stand_pose(self._head_to_world, base)
             self._event_times = [event.time_s for event in track.events]
             self.duration_s = max(float(track.trajectory.times_s[-1]), self._event_times[-1])
             settings = setup.settings
-            method = method_of(recorded.method.name if recorded.method else None)
-            task = task_by_method(scenario, self.task, method)
+            task = task_by_method(scenario, self.task, header.registration_method)
             self._situations = _situations(
                 track,
                 task.labels,
-                header["before"]["camera"] or settings.camera,
-                scenario.procedure(recorded.procedure.name) if recorded.procedure else None,
-                method,
+                header.before.camera or settings.camera,
+                scenario.procedure(header.procedure.name) if header.procedure else None,
             )
             places = self._head_to_world[:3, :3] @ (task.fiducials / MM_PER_M).T
             places = (places + self._head_to_world[:3, 3:]).T
             self._goals = dict(zip(task.labels, map(tuple, places.tolist()), strict=True))
             self._training_settings = settings.training
-            self._start_tick, self._tick_s = int(header["before"]["tick"]), float(header["tickS"])
-            self._start_s = float(header["simTimeS"]) - self._tick_s
             self.worst = _worst(track, setup)
 
     def state_at(self, time_s: float) -> SimulationState:
@@ -129,8 +132,8 @@ class RecordedTrial:
         elif procedure is None and training.phase not in (Phase.RUNNING, Phase.PAUSED):
             elapsed = training.completed_s
         return SimulationState(
-            tick=self._start_tick + round(time_s / self._tick_s),
-            sim_time=self._start_s + time_s,
+            tick=track.header.before.tick + round(time_s / track.header.tick_s),
+            sim_time=track.start_s + time_s,
             q=q,
             tool_tip_to_world=poses[self._tip],
             link_to_world=tuple(poses[name] for name in self._links),
@@ -143,7 +146,7 @@ class RecordedTrial:
             motion=Motion.NONE,
             operator="",
             camera=now.camera,
-            planned_target=now.planned_target,
+            planned_target=None,
             depth=depth_m,
             feed=float(track.at(time_s, track.feed_mm)) / MM_PER_M if is_fed else 0.0,
             # The journal has one clearance for the whole tool: a contact counts as the tip's.
@@ -161,17 +164,17 @@ class RecordedTrial:
         """Return what happened later than one time and no later than another."""
         first = bisect.bisect_right(self._event_times, after_s)
         end = bisect.bisect_right(self._event_times, until_s)
-        return tuple(map(_event, self._track.events[first:end]))
+        return tuple(Event(each.sim_time_s, each.entry) for each in self._track.events[first:end])
 
 
 T = TypeVar("T")
 
 
 class JournalLoading(Generic[T]):
-    """Reads journals in a thread, beside the control loop.
+    """Reads journals in a thread while the control loop runs.
 
     Attributes:
-        loaded: what is made of them, or an `InputError` if that cannot be.
+        loaded: the result of `load`, or its `InputError`.
     """
 
     def __init__(self, load: Callable[[Callable[[], None]], T]) -> None:
@@ -209,15 +212,14 @@ def _situations(
     labels: tuple[str, ...],
     camera: str,
     plan: Procedure | None,
-    method: RegistrationMethod,
 ) -> list[_Situation]:
-    """Return the situation after each event; `plan` is that of the trial's procedure, if any."""
-    header = track.header
+    """Return the situation after each event; `plan` is the trial's procedure, if any."""
+    header, method = track.header, track.header.registration_method
     training = TrainingState(
-        trainee=header["trainee"],
-        task=header["task"],
-        mode=header["mode"],
-        trial_id=header["trialId"],
+        trainee=header.trainee,
+        task=header.task,
+        mode=header.mode,
+        trial_id=header.trial_id,
         procedure=None if plan is None else ProcedureState(plan.name),
         method=method,
         trace=TraceState() if method in TRACED_METHODS else None,
@@ -228,86 +230,65 @@ def _situations(
         situation = _after(situation, event, labels)
         training = situation.training
         if plan is not None and training.procedure is not None:
-            procedure = procedure_after(training.procedure, event.entry, event.time_s, plan)
+            procedure = procedure_after(training.procedure, event, plan)
             situation = replace(situation, training=replace(training, procedure=procedure))
         situations.append(situation)
     return situations
 
 
 def _after(before: _Situation, event: RecordedEvent, labels: tuple[str, ...]) -> _Situation:
-    entry, kind = event.entry, event.entry["kind"]
-    if kind == "proximity":
-        return replace(before, proximity=Proximity(entry["to"]))
-    if kind == "camera":
-        return replace(before, camera=entry["camera"])
-    if kind == "plan":
-        begin = None if entry["entryMm"] is None else in_meters(entry["entryMm"])
-        position = in_meters(entry["positionMm"])
-        plan = PlanInWorld(entry["name"], position, begin, entry["reachable"])
-        return replace(before, planned_target=plan)
+    match event.entry:
+        case ProximityChange(to=proximity):
+            return replace(before, proximity=proximity)
+        case CameraChange(camera=camera):
+            return replace(before, camera=camera)
     return replace(before, training=_training_after(before.training, event, labels))
 
 
 def _training_after(
     before: TrainingState, event: RecordedEvent, labels: tuple[str, ...]
 ) -> TrainingState:
-    entry, touches = event.entry, before.touches
-    if entry["kind"] == "rejected":
-        counts = "checkpoint" not in entry
-        return replace(before, rejected=before.rejected + counts, instruction=entry["message"])
-    if entry["kind"] == "checkpoint":
-        return before
-    if before.trace is not None and entry["kind"] in ("trace", "stroke"):
-        return replace(before, trace=_trace_after(before.trace, event))
-    if entry["kind"] == "touch":
-        place = in_meters(entry["positionMm"])
-        touch = TouchState(entry["label"], place, entry["simTimeS"], event.time_s)
-        touches = (*touches, touch)
-        following = labels[len(touches)] if len(touches) < len(labels) else None
-        return replace(before, touches=touches, next_point=following)
-    if entry["kind"] == "undo":
-        return replace(
-            before,
-            touches=touches[: entry["kept"]],
-            next_point=entry["nextPoint"],
-            undone=before.undone + 1,
-        )
-    following = entry["nextPoint"]
-    # Touches that could not be written were undone: the phase has the next fiducial.
-    kept = labels.index(following) if following in labels else len(touches)
-    return replace(
-        before,
-        phase=Phase(entry["phase"]),
-        next_point=following,
-        instruction=entry["instruction"],
-        touches=touches[:kept],
-        trace=None if before.trace is None else before.trace.cut(entry["traced"]),
-    )
-
-
-def _trace_after(before: TraceState, event: RecordedEvent) -> TraceState:
-    entry = event.entry
-    if entry["kind"] == "trace":
-        place = in_meters(entry["positionMm"])
-        return before.with_point(TracedPoint(place, entry["simTimeS"], event.time_s))
-    if entry["on"]:
-        return before.begun()
-    return before.undone() if "undone" in entry else before.ended()
-
-
-def _event(event: RecordedEvent) -> Event:
-    kind = event.entry["kind"]
-    is_phase = kind in ("registered", "aborted")
-    return Event(
-        EventKind.PHASE if is_phase else EventKind(kind), event.entry["simTimeS"], event.entry
-    )
+    touches, trace = before.touches, before.trace
+    match event.entry:
+        case Rejected(checkpoint=checkpoint, message=message):
+            rejected = before.rejected + (checkpoint is None)
+            return replace(before, rejected=rejected, instruction=message)
+        case TracePoint(position_mm=place) if trace is not None:
+            point = TracedPoint(in_meters(place), event.sim_time_s, event.time_s)
+            return replace(before, trace=trace.with_point(point))
+        case Stroke(on=True) if trace is not None:
+            return replace(before, trace=trace.begun())
+        case Stroke(undone=undone) if trace is not None:
+            return replace(before, trace=trace.undone() if undone else trace.ended())
+        case AcceptedTouch(label=label, position_mm=place):
+            touch = TouchState(label, in_meters(place), event.sim_time_s, event.time_s)
+            touches = (*touches, touch)
+            following = labels[len(touches)] if len(touches) < len(labels) else None
+            return replace(before, touches=touches, next_point=following)
+        case Undo(kept=kept, next_point=following):
+            undone_touches = before.undone + 1
+            return replace(
+                before, touches=touches[:kept], next_point=following, undone=undone_touches
+            )
+        case PhaseChange(phase=phase, next_point=following, instruction=instruction):
+            # Touches that could not be written were undone: the phase has the next fiducial.
+            kept = labels.index(following) if following in labels else len(touches)
+            return replace(
+                before,
+                phase=phase,
+                next_point=following,
+                instruction=instruction,
+                touches=touches[:kept],
+                trace=None if trace is None else trace.cut(event.entry.traced or 0),
+            )
+    return before
 
 
 def _worst(track: ReplayTrack, setup: SimulationSetup) -> tuple[str, float, float] | None:
-    registered = next((e.entry for e in track.events if e.entry["kind"] == "registered"), None)
+    registered = next((e.entry for e in track.events if isinstance(e.entry, Registered)), None)
     if registered is None:
         return None
-    record = record_from_json(TrialRecord, registered["record"])
+    record = record_from_json(TrialRecord, registered.record)
     worst = analyze_trial(record, setup.scenario, trajectory=track.trajectory).feedback.worst
     ends = {touch.label: touch.time_s for touch in track.trajectory.touches}
     labels = [point.label for point in record.points]

@@ -1,4 +1,4 @@
-"""What the views show and accept while a recorded trial is played."""
+"""The screen and the controls of the views while a recorded trial is played."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage
 from rastrainer_simulator.replay.playback import PERIOD_S, Playback
 from rastrainer_simulator.state import SimulationState, StepResult
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label, pair_label
-from rastrainer_simulator.viewpoint.best_view import BestView
+from rastrainer_simulator.viewpoint.best_view import BestView, BestViews
 from rastrainer_simulator.viewpoint.view_control import (
     STILL,
     Pictures,
@@ -25,7 +25,6 @@ from rastrainer_simulator.viewpoint.view_control import (
     camera_pose,
     orbit_to,
 )
-from rastrainer_simulator.viewpoint.view_search import BestViews
 
 STEP_S = 5.0
 SLOWLY = 0.5
@@ -33,7 +32,7 @@ SLOWLY = 0.5
 
 
 class PlayerAction(str, Enum):
-    """What can be done while a trial is shown again."""
+    """Actions of a viewer of a replay."""
 
     PLAY = "play"
     BACK = "back"
@@ -53,7 +52,7 @@ ACTIONS: Mapping[ControlName, PlayerAction] = {
     ControlName.BACK: PlayerAction.END,
     ControlName.MENU: PlayerAction.END,
 }
-"""What the controls do during a replay."""
+"""The actions of the controls during a replay."""
 
 
 class Player:
@@ -120,7 +119,7 @@ _KEYS = {
     "KeyM": PlayerAction.END,
     "Escape": PlayerAction.END,
 }
-"""W3C `KeyboardEvent.code` → what it does."""
+"""W3C `KeyboardEvent.code` → action."""
 _PAD = {
     0: PlayerAction.PLAY,
     1: PlayerAction.END,
@@ -142,7 +141,7 @@ RATE = "rate"
 _PLAY, _CAMERA = (("Space",), "hint.play"), (("KeyC",), "hint.camera")
 _SEEK = ("ArrowLeft", "ArrowRight"), "hint.seek"
 _HINTS = (_PLAY, _SEEK, (("ArrowUp",), "hint.worst"), _CAMERA, (("Escape",), "hint.end"))
-"""Keys, and the text of what they do."""
+"""Keys, and the text of their action."""
 _OF_RATERS = (_PLAY, _SEEK, _CAMERA, (("Escape",), "hint.rate"))
 
 

@@ -20,7 +20,7 @@ from markupsafe import Markup
 from rastrainer.number_text import fixed, significant
 from rastrainer.study.outcomes import mode_title, short_mode_title
 from rastrainer.study.tre_calibration import CalibrationPoint
-from rastrainer_simulator.report.comparisons import ModeComparison, tested
+from rastrainer_simulator.report.comparisons import ModeComparison
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -156,6 +156,8 @@ def drawn(
 
 Series = tuple[str, str, Sequence[Sequence[float]]]
 """Name, color, and the values of each group."""
+SCATTER = np.arange(300) * 0.618 % 1.0 - 0.5
+"""Offsets that keep neighboring dots apart, always the same."""
 MAX_DOTS = 40
 """A bar with more trials shows as many quantiles of them."""
 
@@ -179,7 +181,7 @@ def grouped_bars(
                     sd = float(np.std(own, ddof=1))
                     axes.vlines(place, mean - sd, mean + sd, color, linewidth=1.2)
                 shown = _thinned(own, MAX_DOTS)
-                chart.dots(place + 0.48 * width * _scattered(len(shown)), shown, color, 2.4, 0.9)
+                chart.dots(place + 0.48 * width * SCATTER[: len(shown)], shown, color, 2.4, 0.9)
         axes.set_xlim(-0.5, len(groups) - 0.5)
         axes.set_xticks(range(len(groups)), groups, fontsize=11, color=INK)
         chart.legend(48 / WIDTH)
@@ -194,12 +196,7 @@ def _thinned(values: Sequence[float] | np.ndarray, most: int) -> np.ndarray:
     )
 
 
-def _scattered(count: int) -> np.ndarray:
-    """Return offsets from -0.5 to 0.5 that keep neighbors apart, always the same."""
-    return np.arange(count) * 0.618 % 1.0 - 0.5
-
-
-LANE_HEIGHT, MAX_LANE_DOTS = 74, 300
+LANE_HEIGHT, MAX_LANE_DOTS = 74, len(SCATTER)
 
 
 def distribution(heading: str, lanes: Sequence[tuple[str, str, Sequence[float]]]) -> Markup:
@@ -214,7 +211,7 @@ def distribution(heading: str, lanes: Sequence[tuple[str, str, Sequence[float]]]
             ordered = np.sort(np.asarray(values, dtype=float))
             shown = _thinned(ordered, MAX_LANE_DOTS)
             radius = 3.2 if len(shown) <= 60 else 1.8
-            heights = place - 0.14 + 0.42 * _scattered(len(shown))
+            heights = place - 0.14 + 0.42 * SCATTER[: len(shown)]
             chart.dots(shown, heights, color, radius, 0.75)
             low, middle, high = np.quantile(ordered, [0.25, 0.5, 0.75])
             axes.hlines(place + 0.27, ordered[0], ordered[-1], color, linewidth=1.2)
@@ -327,8 +324,8 @@ def effect_sizes(comparisons: Sequence[ModeComparison]) -> Markup:
     """Return the chart; intervals beyond the axis end in an arrow."""
     shown = [
         (comparison, result.effect.value, result.effect.interval)
-        for comparison, result in tested(comparisons)
-        if result.effect is not None
+        for comparison in comparisons
+        if (result := comparison.result) is not None and result.effect is not None
     ]
     reach = max([1.0, *(abs(end) for _comparison, _gz, interval in shown for end in interval)])
     reach = min(MAX_EFFECT_SIZE, reach * 1.05)

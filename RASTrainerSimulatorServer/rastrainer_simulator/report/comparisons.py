@@ -14,7 +14,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.study.outcomes import Outcome
-from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.study.study_data import StudyData
 from rastrainer_simulator.statistics.paired import PairedComparison, compare_paired, holm
 
 SCORE = "score"
@@ -106,23 +106,25 @@ def with_adjusted_p(
     return tuple(replace(one, adjusted_p=adjusted.get(at)) for at, one in enumerate(found))
 
 
-def tested(comparisons: Sequence[ModeComparison]) -> list[tuple[ModeComparison, PairedComparison]]:
-    return [(one, one.result) for one in comparisons if one.result is not None]
-
-
 def paired_means(
     data: StudyData, name: str, first: str, second: str
 ) -> dict[str, tuple[float, float]]:
     """Return for each trainee the means in both modes over the tasks done in both."""
-    of_first = _task_means(data.of_mode(first), name)
-    of_second = _task_means(data.of_mode(second), name)
+    values: dict[tuple[str, str], dict[str, list[float]]] = {}
+    for trial in data.trials:
+        if trial.mode in (first, second) and name in trial.values:
+            of_task = values.setdefault((trial.trainee, trial.task), {})
+            of_task.setdefault(trial.mode, []).append(trial.values[name])
+    pairs: dict[str, list[list[float]]] = {}
+    for (trainee, _task), own in sorted(values.items()):
+        if len(own) == 2:
+            pair = [float(np.mean(own[mode])) for mode in (first, second)]
+            pairs.setdefault(trainee, []).append(pair)
     means = {}
     for trainee in data.trainees:
-        mine, others = of_first.get(trainee, {}), of_second.get(trainee, {})
-        common = sorted(set(mine) & set(others))
-        if common:
-            pair = [float(np.mean([values[task] for task in common])) for values in (mine, others)]
-            means[trainee] = (pair[0], pair[1])
+        if trainee in pairs:
+            one, other = np.mean(pairs[trainee], axis=0).tolist()
+            means[trainee] = one, other
     return means
 
 
@@ -146,17 +148,4 @@ def mode_delays(data: StudyData, first: str, second: str) -> dict[str, float]:
         trainee: float(np.mean(own[second]) - np.mean(own[first]))
         for trainee, own in periods.items()
         if own[first] and own[second]
-    }
-
-
-def _task_means(trials: Sequence[TrialRow], name: str) -> dict[str, dict[str, float]]:
-    """Return trainee → task → mean over the trainee's trials of that task."""
-    values: dict[str, dict[str, list[float]]] = {}
-    for trial in trials:
-        if name in trial.values:
-            of_trainee = values.setdefault(trial.trainee, {})
-            of_trainee.setdefault(trial.task, []).append(trial.values[name])
-    return {
-        trainee: {task: float(np.mean(found)) for task, found in tasks.items()}
-        for trainee, tasks in values.items()
     }

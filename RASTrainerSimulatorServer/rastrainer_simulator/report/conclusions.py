@@ -17,7 +17,7 @@ from rastrainer.study.outcomes import FILTER, mode_title, task_title
 from rastrainer.study.protocol.study_protocol import BALANCED
 from rastrainer.study.study_data import StudyData
 from rastrainer.trial import score_reference, scoring
-from rastrainer_simulator.report.comparisons import ModeComparison, compared_method, tested
+from rastrainer_simulator.report.comparisons import ModeComparison, compared_method
 from rastrainer_simulator.report.page import render
 from rastrainer_simulator.report.passing import ModePassing
 from rastrainer_simulator.report.target_errors import TITLES
@@ -36,9 +36,9 @@ def answers(
     left_out: Mapping[str, int],
 ) -> Markup:
     """Return the first screen: who passed, the differences shown, and the limits."""
-    results = tested(comparisons)
+    results = [one.result for one in comparisons if one.result is not None]
     n = max((len(comparison.trainees) for comparison in comparisons), default=0)
-    with_period = any(result.sequences is not None for _one, result in results)
+    with_period = any(result.sequences is not None for result in results)
     return render(
         "answers",
         data=data,
@@ -48,7 +48,7 @@ def answers(
         confirmatory=[one for one in comparisons if one.adjusted_p is not None],
         of_methods=[one for one in of_methods if one.adjusted_p is not None],
         titles=TITLES,
-        results=results,
+        has_results=bool(results),
         compared=n,
         are_few=0 < n < FEW_SUBJECTS,
         effect=detectable_effect(n, with_period) if results else None,

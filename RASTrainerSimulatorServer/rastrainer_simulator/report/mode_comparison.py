@@ -17,7 +17,7 @@ from rastrainer.study.outcomes import (
 )
 from rastrainer.study.study_data import StudyData, values_of
 from rastrainer_simulator.report import charts
-from rastrainer_simulator.report.comparisons import ModeComparison, tested
+from rastrainer_simulator.report.comparisons import ModeComparison
 from rastrainer_simulator.report.page import render
 from rastrainer_simulator.statistics.paired import equivalence_margin
 
@@ -56,7 +56,7 @@ def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> Markup:
     outcomes = [outcome for outcome in MOTION_OUTCOMES if outcome.name in found]
     if not outcomes:
         return Markup()
-    compared = {c.outcome.name: result for c, result in tested(comparisons)}
+    compared = {one.outcome.name: one.result for one in comparisons}
     rows = []
     for outcome in outcomes:
         values = [values_of(data.of_mode(mode), outcome.name) for mode in data.modes]
@@ -69,14 +69,14 @@ def paired_statistics(comparisons: Sequence[ModeComparison]) -> Markup:
     """Return tables, charts and sentences; "" if no trainee did two modes."""
     if not comparisons:
         return Markup()
-    results = tested(comparisons)
+    results = [(one.outcome, one.result) for one in comparisons if one.result is not None]
     return render(
         "paired_statistics",
         first=comparisons[0].first,
         second=comparisons[0].second,
         comparisons=comparisons,
         margin=equivalence_margin,
-        separated=[(one.outcome, found.sequences) for one, found in results if found.sequences],
+        separated=[(outcome, found.sequences) for outcome, found in results if found.sequences],
         is_order_known=any(comparison.order is not None for comparison in comparisons),
         charts=[charts.paired_lines(one) for one in comparisons[:MAX_PAIRED_CHARTS]],
         effects=charts.effect_sizes(comparisons) if any(r.effect for _, r in results) else None,

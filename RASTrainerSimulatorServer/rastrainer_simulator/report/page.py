@@ -65,8 +65,8 @@ _TEMPLATES = Environment(
 for _writer in WRITERS:
     _TEMPLATES.globals[_writer.__name__] = _TEMPLATES.filters[_writer.__name__] = _writer
 _TEMPLATES.globals |= {"alpha": ALPHA, "target_power": TARGET_POWER}
-for _macros in ("elements", "conclusions"):
-    _TEMPLATES.globals |= vars(_TEMPLATES.get_template(f"{_macros}.html").module)
+_MACROS = vars(_TEMPLATES.get_template("elements.html").module)
+_TEMPLATES.globals |= {name: each for name, each in _MACROS.items() if not name.startswith("_")}
 
 
 def render(template: str, **values: Any) -> Markup:

@@ -10,7 +10,6 @@ from markupsafe import Markup
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import counted, fixed, significant
-from rastrainer.study.outcomes import task_title
 from rastrainer.study.study_data import StudyData
 from rastrainer.trial.ctps import (
     CTPS_WARNING,
@@ -21,12 +20,11 @@ from rastrainer.trial.ctps import (
     task_number,
 )
 from rastrainer_simulator.report.mode_comparison import mean_and_sd
-from rastrainer_simulator.report.page import Cell, render
+from rastrainer_simulator.report.page import render
 from rastrainer_simulator.statistics.intervals import Correlation, correlation
 
 MAX_COLUMNS = 6
 RED, YELLOW, GREEN = (244, 165, 158), (252, 234, 170), (171, 219, 165)
-Line = list[Cell | str]
 
 
 def with_ctps(data: StudyData) -> StudyData:
@@ -51,28 +49,39 @@ def cohort_scores(data: StudyData, mode: str) -> CohortScores | None:
         return None
 
 
-def complexity_correlation(values: Iterable[tuple[str, float]]) -> Correlation | None:
-    """Return the correlation of values (task, value) with the tasks' numbers, or None."""
-    pairs = [(task_number(task), value) for task, value in values]
-    numbered = np.array([pair for pair in pairs if pair[0] is not None], dtype=float)
-    try:
-        return correlation(*numbered.T) if len(numbered) else None
-    except InputError:
-        return None
-
-
 def published_tables(data: StudyData) -> Markup:
     """Return both tables, colored from red (hard, low) to green (easy, high)."""
     tables = []
     for number, mode in enumerate(data.modes):
         scores = cohort_scores(data, mode)
-        if scores is not None:
-            few = len(scores.subjects) <= MAX_COLUMNS
-            lines = (_whole if few else _by_task)(data, mode, scores)
-            tables.append((number, mode, scores, lines, few, _complexity(data, mode, scores)))
+        if scores is None:
+            continue
+        trials = [trial for trial in data.of_mode(mode) if "rmse_mm" in trial.values]
+        tables.append(
+            {
+                "number": number,
+                "mode": mode,
+                "scores": scores,
+                "tasks": [task for task in data.tasks if task in scores.tasks],
+                "trials": {(trial.task, trial.trainee): trial.values for trial in trials},
+                "of_task": {
+                    task: [trial.values for trial in trials if trial.task == task]
+                    for task in scores.tasks
+                },
+                "span": np.quantile([*scores.subjects.values()], [0, 0.5, 1]).tolist(),
+                "complexity": complexity(data, mode, scores),
+            }
+        )
     if not tables:
         return Markup()
-    return render("published_tables", tables=tables, warning=CTPS_WARNING)
+    return render(
+        "published_tables",
+        tables=tables,
+        most_columns=MAX_COLUMNS,
+        color=performance_color,
+        mean_and_sd=mean_and_sd,
+        warning=CTPS_WARNING,
+    )
 
 
 def performance_color(value: float, values: Iterable[float]) -> str:
@@ -86,61 +95,25 @@ def performance_color(value: float, values: Iterable[float]) -> str:
     return "#" + "".join(f"{part:02x}" for part in mixed)
 
 
-def _whole(data: StudyData, mode: str, scores: CohortScores) -> list[Line]:
-    trials = {(t.task, t.trainee): t.values for t in data.of_mode(mode) if "rmse_mm" in t.values}
-    lines: list[Line] = []
-    for task in (task for task in data.tasks if task in scores.tasks):
-        line: Line = [task_title(task)]
-        for subject in scores.subjects:
-            values = trials.get((task, subject))
-            line += ["–", "–"]
-            if values is not None:
-                line[-2:] = [f"{values['completion_time_s']:.2f}", f"{values['rmse_mm']:.2f}"]
-        lines.append([*line, _performance(scores, task)])
-    last: Line = [Cell("User Perf.", kind="total")]
-    for score in scores.subjects.values():
-        color = performance_color(score, scores.subjects.values())
-        last.append(Cell(fixed(score, 2), 2, color, "total"))
-    return [*lines, [*last, Cell(fixed(scores.overall, 2), kind="total")]]
-
-
-def _by_task(data: StudyData, mode: str, scores: CohortScores) -> list[Line]:
-    """Return the table of a cohort too large for a column per subject."""
-    lines: list[Line] = []
-    for task in (task for task in data.tasks if task in scores.tasks):
-        own = [t.values for t in data.of_mode(mode) if t.task == task and "rmse_mm" in t.values]
-        times = mean_and_sd([values["completion_time_s"] for values in own], 1)
-        errors = mean_and_sd([values["rmse_mm"] for values in own], 2)
-        lines.append([task_title(task), str(len(own)), times, errors, _performance(scores, task)])
-    low, middle, high = np.quantile(list(scores.subjects.values()), [0, 0.5, 1])
-    span = f"{fixed(low, 1)} to {fixed(high, 1)}, median {fixed(middle, 1)}"
-    users = Cell(f"{len(scores.subjects)} users: {span}", 3, kind="total")
-    overall = Cell(fixed(scores.overall, 2), kind="total")
-    return [*lines, [Cell("User Perf.", kind="total"), users, overall]]
-
-
-def _performance(scores: CohortScores, task: str) -> Cell:
-    value = scores.tasks[task]
-    color = performance_color(value, scores.tasks.values())
-    return Cell(fixed(value, 2), color=color, kind="marginal")
-
-
-def _complexity(data: StudyData, mode: str, scores: CohortScores) -> dict[str, Correlation] | None:
-    """Return how time and CTPS correlate with the tasks' numbers."""
+def complexity(data: StudyData, mode: str, scores: CohortScores) -> dict[str, Correlation] | None:
+    """Return how times and CTPS of trials and tasks correlate with the tasks' numbers."""
     trials = data.ctps_trials(mode)
-    means = {
-        task: float(np.mean([t.completion_time_s for t in trials if t.task == task]))
-        for task in scores.tasks
+    times = {task: [t.completion_time_s for t in trials if t.task == task] for task in scores.tasks}
+    values = {
+        "times": [(trial.task, trial.completion_time_s) for trial in trials],
+        "scores": [(t.task, score) for t, score in zip(trials, scores.trials, strict=True)],
+        "task_times": [(task, float(np.mean(own))) for task, own in times.items()],
+        "task_scores": list(scores.tasks.items()),
     }
-    tasks = [trial.task for trial in trials]
-    found = {
-        "times": complexity_correlation((t.task, t.completion_time_s) for t in trials),
-        "scores": complexity_correlation(zip(tasks, scores.trials, strict=True)),
-        "task_times": complexity_correlation(means.items()),
-        "task_scores": complexity_correlation(scores.tasks.items()),
-    }
-    known = {name: one for name, one in found.items() if one is not None}
-    return known if len(known) == len(found) else None
+    found = {}
+    for name, pairs in values.items():
+        numbered = [(task_number(task), value) for task, value in pairs]
+        known = np.array([pair for pair in numbered if pair[0] is not None], dtype=float)
+        try:
+            found[name] = correlation(*known.reshape(-1, 2).T)
+        except InputError:
+            return None
+    return found
 
 
 def paper_notes(data: StudyData) -> Markup:

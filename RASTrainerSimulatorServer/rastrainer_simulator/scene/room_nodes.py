@@ -9,23 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer.scenario.scenario import Furniture
+from rastrainer.scenario.scenario import OperatingTable, Stand
 from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.scene import nodes
 from rastrainer_simulator.scene.nodes import (
-    CABINET,
     DARK,
-    DISPLAY,
-    DOOR,
-    FLOOR,
-    FLOOR_BORDER,
-    LAMP_GLASS,
     MAT,
     STEEL,
     TABLE_TOP,
     TRACE,
-    WALL,
-    WALL_BAND,
-    WALL_SEAM,
+    Material,
     Node,
     Surface,
     merged,
@@ -39,13 +32,7 @@ _SHAPES: dict[str, Callable[..., Surface]] = {
     "post": post,
     "turned": turned,
 }
-_MATERIALS = {
-    material.name: material
-    for material in (
-        *(FLOOR, FLOOR_BORDER, WALL, WALL_BAND, WALL_SEAM, DOOR, CABINET, STEEL),
-        *(DARK, DISPLAY, LAMP_GLASS),
-    )
-}
+_MATERIALS = {each.name: each for each in vars(nodes).values() if isinstance(each, Material)}
 
 
 def room_nodes() -> list[Node]:
@@ -88,14 +75,14 @@ COLLAR = 1.8
 """Radius of the collar around the stand's foot, in radii of the stand, with room to move."""
 
 
-def table_node(furniture: Furniture, head_base: np.ndarray) -> Node:
+def table_node(table: OperatingTable, stand: Stand, head_base: np.ndarray) -> Node:
     """Return the table, whose top is the plane z = 0 of World.
 
     `head_base` (3,) float, World, m, is the middle of the head's base in the nominal pose: below
     it are a mat and the collar of the stand.
     """
-    width, depth, thickness = np.array(furniture.table.size_mm) / MM_PER_M
-    x, y = np.array(furniture.table.center_mm) / MM_PER_M
+    width, depth, thickness = np.array(table.size_mm) / MM_PER_M
+    x, y = np.array(table.center_mm) / MM_PER_M
     left, right, near, far = x - width / 2, x + width / 2, y - depth / 2, y + depth / 2
     made = [soft_box((left, right), (near, far), (-thickness, 0.0), TABLE_TOP, 0.04, 0.008)]
     legs_x, legs_y = (left + LEG_INSET, right - LEG_INSET), (near + LEG_INSET, far - LEG_INSET)
@@ -108,7 +95,7 @@ def table_node(furniture: Furniture, head_base: np.ndarray) -> Node:
         rails = (height - RAIL, height + RAIL)
         made += [soft_box(legs_x, (y - RAIL, y + RAIL), rails, STEEL, 0.01) for y in legs_y]
         made += [soft_box((x - RAIL, x + RAIL), legs_y, rails, STEEL, 0.01) for x in legs_x]
-    radius = COLLAR * furniture.stand.diameter_mm / 2.0 / MM_PER_M
+    radius = COLLAR * stand.diameter_mm / 2.0 / MM_PER_M
     profile = [(radius, 0.0), (radius, 0.008), (radius - 0.006, 0.014)]
     x, y, _ = head_base
     made.append(turned(x, y, profile, STEEL))
@@ -117,9 +104,9 @@ def table_node(furniture: Furniture, head_base: np.ndarray) -> Node:
     return Node("table", merged(made))
 
 
-def stand_node(furniture: Furniture, head_base: np.ndarray) -> Node:
+def stand_node(stand: Stand, head_base: np.ndarray) -> Node:
     """Return the post under the head; its origin, in the middle of its top, is moved."""
-    radius = furniture.stand.diameter_mm / 2.0 / MM_PER_M
+    radius = stand.diameter_mm / 2.0 / MM_PER_M
     bottom = -float(head_base[2]) - INTO_TABLE
     profile = [(radius, bottom), (radius, -0.012), (radius - 0.004, -0.002)]
     return Node("stand", merged([turned(0.0, 0.0, profile, STEEL)]))

@@ -56,8 +56,7 @@ from rastrainer_simulator.scene.nodes import (
     painted,
 )
 from rastrainer_simulator.scene.room_nodes import room_nodes, stand_node, table_node
-from rastrainer_simulator.scene.skin import Shape
-from rastrainer_simulator.scene.skin_marks import skin_marks
+from rastrainer_simulator.scene.skin_marks import Shape, skin_marks
 from rastrainer_simulator.scene.surfaces import shaded, turned
 
 
@@ -197,7 +196,7 @@ def _surface(shape: Shape, material: Material) -> Surface:
 
 def scene_glb(scenario: Scenario, robot: RobotModel, task: Task | None) -> bytes:
     """Return the GLB that docs/views.md describes; takes seconds, and imports VTK."""
-    nodes = scene_nodes(scenario, robot, read_head_mesh(scenario.head_mesh), task)
+    nodes = scene_nodes(scenario, robot, read_head_mesh(scenario.head), task)
     scene = trimesh.Scene(base_frame=ROOT)
     scene.graph.update(frame_from=ROOT, frame_to=WORLD, matrix=WORLD_TO_GLTF)
     materials: dict[Material, PBRMaterial] = {}
@@ -214,8 +213,8 @@ def scene_nodes(
     return [
         *robot_nodes(robot),
         head_node(head, task),
-        stand_node(scenario.furniture, base),
-        table_node(scenario.furniture, base),
+        stand_node(scenario.stand, base),
+        table_node(scenario.table, scenario.stand, base),
         plan_node(scenario.procedures),
         *room_nodes(),
     ]

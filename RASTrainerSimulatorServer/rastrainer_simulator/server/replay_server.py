@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
@@ -59,9 +58,9 @@ async def _show_until(
     has_window: bool,
     announce: Callable,
 ) -> None:
-    """Show a playback to views, and in its own window if wanted, until `stop` is set.
+    """Show what is played to views, and in its own window if wanted, until it is to stop.
 
-    `advance` plays it on by some s; `port` None is the usual port.
+    `advance` plays it on by some s; `port` None is the usual one.
     """
     window: ApplicationWindow | None = None
     tasks: list[asyncio.Task[None]] = []
@@ -89,16 +88,12 @@ def _preferred_language() -> str:
     return Preferences().language
 
 
-_OF_SETUP = ("scenario", "robot", "settings", "procedure", "method")
-"""The keys of a journal's header about the set-up."""
-
-
 def trials_to_show(study: Study, records: Path) -> tuple[str, ...]:
     """Return the finished trials of consenting trainees whose journals are in a folder.
 
     Trial runs are practice, and are left out.
     """
-    everyone = (*study.trainees(), *study.trainees(archived=True))
+    everyone = study.trainees(archived=None)
     found = tuple(
         stored.record.trial_id
         for trainee in everyone
@@ -115,7 +110,7 @@ def trials_to_show(study: Study, records: Path) -> tuple[str, ...]:
 
 
 class ReplayLoader:
-    """Loads the replays of trials; trials of one set-up share it, and views load its scene once."""
+    """Loads the replays of trials; those of one set-up share it, and views load its scene once."""
 
     def __init__(self, records: Path, scenario: Path | None) -> None:
         self._records = records
@@ -126,7 +121,9 @@ class ReplayLoader:
         """Return the playback of a trial; takes seconds. Never in two threads at once."""
         try:
             track = find_track(self._records, trial_id)
-            key = json.dumps([track.header.get(name) for name in _OF_SETUP], sort_keys=True)
+            header = track.header
+            same = header.scenario, header.robot, header.settings, header.procedure, header.method
+            key = repr(same)
             if key not in self._setups:
                 self._setups[key] = setup_of(track.header, self._scenario)
             setup = self._setups[key]
@@ -157,13 +154,13 @@ def serve_rating(
         async def serve() -> None:
             stop = asyncio.Event()
             presenter = RatingPresenter(work, first, load, _preferred_language(), stop.set)
-            shown = presenter.shown
 
             def advance(seconds: float) -> None:
-                shown.playback.advance(seconds)
+                if presenter.shown.playback is not None:
+                    presenter.shown.playback.advance(seconds)
                 presenter.advance(seconds)
 
-            await _show_until(stop, shown, presenter, advance, port, has_window, announce)
+            await _show_until(stop, presenter.shown, presenter, advance, port, has_window, announce)
 
         first = load(work.trial_id).result()
         asyncio.run(serve())

@@ -95,14 +95,14 @@ def subjects_needed(effect_dz: float, with_period: bool = False) -> int:
 
 def detectable_effect(n: int, with_period: bool = False) -> float:
     """Return the effect d_z that n subjects show with `TARGET_POWER`; as of `paired_power`."""
-
-    def missing(effect: float) -> float:
-        return paired_power(effect, n, with_period) - TARGET_POWER
-
     high = 1.0
-    while missing(high) < 0:
+    while paired_power(high, n, with_period) < TARGET_POWER:
         high *= 2
-    return float(scipy.optimize.brentq(missing, 0.0, high))
+    return float(
+        scipy.optimize.brentq(
+            lambda effect: paired_power(effect, n, with_period) - TARGET_POWER, 0.0, high
+        )
+    )
 
 
 @dataclass(frozen=True)
@@ -134,10 +134,6 @@ class Estimate:
 
     value: float
     interval: tuple[float, float]
-
-    def __neg__(self) -> Estimate:
-        low, high = self.interval
-        return Estimate(-self.value, (-high, -low))
 
     def mapped(self, function: Callable[[float], float]) -> Estimate:
         """Return the estimate on another scale, by a function that rises."""

@@ -75,7 +75,7 @@ def fit_variation(trials: Trials, values: np.ndarray) -> Variation | None:
         return None
     columns = [np.eye(trainees * modes)[cells], np.eye(int(trials.tasks.max()) + 1)[trials.tasks]]
     columns[1] = columns[1][:, 1:]
-    columns.append(np.log(trials.numbers)[:, None])
+    columns.append(-np.log(trials.numbers)[:, None])
     has_lapses = np.ptp(trials.lapses) > 0
     if has_lapses:
         columns.append(trials.lapses[:, None])
@@ -98,7 +98,7 @@ def fit_variation(trials: Trials, values: np.ndarray) -> Variation | None:
         fitted[:count].reshape(trainees, modes), inverse[:count, :count], chance
     )
     return Variation(
-        learning=-learning,
+        learning=learning,
         lapse=lapse if has_lapses else None,
         modes=modes_added,
         trainee_variance=between,

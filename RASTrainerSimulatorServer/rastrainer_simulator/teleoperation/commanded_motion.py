@@ -52,16 +52,16 @@ class Jogging:
         self._velocity = velocity
         self._remaining = duration
 
-    def displacement(self, dt: float, tip: Vector, velocity: Vector, acceleration: float) -> Vector:
+    def displacement(
+        self, dt: float, _tip: Vector, velocity: Vector, acceleration: float
+    ) -> Vector:
         """Return this tick's displacement (m) from the velocity of the last tick (m/s)."""
-        del tip
         time = min(dt, self._remaining)
         self._remaining -= dt
         return scale(accelerated(velocity, self._velocity, acceleration * dt), time)
 
-    def outcome(self, dt: float, tip: Vector, direction: Vector) -> MotionOutcome | None:
-        """Return how the jog has ended, or None while it lasts."""
-        del tip, direction
+    def outcome(self, dt: float, _tip: Vector, _direction: Vector) -> MotionOutcome | None:
+        """Return how the motion has ended, or None while it lasts."""
         return MotionOutcome.REACHED if self._remaining <= 1e-3 * dt else None
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from enum import Enum
 
+from rastrainer.journal.entries import Ahead
 from rastrainer.json_checks import Setting
 from rastrainer.protocol import Phase
 from rastrainer.transforms import MM_PER_M
@@ -65,9 +66,9 @@ class HeadAhead:
     outer: float | None = None
     inner: float | None = None
 
-    def to_json(self) -> dict[str, float | None]:
-        named = {"skinMm": self.skin, "outerMm": self.outer, "innerMm": self.inner}
-        return {name: None if m is None else MM_PER_M * m for name, m in named.items()}
+    def recorded(self) -> Ahead:
+        distances = (self.skin, self.outer, self.inner)
+        return Ahead(*(None if m is None else MM_PER_M * m for m in distances))
 
 
 @dataclass(frozen=True)
@@ -118,13 +119,6 @@ class Feed:
 
 NO_FEED = Feed()
 """Nothing is in the guide."""
-
-
-def recorded_feed(feed: Feed) -> dict[str, float]:
-    """Return what an event records of the feed at which it happened, mm; nothing without one."""
-    if feed.drilled <= 0.0:
-        return {}
-    return {"feedMm": MM_PER_M * feed.depth, "drilledMm": MM_PER_M * feed.drilled}
 
 
 class FeedDrive:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rastrainer.head.mesh import RAS_LIMIT_MM, HeadMesh, read_head_mesh
-from rastrainer.head.trial_head import UNMOVED, SkinShift
-from rastrainer.json_checks import point, transform
+from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.head.trial_head import SkinShift
+from rastrainer.journal.entries import RecordedTruth
 from rastrainer.json_records import record_to_json
 from rastrainer.registration.target_error import true_errors
 from rastrainer.transforms import MM_PER_M
@@ -24,24 +24,8 @@ if TYPE_CHECKING:
     from rastrainer.scenario.scenario import Scenario
 
 
-_RasPoint = Annotated[np.ndarray, point(RAS_LIMIT_MM)]
-
-
-@dataclass(frozen=True)
-class Truth:
-    """True pose of the head. Hidden from clients until the trial's registration is final.
-
-    Attributes:
-        head_to_world: (4, 4) float, mm, from the MRI's RAS to World.
-        target_ras: (3,) float, mm, where the true error of a registration is reported.
-        fiducials_ras: label → (3,) float, mm, of the trial's task.
-        skin: its shift, compared with the images.
-    """
-
-    head_to_world: Annotated[np.ndarray, transform]
-    target_ras: _RasPoint
-    fiducials_ras: Mapping[str, _RasPoint]
-    skin: SkinShift = UNMOVED
+class Truth(RecordedTruth):
+    """True pose of the head. Hidden from clients until the trial's registration is final."""
 
     def in_world(self, points: np.ndarray) -> np.ndarray:
         """Return a point of the head, or n of them, (3,) or (n, 3) float, RAS mm, in World, mm."""
@@ -91,16 +75,16 @@ class PlacedHead:
     @classmethod
     def nominal(cls, scenario: Scenario) -> PlacedHead:
         """Return the head between trials, where the scenario puts it."""
-        return cls(Truth(scenario.head_to_world, scenario.target_position, {}))
+        return cls(Truth(scenario.head_to_world, scenario.target.position_ras, {}))
 
     @classmethod
     def of_trial(cls, scenario: Scenario, task: Task, seed: int, skin: SkinShift) -> PlacedHead:
         """Return the head of a trial, moved and with its skin shifted by the trial's seed."""
-        mesh = None if skin.is_none else read_head_mesh(scenario.head_mesh)
+        mesh = None if skin.is_none else read_head_mesh(scenario.head)
         shifted = skin if skin.is_none else replace(skin, seed=seed)
         points = dict(zip(task.labels, task.fiducials, strict=True))
         pose = scenario.perturbed_head_to_world(seed)
-        truth = Truth(pose, scenario.target_position, points, shifted)
+        truth = Truth(pose, scenario.target.position_ras, points, shifted)
         places = truth.in_world(np.array(list(truth.fiducials_ras.values()))) / MM_PER_M
         fiducials = dict(zip(truth.fiducials_ras, map(tuple, places.tolist()), strict=True))
         return cls(truth, fiducials, mesh)

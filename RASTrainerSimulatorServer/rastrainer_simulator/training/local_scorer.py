@@ -26,7 +26,6 @@ from rastrainer.trial.analysis import (
     RevealedTruth,
     TrialAnalysis,
     analyze_trial,
-    registration_arguments,
     score_arguments,
 )
 from rastrainer.trial.ctps import PUBLISHED_STUDY, read_trials
@@ -162,7 +161,7 @@ def score_alone(
     records: Path,
 ) -> None:
     """Submit a registration, which makes it final, and the score that its truth gives."""
-    answer = ask(CommandName.SUBMIT_REGISTRATION, registration_arguments(analysis))
+    answer = ask(CommandName.SUBMIT_REGISTRATION, analysis.arguments(analysis.record.trial_id))
     truth = record_from_json(RevealedTruth, answer, "The simulator's answer")
     scored = scored_with_journal(analysis, truth, scenario, records=records, pause=_rest)
     record, score = scored.record, scored.score

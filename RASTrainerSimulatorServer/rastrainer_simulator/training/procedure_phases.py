@@ -12,10 +12,11 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rastrainer.commands import CommandName
+from rastrainer.journal.entries import AcceptedCheckpoint, Rejected
 from rastrainer.procedure.record import MAX_ATTEMPTS, MAX_TOUCHED_CHECKPOINTS, UsedRegistration
 from rastrainer.protocol import STAND_OFF_LIMIT_MM, Phase, TouchRule
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.state import EventKind, OperatorCommand, TrainingState
+from rastrainer_simulator.state import Event, OperatorCommand, TrainingState
 from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training.feed import NO_FEED, Feed, ProcedureSettings
 from rastrainer_simulator.training.head_pose import RegisteredPlan
@@ -30,6 +31,7 @@ from rastrainer_simulator.trial_state import (
     TraceState,
     TrajectoryState,
 )
+from rastrainer_simulator.vectors import in_millimeters
 
 if TYPE_CHECKING:
     from rastrainer.procedure.plan import Procedure
@@ -115,8 +117,7 @@ class ProcedurePhases:
         return TrialStep(running, key, values)
 
     def _verify(self, moment: ProcedureMoment) -> TrialStep:
-        elapsed_s = moment.state.completed_s
-        data = {"completionTimeS": elapsed_s}
+        data = {"completion_time_s": moment.state.completed_s}
         return TrialStep(moment.entering(Phase.VERIFYING), "verifying", data=data)
 
     def _use_registration(self, moment: ProcedureMoment) -> TrialStep | TrainingReply:
@@ -137,14 +138,7 @@ class ProcedurePhases:
             ),
         )
         state = replace(moment.state, procedure=procedure)
-        data = {
-            "registration": {
-                "matrix": list(used.matrix),
-                "freMm": used.fre_mm,
-                "expectedTreMm": used.expected_tre_mm,
-            }
-        }
-        return TrialStep(state, "verify", {"fre": used.fre_mm}, data)
+        return TrialStep(state, "verify", {"fre": used.fre_mm}, data={"registration": used})
 
     def _check_point(self, moment: ProcedureMoment) -> TrialStep | TrainingReply:
         """Touch the nearest checkpoint; its error is by the trainee's own registration."""
@@ -155,11 +149,11 @@ class ProcedurePhases:
             plan = RegisteredPlan.of(procedure.registration.matrix)
         if plan is not None and checkpoints:
             name, error = plan.nearest_checkpoint(checkpoints, now.tip)
-        place = {
+        place: dict[str, Any] = {
             "checkpoint": name,
-            "positionMm": [MM_PER_M * value for value in now.tip],
-            "clearanceMm": MM_PER_M * now.tip_clearance,
-            "depthMm": MM_PER_M * now.depth,
+            "position_mm": in_millimeters(now.tip),
+            "clearance_mm": MM_PER_M * now.tip_clearance,
+            "depth_mm": MM_PER_M * now.depth,
         }
         before = sum(len(each.checkpoints) for each in procedure.attempts)
         radius = self._settings.checkpoint_radius
@@ -177,14 +171,14 @@ class ProcedurePhases:
         elif self._touches.touch_rule is TouchRule.ON_SKIN and is_above:
             sentence = say("above a checkpoint", height=MM_PER_M * now.tip_clearance)
         if sentence:
-            return TrainingReply(False, sentence, place)
+            event = Event(now.sim_time, Rejected(**place, message=sentence))
+            return TrainingReply(False, sentence, events=(event,))
         checked = CheckedPoint(name, now.tip, error, now.sim_time, moment.elapsed)
         touched = (*procedure.checkpoints, checked)
         state = replace(moment.state, procedure=replace(procedure, checkpoints=touched))
         error_mm = MM_PER_M * error
-        data = {**place, "errorMm": error_mm, "kept": len(touched)}
-        values = {"name": name, "error": error_mm}
-        return TrialStep(state, "checked", values, data, kind=EventKind.CHECKPOINT)
+        entry = AcceptedCheckpoint(**place, error_mm=error_mm, kept=len(touched))
+        return TrialStep(state, "checked", {"name": name, "error": error_mm}, entry)
 
     def _accept(self, moment: ProcedureMoment) -> TrialStep | TrainingReply:
         procedure = moment.procedure
@@ -225,13 +219,12 @@ class ProcedurePhases:
             or GuideAlignment.of(guide, aligned.line).is_exact,
             drill_depth=0.0,
         )
-        place = [MM_PER_M * value for value in now.tip]
         return TrialStep(
             moment.entering(Phase.DRILLING, locked),
             "drill",
             {"name": locked.line.name},
-            {"positionMm": place, "direction": list(now.direction)},
-            {"ahead": ahead.to_json()},
+            data={"position_mm": in_millimeters(now.tip), "direction": now.direction},
+            ahead=ahead.recorded(),
             feed=Feed(ahead=ahead),
         )
 

@@ -8,12 +8,20 @@ from typing import Any
 
 import numpy as np
 
+from rastrainer.journal.entries import (
+    Ahead,
+    Entry,
+    FinalRegistration,
+    PhaseChange,
+    ProcedureAt,
+)
+from rastrainer.json_records import record_to_json
 from rastrainer.procedure.record import UsedRegistration
 from rastrainer.protocol import Phase, RegistrationMethod
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.state import Event, EventKind, TrainingState, TrialResult
+from rastrainer_simulator.state import Event, TrainingState, TrialResult
 from rastrainer_simulator.texts.texts import say
-from rastrainer_simulator.training.feed import Feed
+from rastrainer_simulator.training.feed import NO_FEED, Feed
 from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.vectors import in_millimeters
 
@@ -22,7 +30,7 @@ from rastrainer_simulator.vectors import in_millimeters
 class TrainingReply:
     """The answer to a command; `feed` is the new feed in the guide, None if it stays.
 
-    `data` of a refused touch describes the touch.
+    A refused touch is an event, too.
     """
 
     ok: bool
@@ -39,10 +47,11 @@ class TrialStep:
     Attributes:
         key: of the instruction that goes with it.
         values: that are filled in.
-        data: goes into the answer and the event, ready for JSON.
-        recorded: goes into the event alone: clients never learn it.
+        entry: what happened. It goes into the answer, too, unless it is a registration, and a
+            change of the phase follows if there is one; None if that change is all.
+        data: of the change of the phase, by the names of `PhaseChange`; goes into the answer, too.
+        ahead: goes into the change of the phase: clients never learn it.
         answered: goes into the answer alone.
-        kind: of the event; an event of the phase follows any other if the phase changes.
         feed: the new feed in the guide; None if it stays.
         has_summary: whether the answer to a change of the phase also has the trial's summary.
     """
@@ -50,32 +59,42 @@ class TrialStep:
     state: TrainingState
     key: str
     values: Mapping[str, Any] = field(default_factory=dict)
+    entry: Entry | None = None
     data: Mapping[str, Any] = field(default_factory=dict)
-    recorded: Mapping[str, Any] = field(default_factory=dict)
+    ahead: Ahead | None = None
     answered: Mapping[str, Any] = field(default_factory=dict)
-    kind: EventKind = EventKind.PHASE
     feed: Feed | None = None
     has_summary: bool = True
 
 
-def summary(state: TrainingState) -> dict[str, Any]:
-    data: dict[str, Any] = {
-        "trialId": state.trial_id,
-        "phase": state.phase.value,
-        "trainee": state.trainee,
-        "task": state.task,
-        "mode": state.mode,
-        "nextPoint": state.next_point,
-    }
-    if state.procedure is not None:
-        at = {"name": state.procedure.name, "stage": state.procedure.stage.value}
-        data["procedure"] = {**at, "trajectory": state.procedure.trajectory}
-    if state.method is not RegistrationMethod.FIDUCIALS:
-        # As in journals older than methods.
-        data["method"] = state.method.value
-    if state.trace is not None:
-        data["traced"] = len(state.trace.points)
-    return data
+def phase_change(state: TrainingState, feed: Feed = NO_FEED, **data: Any) -> PhaseChange:
+    """Return the entry of a trial that enters the phase of a state."""
+    procedure, trace, is_drilled = state.procedure, state.trace, feed.drilled > 0.0
+    at = None
+    if procedure is not None:
+        at = ProcedureAt(procedure.name, procedure.stage, procedure.trajectory)
+    return PhaseChange(
+        trial_id=state.trial_id,
+        phase=state.phase,
+        trainee=state.trainee,
+        task=state.task,
+        mode=state.mode,
+        next_point=state.next_point,
+        procedure=at,
+        method=None if state.method is RegistrationMethod.FIDUCIALS else state.method,
+        traced=None if trace is None else len(trace.points),
+        instruction=state.instruction,
+        feed_mm=MM_PER_M * feed.depth if is_drilled else None,
+        drilled_mm=MM_PER_M * feed.drilled if is_drilled else None,
+        **data,
+    )
+
+
+def summary(state: TrainingState, **data: Any) -> dict[str, Any]:
+    """Return the state of a trial as clients learn it, ready for JSON."""
+    values = record_to_json(phase_change(state, **data))
+    del values["instruction"]
+    return values
 
 
 def given(state: TrainingState) -> dict[str, Any]:
@@ -109,7 +128,7 @@ def trial_data(state: TrainingState, truth: Truth) -> dict[str, Any]:
 
 
 def take_registration(
-    arguments: Mapping[str, Any], state: TrainingState, truth: Truth
+    arguments: Mapping[str, Any], sender: str, state: TrainingState, truth: Truth
 ) -> TrialStep | TrainingReply:
     """Accept a registration, which becomes final, and reveal the truth; refuse any other."""
     known = state.registration
@@ -117,12 +136,12 @@ def take_registration(
     if known is not None and not known.agrees_with(registration):
         return TrainingReply(False, say("registration is final"))
     matrix = registration.matrix if known is None else known.matrix
-    data, truth_data = {"trialId": state.trial_id}, revealed(truth, state, matrix)
+    answered = {"trialId": state.trial_id, **revealed(truth, state, matrix)}
     if known is not None:
-        return TrainingReply(True, data={**data, **truth_data})
+        return TrainingReply(True, data=answered)
     key = "registered" if state.procedure is None else "procedure done"
     registered = replace(state, registration=registration)
-    return TrialStep(registered, key, data=data, answered=truth_data, kind=EventKind.REGISTRATION)
+    return TrialStep(registered, key, entry=FinalRegistration(sender, arguments), answered=answered)
 
 
 def take_score(

@@ -9,13 +9,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from rastrainer.journal.entries import Stroke
 from rastrainer.protocol import MIN_TRACE_POINTS, TRACE_SPACING_MM, Phase
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.state import EventKind, TrainingState
+from rastrainer_simulator.state import TrainingState
 from rastrainer_simulator.training.replies import TrialStep
 from rastrainer_simulator.training.rules import PRESSED_MM, TouchMoment, TrainingSettings
 from rastrainer_simulator.trial_state import TraceState
-from rastrainer_simulator.vectors import Vector, distance
+from rastrainer_simulator.vectors import Vector, distance, in_millimeters
 
 
 def takes_point(trace: TraceState | None, now: TouchMoment, settings: TrainingSettings) -> bool:
@@ -28,26 +29,24 @@ def takes_point(trace: TraceState | None, now: TouchMoment, settings: TrainingSe
     return not last or MM_PER_M * distance(now.tip, last[0].seen) >= TRACE_SPACING_MM
 
 
-def tip_data(now: TouchMoment, measured: Vector) -> dict[str, Any]:
+def tip_places(tip: Vector, measured: Vector) -> dict[str, Any]:
     """Return where the tip is, mm, and where it is measured, if that is elsewhere."""
-    place = {"positionMm": [MM_PER_M * value for value in now.tip]}
-    if measured == now.tip:
-        return place
-    return {**place, "measuredMm": [MM_PER_M * value for value in measured]}
+    elsewhere = None if measured == tip else in_millimeters(measured)
+    return {"position_mm": in_millimeters(tip), "measured_mm": elsewhere}
 
 
-def stroke_data(trace: TraceState) -> dict[str, Any]:
-    """Return the data of a trace when a stroke begins, ends or is undone."""
-    return {"on": trace.is_on, "kept": len(trace.points), "strokes": len(trace.strokes)}
+def stroke_entry(trace: TraceState, undone: bool = False) -> Stroke:
+    """Return the entry of a trace when a stroke begins, ends or is undone."""
+    return Stroke(trace.is_on, len(trace.points), len(trace.strokes), undone)
 
 
-def stroke(state: TrainingState, trace: TraceState, **others: bool) -> TrialStep:
+def stroke(state: TrainingState, trace: TraceState, undone: bool = False) -> TrialStep:
     """Return the step by which a stroke begins, has ended or is undone, as its trace says."""
     may_register = state.next_point is None and trace.is_enough and not trace.is_on
     phase = Phase.COMPLETE if may_register else Phase.RUNNING
     changed = replace(state, phase=phase, trace=trace)
-    data = {**stroke_data(trace), **others}
-    return TrialStep(changed, instruction(changed), counts(trace), data, kind=EventKind.STROKE)
+    entry = stroke_entry(trace, undone)
+    return TrialStep(changed, instruction(changed), counts(trace), entry)
 
 
 def instruction(state: TrainingState) -> str:

@@ -4,24 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.head.trial_head import SkinShift
-from rastrainer.json_records import record_from_json
+from rastrainer.journal.entries import (
+    AcceptedTouch,
+    FinalRegistration,
+    Rejected,
+    TracePoint,
+    Undo,
+)
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import PROCEDURE_PHASES, TRACED_METHODS, Phase
 from rastrainer.scenario.scenario import method_of, task_by_method
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.state import Event, EventKind, OperatorCommand, TrainingState
+from rastrainer_simulator.state import Event, OperatorCommand, TrainingState
 from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training import tracing
-from rastrainer_simulator.training.feed import Feed, ProcedureSettings, recorded_feed
+from rastrainer_simulator.training.feed import Feed, ProcedureSettings
 from rastrainer_simulator.training.head_pose import PlacedHead, Truth
 from rastrainer_simulator.training.procedure_phases import ProcedurePhases
 from rastrainer_simulator.training.replies import (
     TrainingReply,
     TrialStep,
+    phase_change,
     summary,
     take_registration,
     take_score,
@@ -100,7 +108,7 @@ class Training:
             CommandName.PAUSE: self._pause,
             CommandName.RESUME: self._resume,
             CommandName.SUBMIT_REGISTRATION: lambda command, _now: take_registration(
-                command.arguments, self.state, self.truth
+                command.arguments, command.sender, self.state, self.truth
             ),
             CommandName.TRIAL_SCORED: lambda command, _now: take_score(
                 command.arguments, self.state, self.truth
@@ -149,10 +157,10 @@ class Training:
         outcome = self._handlers[command.name](command, now)
         if isinstance(outcome, TrialStep):
             reply = self._taken(outcome, now)
-        elif outcome.ok or not outcome.data:
-            reply = outcome
         else:
-            reply = self._refused(outcome, now)
+            reply = outcome
+            if not reply.ok and reply.events:
+                self._show_refusal(reply.message, now)
         if self.state.revision != left and left in self._kept:
             self._kept[left] = self._kept[left][0], now.feed
         return reply
@@ -227,11 +235,14 @@ class Training:
 
     def _taken(self, step: TrialStep, now: TouchMoment) -> TrainingReply:
         """Adopt the state of a step, with its instruction: it must not be lost."""
-        answer = {**step.data, **step.answered}
-        is_phase = step.kind is EventKind.PHASE
-        events = [] if is_phase else [Event(step.kind, now.sim_time, step.data)]
-        has_entered = is_phase or step.state.phase is not self.state.phase
-        words = {
+        entry, events = step.entry, []
+        answer = dict(step.answered)
+        if entry is not None:
+            events.append(Event(now.sim_time, entry))
+            if not isinstance(entry, FinalRegistration):
+                answer = {**record_to_json(entry), **answer}
+        has_entered = entry is None or step.state.phase is not self.state.phase
+        words: dict[str, Any] = {
             "trainee": step.state.trainee,
             "point": step.state.next_point,
             "count": self._count,
@@ -242,20 +253,17 @@ class Training:
         self.state = replace(step.state, revision=revision, instruction=instruction)
         self._kept[revision] = self.state, None
         if has_entered:
-            data = {**summary(self.state), "instruction": instruction, **recorded_feed(now.feed)}
-            if is_phase:
-                data.update({**step.data, **step.recorded})
-                answer = {**summary(self.state), **answer} if step.has_summary else answer
-            events.append(Event(EventKind.PHASE, now.sim_time, data))
+            if entry is None and step.has_summary:
+                answer = {**summary(self.state, **step.data), **answer}
+            change = phase_change(self.state, now.feed, **step.data, ahead=step.ahead)
+            events.append(Event(now.sim_time, change))
         return TrainingReply(True, data=answer, events=tuple(events), feed=step.feed)
 
-    def _refused(self, reply: TrainingReply, now: TouchMoment) -> TrainingReply:
+    def _show_refusal(self, sentence: str, now: TouchMoment) -> None:
         """Show why a touch does not count, in place of the instruction."""
         task = self.state.instruction if self._refused_over is None else self._refused_over[1]
         self._refused_over = now.sim_time + REFUSAL_S, task
-        self.state = replace(self.state, instruction=reply.message)
-        event = Event(EventKind.REJECTED, now.sim_time, {**reply.data, "message": reply.message})
-        return TrainingReply(False, reply.message, events=(event,))
+        self.state = replace(self.state, instruction=sentence)
 
     def _capture(self, command: OperatorCommand, now: TouchMoment) -> Outcome:
         if self.state.phase is Phase.VERIFYING:
@@ -265,21 +273,22 @@ class Training:
         assert label is not None
         assert task is not None, "the phase allows no touch before a task is chosen"
         sentence = refused_touch(now, label, self._head.fiducials, self._settings, state.method)
-        place = {
+        place: dict[str, Any] = {
             "label": label,
-            **tracing.tip_data(now, measured := self._head.measured(now.tip)),
-            "clearanceMm": MM_PER_M * now.tip_clearance,
-            "depthMm": MM_PER_M * now.depth,
+            **tracing.tip_places(now.tip, measured := self._head.measured(now.tip)),
+            "clearance_mm": MM_PER_M * now.tip_clearance,
+            "depth_mm": MM_PER_M * now.depth,
         }
         if sentence is not None:
             self.state = replace(state, rejected=state.rejected + 1)
-            return TrainingReply(False, sentence, place)
+            event = Event(now.sim_time, Rejected(**place, message=sentence))
+            return TrainingReply(False, sentence, events=(event,))
         touch = TouchState(label, measured, now.sim_time, self._clock.elapsed(now.sim_time))
         touches = (*state.touches, touch)
-        data = {**place, "kept": len(touches)}
         following = task.labels[len(touches)] if len(touches) < len(task.labels) else None
         touched = replace(state, touches=touches, next_point=following)
-        step = TrialStep(touched, "touched", {"label": label}, data, kind=EventKind.TOUCH)
+        entry = AcceptedTouch(**place, kept=len(touches))
+        step = TrialStep(touched, "touched", {"label": label}, entry)
         if following is None and state.trace is None:
             return replace(step, state=replace(touched, phase=Phase.COMPLETE), key="complete")
         if following is None and state.trace is not None:
@@ -291,7 +300,7 @@ class Training:
         trace, on = self.state.trace, command.arguments["on"]
         assert trace is not None, "the method has a trace"
         if on == trace.is_on:
-            return TrainingReply(True, data=tracing.stroke_data(trace))
+            return TrainingReply(True, data=record_to_json(tracing.stroke_entry(trace)))
         return tracing.stroke(self.state, trace.begun() if on else trace.ended())
 
     def _traced(self, _command: OperatorCommand, now: TouchMoment) -> Outcome:
@@ -302,8 +311,8 @@ class Training:
         elapsed = self._clock.elapsed(now.sim_time)
         trace = self.state.trace.with_point(TracedPoint(measured, now.sim_time, elapsed, tip))
         self.state = replace(self.state, trace=trace)
-        data = {**tracing.tip_data(now, measured), "kept": len(trace.points)}
-        event = Event(EventKind.TRACE, now.sim_time, data)
+        place = tracing.tip_places(now.tip, measured)
+        event = Event(now.sim_time, TracePoint(**place, kept=len(trace.points)))
         if not trace.is_full:
             return TrainingReply(True, events=(event,))
         over = self._taken(tracing.stroke(self.state, trace.ended()), now)
@@ -316,7 +325,6 @@ class Training:
         if not state.touches:
             return TrainingReply(False, say("nothing to undo", point=state.next_point))
         label = state.touches[-1].label
-        data = {"label": label, "kept": len(state.touches) - 1, "nextPoint": label}
         undone = replace(
             state,
             phase=Phase.RUNNING,
@@ -324,7 +332,8 @@ class Training:
             next_point=label,
             undone=state.undone + 1,
         )
-        return TrialStep(undone, "undone", {"label": label}, data, kind=EventKind.UNDO)
+        entry = Undo(label, kept=len(state.touches) - 1, next_point=label)
+        return TrialStep(undone, "undone", {"label": label}, entry)
 
     def _register(self, command: OperatorCommand, now: TouchMoment) -> Outcome:
         if self._phases is not None:

@@ -7,7 +7,7 @@ import uuid
 from dataclasses import replace
 
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
-from rastrainer_simulator.state import EventKind, TrainingState
+from rastrainer_simulator.state import TrainingState
 from rastrainer_simulator.training import tracing
 from rastrainer_simulator.training.replies import TrialStep
 
@@ -72,7 +72,7 @@ def resumed(state: TrainingState) -> TrialStep:
     if state.trace is None or state.next_point is not None:
         return TrialStep(replace(state, phase=Phase.RUNNING), "resumed", has_summary=False)
     stroke = tracing.stroke(state, state.trace.ended())
-    return replace(stroke, data={}, kind=EventKind.PHASE, has_summary=False)
+    return replace(stroke, entry=None, has_summary=False)
 
 
 def interrupted(state: TrainingState) -> TrialStep:

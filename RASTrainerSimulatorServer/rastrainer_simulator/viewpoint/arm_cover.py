@@ -9,7 +9,7 @@ import numpy as np
 from rastrainer.protocol import OPEN_PHASES
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M, apply
-from rastrainer_simulator.collision.line_of_sight import sight_clearances
+from rastrainer_simulator.collision.clearance import sight_clearances
 from rastrainer_simulator.collision.robot_shape import ArmCapsules
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.scene.nodes import TOOL, link_node_name

@@ -14,9 +14,9 @@ import numpy as np
 from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import RASTrainerError
 from rastrainer.head.mesh import read_head_mesh
+from rastrainer.journal.entries import AT_ZERO, Line, iso
 from rastrainer.journal.folder import SUFFIX
-from rastrainer.journal.journal_file import file_stamp, iso
-from rastrainer.json_records import record_from_json
+from rastrainer.journal.journal_file import file_stamp
 from rastrainer.procedure.record import ProcedureRecord, UsedRegistration
 from rastrainer.protocol import Mode, Phase, Proximity
 from rastrainer.registration.fits import RIGID
@@ -29,12 +29,12 @@ from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_entries import TrialEntries
+from rastrainer_simulator.record.trial_records import UnmeasuredRecord, with_record
 from rastrainer_simulator.state import (
     NEUTRAL_STICKS,
     OperatorCommand,
     OperatorInput,
     SimulationState,
-    StartingPoint,
     StepResult,
 )
 from rastrainer_simulator.training.head_pose import Truth
@@ -125,7 +125,7 @@ PROCEDURE_STREAM = 21
 class PlaySettings:
     """How the jobs of a cohort are played; `records` is the folder for the journals.
 
-    The references are those of the score, by task; the scenario's for tasks that they leave out.
+    `references` score each task; the scenario's references score the tasks that they leave out.
     """
 
     scenario: Path | None = None
@@ -146,8 +146,9 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
     """Play, register and score one trial; equal jobs give equal trials on any machine."""
     simulation = _simulation(settings.scenario)
     # The trial depends on the job alone, not on the trial before.
-    simulation.restart_from(StartingPoint())
+    simulation.restart_from(AT_ZERO)
     started: list[TrialEntries] = []
+    registered: list[UnmeasuredRecord] = []
 
     def record_step(
         simulation: Simulation,
@@ -157,9 +158,9 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
     ) -> None:
         if not started:
             started.append(TrialEntries.started(simulation, before, result, settings.step_s))
-        registered = started[0].add(simulation, operator_input, result)
-        if registered is not None:
-            registered.measured()
+        record = started[0].add(simulation, operator_input, result)
+        if record is not None:
+            registered.append(record)
 
     try:
         play_virtual_trial(
@@ -177,16 +178,13 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
         # The next trial needs a simulation without an open trial.
         _simulation.cache_clear()
         return PlayedTrial(job, None)
-    entries = started[0].pending
-    _date(entries, job.started)
-    registered = next(entry for entry in entries if entry["kind"] == "registered")
-    record = record_from_json(TrialRecord, registered["record"])
+    lines, record = _dated(started[0].pending, registered[0].measured(), job.started)
     if settings.records is not None:
-        _write_journal(settings.records, entries, job.started)
+        _write_journal(settings.records, lines, job)
     scenario = simulation.setup.scenario
     head_to_world = scenario.perturbed_head_to_world(job.seed)
     analysis = analyze_trial(record, scenario)
-    where = Truth(head_to_world, scenario.target_position, {})
+    where = Truth(head_to_world, scenario.target.position_ras, {})
     truth = RevealedTruth(
         tuple(head_to_world.ravel().tolist()), where.target_error_mm(analysis.rigid.matrix)
     )
@@ -200,8 +198,7 @@ def _procedure(
     job: TrialJob, analysis: TrialAnalysis, scenario: Scenario, head_to_world: np.ndarray
 ) -> ProcedureRecord:
     """Return what the job's hands did after the registration."""
-    procedure, skull = scenario.procedure(job.procedure), scenario.skull_mesh
-    assert skull is not None, "a scenario with procedures has a skull"
+    procedure, skull = scenario.procedure(job.procedure), scenario.skull_path
     matrix = tuple(analysis.rigid.matrix.ravel().tolist())
     return VirtualProcedure(
         procedure,
@@ -215,33 +212,36 @@ def _procedure(
     ).carried_out()
 
 
-def _date(entries: Sequence[dict[str, Any]], started: datetime) -> None:
-    """Date entries from the trial's start, in simulated time."""
-    zero = entries[0]["simTimeS"]
+def _dated(
+    lines: Sequence[Line], record: TrialRecord, started: datetime
+) -> tuple[list[Line], TrialRecord]:
+    """Return lines and record with dates from the trial's start, in simulated time."""
+    zero = lines[0].at.sim_time_s
 
     def utc(sim_time: float) -> str:
         return iso(started + timedelta(seconds=sim_time - zero))
 
-    for entry in entries:
-        entry["utc"] = utc(entry["simTimeS"])
-        if entry["kind"] == "registered":
-            record = entry["record"]
-            # A virtual trainee plays as fast as the machine can, in no simulator.
-            record.pop("played", None)
-            for point in record["points"]:
-                point["utc"] = utc(point["simTimeS"])
-            record["startedUtc"] = utc(zero)
-            record["completedUtc"] = record["points"][-1]["utc"]
+    points = tuple(replace(point, utc=utc(point.sim_time_s)) for point in record.points)
+    record = replace(
+        record,
+        points=points,
+        started_utc=utc(zero),
+        completed_utc=points[-1].utc,
+        # A virtual trainee plays as fast as the machine can, in no simulator.
+        played=None,
+    )
+    dated = (Line(replace(at, utc=utc(at.sim_time_s)), entry) for at, entry in lines)
+    return with_record(dated, record), record
 
 
-def _write_journal(folder: Path, entries: Sequence[dict[str, Any]], started: datetime) -> None:
-    name = f"{file_stamp(iso(started))}_{entries[0]['trialId']}{SUFFIX}"
+def _write_journal(folder: Path, lines: Sequence[Line], job: TrialJob) -> None:
+    name = f"{file_stamp(iso(job.started))}_{job.trial_id}{SUFFIX}"
     # Complete or missing, even if this process is killed; the journal of a trial that was not
     # stored is replaced by an equal one.
     partial = folder / f".{name}.partial"
     partial.unlink(missing_ok=True)
     journal = Journal(partial)
-    journal.write(entries, sync=False)
+    journal.write_lines(lines, sync=False)
     journal.close()
     partial.replace(folder / name)
 

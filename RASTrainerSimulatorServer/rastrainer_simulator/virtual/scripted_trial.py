@@ -156,7 +156,8 @@ def play_procedure(
     """Carry out the procedure of a registered trial, and return the trial's record.
 
     The touches are registered as Slicer's side does; the robot aligns the guide by itself. Depths
-    are fed by the plan as the registration shows it. `on_progress` gets what was done, in words.
+    are fed by the plan as the registration shows it. `on_progress` gets each finished step, in
+    words.
     """
     answer = send(client, CommandName.GET_TRIAL, {"trialId": trial_id})
     registered = register_trial(GivenPoints.of_answer(answer), scenario)
@@ -164,8 +165,7 @@ def play_procedure(
     send(client, CommandName.ACCEPT_REGISTRATION, {})
     state = _wait(client, lambda state: state["phase"] == Phase.ALIGNING.value)
     procedure = scenario.procedure(state["procedure"]["name"])
-    assert scenario.skull_mesh is not None, "a scenario with procedures has a skull"
-    skull = read_procedure_meshes(procedure, scenario.skull_mesh).skull
+    skull = read_procedure_meshes(procedure, scenario.skull_path).skull
     for number, trajectory in enumerate(procedure.trajectories):
         bone = planned_bone(trajectory, skull)
         assert bone is not None, "the plan was checked"

@@ -9,6 +9,7 @@ import os
 import sys
 import threading
 import time
+from inspect import CO_OPTIMIZED
 from pathlib import Path
 
 POLL_S = 0.005
@@ -41,7 +42,10 @@ class Recorder:
         lines = {
             f"{code.co_filename}\t{code.co_name}:{code.co_firstlineno}"
             for code in list(self._called)
-            if "rastrainer" in code.co_filename and not code.co_name.startswith("<")
+            if "rastrainer" in code.co_filename
+            and not code.co_name.startswith("<")
+            # Bodies of classes are not optimized.
+            and code.co_flags & CO_OPTIMIZED
         }
         self._written.write_text("\n".join(sorted(lines)), encoding="utf-8")
 

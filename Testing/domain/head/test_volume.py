@@ -1,4 +1,4 @@
-"""Volumes as NRRD files are written and read back, and malicious ones are refused."""
+"""Volumes as NRRD files are written and read back, and malicious files are refused."""
 
 import gzip
 import tracemalloc

@@ -140,7 +140,7 @@ def test_answer_that_is_not_a_json_object_is_an_error_and_the_link_survives(peer
 
 
 def test_answer_without_a_status_is_not_a_success(peer):
-    # With header version 2 none can be sent; with version 1 nothing else can.
+    # Answers of header version 2 need a status; version 1 cannot carry it.
     def answer(server, message):
         server.send(replace(reply_to(message, metadata={}), version=1))
 

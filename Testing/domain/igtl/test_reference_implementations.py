@@ -1,4 +1,4 @@
-"""Our bytes are those of pyigtl and fastcrc, independent implementations."""
+"""Our bytes equal the bytes of pyigtl and fastcrc, independent implementations."""
 
 import random
 

@@ -3,16 +3,8 @@
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, NO_LINE, encode_line
 from rastrainer.journal.recording import read_track
-
-HEADER = {
-    "kind": "header",
-    "format": FORMAT,
-    "version": FORMAT_VERSION,
-    "simTimeS": 0.0,
-    "tickS": 0,
-}
+from Testing.journal_lines import at, header, journal_bytes, sample
 
 
 @pytest.fixture
@@ -20,22 +12,9 @@ def written(tmp_path):
     """Make a journal of two samples with these joint angles, rad."""
 
     def write(*postures):
-        samples = [
-            {
-                "kind": "sample",
-                "simTimeS": 1.0 + row,
-                "tipMm": [0, 0, row],
-                "clearanceMm": 9,
-                "q": q,
-            }
-            for row, q in enumerate(postures)
-        ]
-        lines, previous = [], NO_LINE
-        for n, entry in enumerate([HEADER, *samples], start=1):
-            line, previous = encode_line(n, previous, entry)
-            lines.append(line)
-        path = tmp_path / "a.journal"
-        path.write_bytes(b"".join(lines))
+        path = tmp_path / "trial.journal"
+        samples = (at(1.0 + row, sample((0, 0, row), q=q)) for row, q in enumerate(postures))
+        path.write_bytes(journal_bytes([at(0.0, header()), *samples]))
         return path
 
     return write
@@ -50,7 +29,7 @@ def test_a_track_has_the_joint_angles_of_each_sample(written):
 @pytest.mark.parametrize(
     ("posture", "sentence"),
     [
-        ([0.0] * 6, "no movement to replay"),
+        ([0.0] * 6, "is malformed"),
         (["left"] * 7, "is malformed"),
         ([10**400] * 7, "is malformed"),
         (None, "is malformed"),

@@ -15,6 +15,9 @@ from rastrainer.motion.trajectory import (
     unintended_contact,
 )
 from rastrainer.motion.trial_motion import trial_motion
+from rastrainer.protocol import Proximity
+from Testing import journal_lines
+from Testing.journal_lines import at, header, proximity, sample
 
 RATE_HZ = 50.0
 SEEDS = range(20)
@@ -199,39 +202,32 @@ def test_unintended_contact_is_never_longer_than_all_contact(seed):
     assert 0.0 <= motion["unintended_contact_time_s"] <= motion["contact_time_s"] + 1e-9
 
 
-def entry(kind, time, **more):
-    return {"kind": kind, "simTimeS": time, **more}
-
-
-def recorded(**of_each):
-    """Return the entries of one contact with a touch in it, each with `of_each`."""
+def recorded(sample_mm=0.1, touch_mm=0.1):
+    """Return the lines of one contact with a touch in it, by the depths of sample and touch."""
     return [
-        entry("header", 0.01, tickS=0.01),
-        entry("sample", 0.02, tipMm=[0, 0, 0], clearanceMm=1.0, **of_each),
-        entry("proximity", 0.03, **{"from": "proximity", "to": "contact"}, clearanceMm=0.01),
-        entry("sample", 0.04, tipMm=[0, 0, 0], clearanceMm=0.01, **of_each),
-        entry("touch", 0.06, label="1", positionMm=[0, 0, 0], kept=1, **of_each),
+        at(0.01, header(0.01)),
+        at(0.02, sample(depth_mm=0.1)),
+        at(0.03, proximity(Proximity.PROXIMITY, Proximity.CONTACT)),
+        at(0.04, sample(depth_mm=sample_mm)),
+        at(0.06, journal_lines.touch("1", depth_mm=touch_mm)),
     ]
 
 
+END = at(0.08, proximity(Proximity.CONTACT, Proximity.FREE, 2.5))
+
+
 def test_the_depth_of_a_contact_is_the_maximum_of_samples_touch_and_end():
-    for row, depth in ((3, 1.5), (4, 1.7)):
-        entries = recorded(depthMm=0.1)
-        entries[row]["depthMm"] = depth
-        (contact,) = Recording.of(entries).trajectory().contacts
+    for lines, depth in ((recorded(sample_mm=1.5), 1.5), (recorded(touch_mm=1.7), 1.7)):
+        (contact,) = Recording.of(lines).trajectory().contacts
         assert contact.greatest_depth_mm == depth
-    end = entry("proximity", 0.08, **{"from": "contact", "to": "free"}, clearanceMm=1, depthMm=2.5)
-    trajectory = Recording.of([*recorded(depthMm=0.1), end]).trajectory()
+    trajectory = Recording.of([*recorded(), END]).trajectory()
     assert trajectory.contacts[0].greatest_depth_mm == 2.5
     np.testing.assert_array_equal(trajectory.depth_mm, [0.1, 0.1])
     assert pressing_depth(trajectory) == 2.5
 
 
 def test_a_contact_does_not_inherit_the_depth_of_the_one_before():
-    again = [
-        entry("proximity", 0.08, **{"from": "contact", "to": "free"}, clearanceMm=1, depthMm=2.5),
-        entry("proximity", 0.10, **{"from": "free", "to": "contact"}, clearanceMm=0.0),
-        entry("sample", 0.12, tipMm=[0, 0, 0], clearanceMm=0.01, depthMm=0.2),
-    ]
-    contacts = Recording.of([*recorded(depthMm=0.1), *again]).trajectory().contacts
+    again = at(0.10, proximity(Proximity.FREE, Proximity.CONTACT))
+    lines = [*recorded(), END, again, at(0.12, sample(depth_mm=0.2))]
+    contacts = Recording.of(lines).trajectory().contacts
     assert [contact.greatest_depth_mm for contact in contacts] == [2.5, 0.2]

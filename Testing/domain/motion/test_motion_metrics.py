@@ -41,7 +41,7 @@ def test_log_dimensionless_jerk_matches_its_authors_own_example():
 
 
 def test_log_dimensionless_jerk_of_a_minimum_jerk_reach_is_the_analytical_one():
-    """By hand from Flash and Hogan 1985: 720 over the square of the peak speed 15/8, −ln 204.8."""
+    """From Flash and Hogan 1985: 720 over the square of the peak speed 15/8 gives −ln 204.8."""
     t = np.linspace(0, 1, 20_001)
     speed = 30 * t**2 - 60 * t**3 + 30 * t**4
     assert log_dimensionless_jerk(speed, 20_000) == pytest.approx(-5.322, abs=1e-3)

@@ -8,12 +8,15 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
+from rastrainer.journal.entries import CameraChange, Undo, read_line
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trajectory import Interval, Touch, Trajectory
 from rastrainer.motion.trial_motion import trial_motion
+from rastrainer.protocol import Phase, Proximity
 from rastrainer.study.outcomes import MOTION_METRICS
 from rastrainer_simulator.authoring.touch_order import SurfaceGraph, shortest_path_mm
 from Testing.domain.head.spheres import RADIUS_MM, on_sphere, sphere_mesh
+from Testing.journal_lines import at, header, phase, proximity, sample, touch
 
 
 def reaches(corners_mm, duration_s=2.0, rest_s=1.0, rate_hz=50.0):
@@ -167,25 +170,21 @@ def test_the_shortest_path_runs_over_a_bulge_and_straight_across_a_hollow():
     assert shortest_path_mm(ends, hollow, SurfaceGraph(hollow)) == pytest.approx(straight)
 
 
-def entry(kind, time, **more):
-    return {"kind": kind, "simTimeS": time, **more}
-
-
 def test_a_recording_excludes_pauses_and_undone_touches():
-    entries = [
-        entry("header", 10.004, tickS=0.004),
-        entry("sample", 10.02, tipMm=[0, 0, 0], clearanceMm=30.0),
-        entry("touch", 10.104, label="1", positionMm=[1, 2, 3], kept=1),
-        entry("phase", 10.204, phase="paused", nextPoint="2"),
-        entry("phase", 15.204, phase="running", nextPoint="2"),
-        entry("proximity", 15.3, **{"from": "free", "to": "proximity"}, clearanceMm=19.0),
-        entry("sample", 15.4, tipMm=[1, 0, 0], clearanceMm=2.0),
-        entry("touch", 15.504, label="2", positionMm=[1, 2, 3], kept=2),
-        entry("undo", 15.604, label="2", kept=1, nextPoint="2"),
-        entry("touch", 15.704, label="2", positionMm=[4, 5, 6], kept=2),
-        entry("camera", 15.8, camera="far"),
+    lines = [
+        at(10.004, header()),
+        at(10.02, sample()),
+        at(10.104, touch("1")),
+        at(10.204, phase(Phase.PAUSED, "2")),
+        at(15.204, phase(Phase.RUNNING, "2")),
+        at(15.3, proximity(Proximity.FREE, Proximity.PROXIMITY)),
+        at(15.4, sample((1.0, 0.0, 0.0))),
+        at(15.504, touch("2", kept=2)),
+        at(15.604, Undo("2", kept=1, next_point="2")),
+        at(15.704, touch("2", (4.0, 5.0, 6.0), kept=2)),
+        at(15.8, CameraChange("far")),
     ]
-    trajectory = Recording.of(entries).trajectory()
+    trajectory = Recording.of(lines).trajectory()
     np.testing.assert_allclose(trajectory.times_s, [0.02, 0.4])
     np.testing.assert_allclose(trajectory.touch_times_s, [0.1, 0.7])
     assert trajectory.touches[1].position_mm == (4, 5, 6)
@@ -195,25 +194,26 @@ def test_a_recording_excludes_pauses_and_undone_touches():
 
 
 def test_touches_that_could_not_be_written_do_not_count():
-    entries = [
-        entry("header", 0.004, tickS=0.004),
-        entry("touch", 1.0, label="1", positionMm=[1, 2, 3], kept=1),
-        entry("touch", 2.0, label="2", positionMm=[1, 2, 3], kept=2),
-        entry("phase", 2.1, phase="paused", nextPoint="2"),
+    lines = [
+        at(0.004, header()),
+        at(1.0, touch("1")),
+        at(2.0, touch("2", kept=2)),
+        at(2.1, phase(Phase.PAUSED, "2")),
     ]
-    assert [touch.label for touch in Recording.of(entries).trajectory().touches] == ["1"]
+    assert [touch.label for touch in Recording.of(lines).trajectory().touches] == ["1"]
 
 
 @pytest.mark.parametrize(
-    "malformed",
+    ("change", "key"),
     [
-        {"kind": "touch", "label": "1"},
-        {"kind": "touch", "label": "1", "simTimeS": 1.0, "positionMm": ["1", "2", "x"]},
-        {"kind": "trace", "simTimeS": 1.0, "positionMm": [1.0, 2.0]},
-        {"kind": "sample", "simTimeS": 10**400, "tipMm": [1, 2, 3], "clearanceMm": 1.0},
+        ({"label": None}, "label"),
+        ({"positionMm": ["1", "2", "x"]}, "positionMm"),
+        ({"positionMm": [1.0, 2.0]}, "positionMm"),
+        ({"simTimeS": 10**400}, "simTimeS"),
+        ({"kind": "tuch"}, "tuch"),
     ],
-    ids=["missing", "words", "two coordinates", "huge"],
+    ids=["missing", "words", "two coordinates", "huge", "unknown kind"],
 )
-def test_a_malformed_entry_raises_a_one_sentence_error(malformed):
-    with pytest.raises(InputError, match="A journal entry is malformed"):
-        Recording.of([malformed])
+def test_a_malformed_entry_raises_a_one_sentence_error_that_names_the_key(change, key):
+    with pytest.raises(InputError, match=f"^A journal entry is malformed: .*{key}"):
+        read_line({**at(1.0, touch("1")).to_json(), **change})

@@ -205,7 +205,7 @@ def test_the_record_of_another_plan_is_refused():
 
 
 def registered(bias):
-    """A registration of touches with errors, all of them moved by a bias, and what it shows."""
+    """A registration of touches with errors and a common bias, and the plan that it shows."""
     random = np.random.default_rng(8)
     fiducials = random.normal(0.0, 55.0, (15, 3))
     checkpoints = random.normal(0.0, 55.0, (5, 3))

@@ -1,4 +1,4 @@
-"""Procedures in a scenario's files: what is written is read again, and errors are reported."""
+"""Procedures in a scenario's files are read as they were written, and errors are reported."""
 
 import json
 import shutil
@@ -49,7 +49,7 @@ def test_a_written_procedure_is_read_again(folder):
     assert left.length_mm == 70.0
     assert left.direction.tolist() == [0.0, 0.0, -1.0]
     assert not left.entry_ras.flags.writeable
-    meshes = read_procedure_meshes(procedure, scenario.skull_mesh)
+    meshes = read_procedure_meshes(procedure, scenario.skull.file)
     assert len(meshes.skull.triangles) == len(shell().triangles)
     assert np.allclose(meshes.no_go["Vessel"].vertices, vessel().vertices, atol=1e-4)
 
@@ -99,16 +99,6 @@ def same_trajectory(values):
     lines.append(dict(lines[0]))
 
 
-def many_lines(values):
-    line = values["procedures"][0]["trajectories"][0]
-    values["procedures"][0]["trajectories"] = [{**line, "name": f"{n}"} for n in range(21)]
-
-
-def many_structures(values):
-    one = values["procedures"][0]["noGo"][0]
-    values["procedures"][0]["noGo"] = [{**one, "name": f"{n}"} for n in range(11)]
-
-
 def many_files(values):
     one = values["procedures"][0]
     values["procedures"] = [
@@ -121,30 +111,20 @@ def many_files(values):
     ]
 
 
-LINE = (0, "trajectories", 0)
-
-
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
         (lambda values: values.pop("skull"), "skull must be given, because .* needs a skull"),
-        (set_in(0, "name", "Not Good"), r"procedures\[0\].name must be lower-case"),
-        (set_in(0, "kind", "heart"), "kind must be one of biopsy, dbs, seeg"),
-        (set_in(0, "title", ""), "title must be printable text"),
-        (set_in(0, "trajectories", []), "trajectories must be a list of 1 to 20 objects"),
-        (many_lines, "trajectories must be a list of 1 to 20 objects"),
-        (many_structures, "noGo must be a list of at most 10 objects"),
         (many_files, "at most 30 files of no-go meshes"),
         (same_name, "procedures must be a list in which each name occurs once"),
         (same_trajectory, "trajectories must be a list in which each name occurs once"),
-        (set_in(*LINE, "entryRas", [0, 0, 1e9]), "entryRas must be a list of 3 numbers within"),
-        (set_in(*LINE, "entryRas", [0.0, 0.0, 21.0]), "at least 10 mm from targetRas"),
-        (set_in(*LINE, "diameterMm", 0.0), "diameterMm must be a number from 0.5 to 10"),
-        (set_in(*LINE, "safetyMm", -1.0), "safetyMm must be a number from 0 to 20"),
+        (
+            set_in(0, "trajectories", 0, "entryRas", [0.0, 0.0, 21.0]),
+            "at least 10 mm from targetRas",
+        ),
         (set_in(0, "noGo", 0, "file", "../vessel.ply"), "inside the scenario's folder"),
         (set_in(0, "noGo", 0, "file", "vessel.ply"), "must be no-go/NAME.ply"),
         (set_in(0, "noGo", 0, "file", "no-go/Vessel 1.ply"), "must be no-go/NAME.ply"),
-        (set_in(0, "checkpoints", 0, "positionRas", None), "positionRas must be a list of 3"),
     ],
 )
 def test_an_invalid_procedure_is_refused_in_one_sentence(folder, change, sentence):
@@ -156,7 +136,7 @@ def test_an_invalid_procedure_is_refused_in_one_sentence(folder, change, sentenc
 
 def meshes_of(folder):
     scenario = load_scenario(folder)
-    return read_procedure_meshes(scenario.procedures[0], scenario.skull_mesh)
+    return read_procedure_meshes(scenario.procedures[0], scenario.skull.file)
 
 
 def test_a_missing_no_go_mesh_is_named(folder):
@@ -191,7 +171,7 @@ def test_an_open_skull_is_refused(folder):
 
 def hash_of(folder):
     scenario = load_scenario(folder)
-    return scenario.procedures[0].sha256(scenario.skull_mesh)
+    return scenario.procedures[0].sha256(scenario.skull.file)
 
 
 def test_the_hash_of_a_procedure_covers_what_a_trial_depends_on(folder):

@@ -15,13 +15,13 @@ from rastrainer.registration.surface_error import (
 
 TARGET = np.array([0.7815, -16.9395, 1.432])
 EYE = np.array([0.8, 583.1, 221.4])
-"""Of the scenario, RAS mm: the target, and the eye of its close-up."""
+"""The scenario's target, and the eye of its close-up, RAS mm."""
 AIMED_MM = 3.0
 """Standard deviation, on each axis, of where a hand begins that aims at the ring."""
 EACH_LOOK = 4
 """Points that are drawn between two glances at the ring."""
 SHORTEST, LONGEST = 20, 60
-"""Of a stroke without guidance, in points; they are 1 mm apart."""
+"""Length of a stroke without guidance, in points, which are 1 mm apart."""
 
 
 def draw_by_guidance(head: HeadMesh, guide: TraceGuide, seed: int, count: int) -> np.ndarray:

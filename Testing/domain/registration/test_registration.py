@@ -30,9 +30,9 @@ def vtk_matrix(moving, fixed, kind):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_thousand_random_sets_map_as_vtk_landmark_transform_maps_them(kind, touched_head):
+def test_random_sets_map_as_vtk_landmark_transform_maps_them(kind, touched_head):
     worst_mm = 0.0
-    for seed in range(1000):
+    for seed in range(200):
         moving, fixed, rng = touched_head(seed, count=4 + seed % 27)
         if seed % 3 == 0:
             moving = moving * rng.uniform(0.5, 2.0, 3)
@@ -77,7 +77,7 @@ def test_fre_is_the_root_mean_square_of_the_residual_vectors(touched_head):
 
 
 def test_more_freedom_never_fits_worse_than_rigid(touched_head):
-    for seed in range(50):
+    for seed in range(10):
         moving, fixed, _ = touched_head(seed)
         rigid, affine = (register(moving, fixed, kind).fre_mm for kind in ("rigid", "affine"))
         assert affine <= rigid
@@ -165,14 +165,14 @@ def spoiled(row, value):
         (GOOD[:2], GOOD[:2], "rigid", "Rigid registration needs at least 3 .* only 2"),
         (GOOD[:1], GOOD[:1], "similarity", "Similarity .* there is only 1"),
         (GOOD[:3], GOOD[:3], "affine", "Affine registration needs at least 4"),
-        ([], [], "rigid", "There are no moving points"),
-        (GOOD, [], "rigid", "There are no fixed points"),
-        (GOOD[:, :2], GOOD, "rigid", "moving points must have three coordinates"),
-        ([[1, 2], [3]], GOOD, "rigid", "moving points must be numbers"),
-        (GOOD, [["a", "b", "c"]], "rigid", "fixed points must be numbers"),
-        (spoiled(2, np.nan), GOOD, "rigid", "Point 3 of the moving points .* not a finite"),
-        (GOOD, spoiled(4, np.inf), "rigid", "Point 5 of the fixed points .* not a finite"),
-        (GOOD, spoiled(0, 1e300), "rigid", r"Point 1 of the fixed points .* beyond ±1000000 mm"),
+        ([], [], "rigid", "moving points .* at least one point"),
+        (GOOD, [], "rigid", "fixed points .* at least one point"),
+        (GOOD[:, :2], GOOD, "rigid", "moving points .* three coordinates"),
+        ([[1, 2], [3]], GOOD, "rigid", "moving points .* must be numbers"),
+        (GOOD, [["a", "b", "c"]], "rigid", "fixed points .* must be numbers"),
+        (spoiled(2, np.nan), GOOD, "rigid", "moving points .* Point 3 has .* not a number"),
+        (GOOD, spoiled(4, np.inf), "rigid", "fixed points .* Point 5 has .* not a number"),
+        (GOOD, spoiled(0, 1e300), "rigid", r"fixed points .* Point 1 has .* within ±1000000 mm"),
         (line(), line(), "rigid", r"moving points \(1, 2, 3, 4, 5\) lie on one line"),
         (GOOD, line(), "similarity", r"fixed points \(1, 2, 3, 4, 5\) lie on one line"),
         (np.ones((4, 3)), GOOD[:4], "rigid", "All moving points .* the same place"),

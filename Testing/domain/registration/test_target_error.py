@@ -74,7 +74,7 @@ def test_the_error_is_smallest_at_the_centroid():
 def test_expectation_agrees_with_simulation_off_the_origin_and_tilted(kind):
     fixed = fiducials(8)
     target = np.array([70, -50, 40]) + fixed.mean(axis=0)
-    fre, tre = simulated(fixed, target, kind, deviation=0.5, trials=4000)
+    fre, tre = simulated(fixed, target, kind, deviation=0.5, trials=2000)
     registration = noisy(fixed, kind)
     expected = expected_tre(registration, target[None], common_bias_sd_mm=0.0)[0]
     per_fle = expected / isotropic_error(registration).fle_mm
@@ -86,9 +86,7 @@ def test_expectation_agrees_with_simulation_off_the_origin_and_tilted(kind):
 @pytest.mark.parametrize(
     ("kind", "count", "offset"),
     [
-        ("rigid", 15, [0, 0, 0]),
         ("rigid", 15, [120, -80, 60]),
-        ("rigid", 4, [50, 50, -30]),
         ("rigid", 3, [40, 20, 10]),
         ("similarity", 8, [90, 0, 60]),
         ("affine", 8, [40, -60, 20]),
@@ -97,7 +95,7 @@ def test_expectation_agrees_with_simulation_off_the_origin_and_tilted(kind):
 def test_the_interval_holds_the_true_error_in_95_of_100_trials(kind, count, offset):
     fixed = fiducials(count, seed=4)
     target = np.array(offset) + fixed.mean(axis=0)
-    fre, tre = simulated(fixed, target, kind, deviation=0.4, trials=3000)
+    fre, tre = simulated(fixed, target, kind, deviation=0.4, trials=2000)
     registration = noisy(fixed, kind)
     error = target_error(registration, target, common_bias_sd_mm=0.0)
     low, high = np.array(error.interval_mm) / registration.fre_mm
@@ -137,7 +135,7 @@ def slipping(normals, along, across, rng):
 
 
 @pytest.mark.parametrize("sets", [40, pytest.param(100, marks=pytest.mark.soak)])
-@pytest.mark.parametrize(("along", "across"), [(0.8, 0.2), (0.8, 0.8), (0.2, 0.9)])
+@pytest.mark.parametrize(("along", "across"), [(0.8, 0.2), (0.2, 0.9)])
 def test_the_parts_of_the_localization_error_along_and_across_the_skin_are_recovered(
     along, across, sets
 ):
@@ -155,7 +153,7 @@ def test_the_parts_of_the_localization_error_along_and_across_the_skin_are_recov
 
 
 @pytest.mark.parametrize("sets", [40, pytest.param(120, marks=pytest.mark.soak)])
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", ["rigid", "affine"])
 def test_the_interval_holds_the_true_error_of_touches_that_slip_along_the_skin(kind, sets):
     rng = np.random.default_rng(6)
     target = np.zeros(3)

@@ -102,11 +102,11 @@ def test_a_point_of_negligible_weight_has_no_effect():
 
 def test_expected_fre_and_tre_of_known_unequal_errors_are_those_of_simulated_fits():
     registration, fle = weighted_registration()
-    fre, errors = simulated(6000)
-    assert expected_fre(registration, stated_error(fle)) == pytest.approx(fre, rel=0.02)
+    fre, errors = simulated(3000)
+    assert expected_fre(registration, stated_error(fle)) == pytest.approx(fre, rel=0.03)
     target = (TARGET + registration.fixed_mm.mean(axis=0))[None]
     expected = expected_tre(registration, target, stated_error(fle), common_bias_sd_mm=0.0)[0]
-    assert expected == pytest.approx(np.sqrt((errors**2).sum(axis=1).mean()), rel=0.02)
+    assert expected == pytest.approx(np.sqrt((errors**2).sum(axis=1).mean()), rel=0.03)
 
 
 def test_the_expected_tre_is_that_of_the_inverse_of_the_weighted_normal_equations():
@@ -134,8 +134,8 @@ def test_equal_errors_expect_the_fre_of_sibsons_formula():
 
 
 def test_weights_reduce_the_effect_of_unequal_errors():
-    _, weighted = simulated(1500)
-    _, plain = simulated(1500, weighted=False)
+    _, weighted = simulated(500)
+    _, plain = simulated(500, weighted=False)
     assert np.sqrt((weighted**2).sum(axis=1).mean()) < 0.7 * np.sqrt((plain**2).sum(axis=1).mean())
 
 
@@ -163,7 +163,7 @@ def test_the_size_of_the_errors_is_recovered_from_the_weighted_residuals(sets):
     assert np.sqrt(np.mean(np.square(found))) == pytest.approx(stated, rel=0.03)
 
 
-@pytest.mark.parametrize("sets", [200, pytest.param(400, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("sets", [100, pytest.param(400, marks=pytest.mark.soak)])
 def test_misfit_to_the_stated_errors_is_seldom_a_false_alarm(sets):
     stated = [misfit_probability(*weighted_registration(seed)) for seed in range(sets)]
     # Give or take three standard errors of so many sets.

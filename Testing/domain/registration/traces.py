@@ -19,7 +19,7 @@ def colin27() -> HeadMesh:
 
 
 def places(mesh: HeadMesh, where: str) -> np.ndarray:
-    """The vertices, as indices, of a region of the skin: that of Colin27, scaled to a head's box.
+    """The vertices, as indices, of a region of Colin27's skin, scaled to a head's box.
 
     `side` is the right half of the head, from temple to behind the ear.
     """

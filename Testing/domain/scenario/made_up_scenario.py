@@ -8,7 +8,7 @@ import numpy as np
 
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.head.volume import HeadVolume
-from rastrainer.scenario.points import LABELS, PlannedTarget, PlannedTrajectory, Task
+from rastrainer.scenario.points import PlannedTarget, PlannedTrajectory, Task, task_file
 from rastrainer.scenario.scenario import Provenance, Scenario
 from rastrainer.scenario.setup import SetUp
 from Testing.domain.head.spheres import RADIUS_MM, sphere_mesh
@@ -47,21 +47,21 @@ def made_up_scenario():
     setup = SetUp()
     points = np.random.default_rng(4).uniform(-90, 90, (2, 15, 3)).round(4)
     tasks = tuple(
-        Task(f"task-{row + 1}", f"Task {row + 1}", LABELS, points[row], 10.0 + row, shortest)
-        for row, shortest in enumerate((500.0, None))
+        Task(name, name.title(), task_file(name), 10.0 + row, shortest, fiducials=points[row])
+        for row, (name, shortest) in enumerate({"task-1": 500.0, "task-2": None}.items())
     )
     return Scenario(
-        folder=Path(),
+        format_version=1,
         name="ball",
         title="A ball",
-        head_mesh=Path(),
-        target_name="Tumor",
-        target_position=np.array([1.0, -17.0, 2.5]),
+        head=Path("head.ply"),
+        target=PlannedTarget("Tumor", np.array([1.0, -17.0, 2.5])),
         head_to_world=setup.head_to_world(np.zeros(3)),
         perturbation=setup.perturbation,
         tasks=tasks,
         cameras=setup.cameras(),
-        furniture=setup.furniture(),
+        table=setup.table_in_world(),
+        stand=setup.stand,
         provenance=Provenance("made up", "by hand", "none needed"),
         targets=(PlannedTarget("Cyst", np.array([10.0, 20.0, 30.0])),),
         trajectory=PlannedTrajectory("Biopsy", np.array([0.0, 0.0, 90.0]), np.zeros(3)),

@@ -70,9 +70,9 @@ def changed(path, value):
 def test_a_scenario_is_read_completely(folder):
     scenario = load_scenario(folder)
     assert (scenario.name, scenario.title, scenario.folder) == ("sphere", "A sphere", folder)
-    assert scenario.head_mesh == (folder / "head.ply").resolve()
-    assert scenario.target_name == "Center"
-    assert scenario.target_position.tolist() == [1, -17, 2]
+    assert scenario.head == (folder / "head.ply").resolve()
+    assert scenario.target.name == "Center"
+    assert scenario.target.position_ras.tolist() == [1, -17, 2]
     assert scenario.head_to_world[:3, 3].tolist() == [480, -17, 218]
     assert [task.name for task in scenario.tasks] == ["trial-run", "task-1"]
     assert scenario.task("task-1").complexity == 7.0
@@ -80,7 +80,7 @@ def test_a_scenario_is_read_completely(folder):
     assert np.array_equal(scenario.task("trial-run").fiducials, POINTS)
     assert scenario.cameras["close-up"].view_up.tolist() == [0, 0, 1]
     assert scenario.cameras["far"].position_mm.tolist() == [240, -2000, 1000]
-    assert scenario.furniture.stand.diameter_mm == 80
+    assert scenario.stand.diameter_mm == 80
     assert scenario.provenance.license == "none needed"
 
 
@@ -98,14 +98,14 @@ def test_the_same_seed_gives_the_same_pose(folder):
 
 def test_perturbed_poses_fill_the_limits_and_stay_within_them(folder):
     scenario = load_scenario(folder)
-    center = transforms.apply(scenario.head_to_world, scenario.target_position)
+    center = transforms.apply(scenario.head_to_world, scenario.target.position_ras)
     shifts, tilts, yaws = [], [], []
     for seed in range(500):
         pose = scenario.perturbed_head_to_world(seed)
         turn = pose[:3, :3] @ scenario.head_to_world[:3, :3].T
         assert np.allclose(turn @ turn.T, np.eye(3))
         assert np.linalg.det(turn) == pytest.approx(1)
-        shifts.append(transforms.apply(pose, scenario.target_position) - center)
+        shifts.append(transforms.apply(pose, scenario.target.position_ras) - center)
         tilts.append(np.degrees(np.arccos(np.clip(turn[2, 2], -1, 1))))
         yaws.append(np.degrees(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1])))
     for values, limit in ((shifts, 15), (tilts, 3), (yaws, 8)):
@@ -128,41 +128,19 @@ MIRRORED = [1, 0, 0, 480, 0, -1, 0, -17, 0, 0, 1, 218, 0, 0, 0, 1]
     ("path", "value", "sentence"),
     [
         ("formatVersion", 2, "formatVersion must be 1"),
-        ("formatVersion", "1", "formatVersion must be 1"),
         ("name", "Sphere!", "name must be lower-case letters"),
-        ("title", "", "title must be printable text"),
-        ("title", "line\nbreak", "title must be printable text"),
-        ("title", None, "title must be printable text"),
         ("head", "../head.ply", "head must be the path of a file inside"),
         ("head", "/etc/passwd", "head must be the path of a file inside"),
         ("head", "..\\head.ply", "head must be the path of a file inside"),
         ("head", ".", "head must be the path of a file inside"),
-        ("head", "a\0b", "head must be printable text"),
-        ("target", [1, 2, 3], "target must be a JSON object"),
-        ("target.positionRas", [1, 2], "target.positionRas must be a list of 3 numbers"),
-        ("target.positionRas", [1, 2, True], "target.positionRas must be a list of 3 numbers"),
-        ("target.positionRas", [1, 2, 10**400], "target.positionRas must be a list of 3 numbers"),
         ("headToWorld", SKEWED, "headToWorld must be a rigid transform"),
         ("headToWorld", MIRRORED, "headToWorld must be a rigid transform"),
         ("headToWorld", [0] * 16, "headToWorld must be a rigid transform"),
-        ("perturbation.yawDeg", -1, "perturbation.yawDeg must be a number from 0 to 180"),
-        ("perturbation.yawDeg", True, "perturbation.yawDeg must be a number"),
-        ("tasks", [], "tasks must be a list of 1 to 20 objects"),
-        ("tasks", {"name": "task-1"}, "tasks must be a list"),
-        ("tasks", ["task-1"], r"tasks\[0\] must be a JSON object"),
         ("tasks.1.name", "trial-run", "tasks must be a list in which each name occurs once"),
         ("tasks.1.file", "../../b.mrk.json", r"tasks\[1\].file must be the path of a file inside"),
         ("tasks.1.file", "tasks/none.mrk.json", "none.mrk.json"),
-        ("tasks.1.complexity", None, r"tasks\[1\].complexity must be a number"),
-        ("tasks.1.shortestPathMm", 0, r"tasks\[1\].shortestPathMm must be a number from 1"),
-        ("cameras.far", None, "cameras.far must be a JSON object"),
         ("cameras.far.viewUp", [0, 0, 0], "cameras.far.viewUp must be a direction across"),
-        ("cameras.close-up.viewAngleDeg", 0, "cameras.close-up.viewAngleDeg must be a number"),
-        ("stand.diameterMm", 0, "stand.diameterMm must be a number from 1"),
-        ("provenance.license", 5, "provenance.license must be printable text"),
-        ("skin", 2, "skin must be an object of shiftMm"),
-        ("skin", {"shiftMm": -1}, "skin.shiftMm must be a number from 0 to 20 mm"),
-        ("skin", {"shift": 1}, "skin must be an object of shiftMm and indentationMm"),
+        ("skin", {"seed": 1}, "skin must be an object of shiftMm and indentationMm"),
     ],
 )
 def test_an_invalid_field_is_named_with_what_it_must_be(folder, path, value, sentence):

@@ -14,7 +14,7 @@ from rastrainer.head.trial_head import UNMOVED, Perturbation, SkinShift
 from rastrainer.head.volume import read_head_volume
 from rastrainer.json_records import record_to_json
 from rastrainer.scenario.library import list_scenarios
-from rastrainer.scenario.scenario import OperatingTable, Stand, load_scenario
+from rastrainer.scenario.scenario import OperatingTable, SkullKind, Stand, load_scenario
 from rastrainer.scenario.setup import HeadPlace, SetUp, read_setup
 from rastrainer.scenario.writer import (
     HeadDraft,
@@ -44,7 +44,7 @@ def test_a_scenario_is_read_back_with_its_skin(tmp_path):
 def test_a_scenario_is_read_back_with_targets_and_trajectory(tmp_path):
     scenario = written(tmp_path / "ball", skull=ball_head(80.0))
     wanted = made_up_scenario()
-    assert (scenario.name, scenario.title, scenario.target_name) == ("ball", "A ball", "Tumor")
+    assert (scenario.name, scenario.title, scenario.target.name) == ("ball", "A ball", "Tumor")
     assert np.allclose(scenario.head_to_world, wanted.head_to_world)
     assert [task.complexity for task in scenario.tasks] == [10.0, 11.0]
     assert [task.shortest_path_mm for task in scenario.tasks] == [500.0, None]
@@ -53,8 +53,8 @@ def test_a_scenario_is_read_back_with_targets_and_trajectory(tmp_path):
     assert scenario.targets[0].position_ras.tolist() == [10, 20, 30]
     assert scenario.trajectory.entry_ras.tolist() == [0, 0, 90]
     assert scenario.provenance == wanted.provenance
-    assert read_head_mesh(scenario.skull_mesh).vertices.max() == pytest.approx(80, abs=1e-3)
-    assert not scenario.is_skull_approximate
+    assert read_head_mesh(scenario.skull.file).vertices.max() == pytest.approx(80, abs=1e-3)
+    assert scenario.skull.kind is SkullKind.BONE
     assert scenario.preview is None
 
 
@@ -140,10 +140,12 @@ def test_an_unusable_picture_is_not_listed(tmp_path, content):
 
 
 def test_a_draft_is_read_back(tmp_path):
-    write_draft(tmp_path, HeadDraft(ball_head(), "by hand", ball_head(80.0), True))
+    write_draft(
+        tmp_path, HeadDraft(ball_head(), "by hand", ball_head(80.0), SkullKind.APPROXIMATION)
+    )
     draft = read_draft(tmp_path)
     assert draft.method == "by hand"
-    assert draft.is_skull_approximate
+    assert draft.skull_kind is SkullKind.APPROXIMATION
     assert len(draft.skull.vertices) == len(draft.head.vertices)
 
 
@@ -184,7 +186,7 @@ def test_moving_the_robot_base_moves_everything_else_the_opposite_way():
     )
     for name, camera in moved.cameras().items():
         assert np.allclose(camera.position_mm - usual.cameras()[name].position_mm, shift)
-    away = np.subtract(moved.furniture().table.center_mm, usual.furniture().table.center_mm)
+    away = np.subtract(moved.table_in_world().center_mm, usual.table_in_world().center_mm)
     assert np.allclose(away, shift[:2])
 
 

@@ -64,7 +64,7 @@ def test_a_scenario_is_packed_and_unpacked(folder, library):
     assert goal == library / "ball"
     scenario, original = load_scenario(goal), load_scenario(folder)
     assert np.array_equal(scenario.tasks[0].fiducials, original.tasks[0].fiducials)
-    assert scenario.head_mesh.read_bytes() == original.head_mesh.read_bytes()
+    assert scenario.head.read_bytes() == original.head.read_bytes()
     assert scenario.volume.file.read_bytes() == original.volume.file.read_bytes()
     assert scenario.preview.read_bytes() == b"picture"
     assert not (goal / "patient-name.txt").exists()

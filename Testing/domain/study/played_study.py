@@ -15,7 +15,8 @@ STUDIES = Path(__file__).parents[3] / "assets" / "studies"
 
 def study_with_trials(path, consent=True):
     """A has done all steps and repeated the last task, B only the first trial."""
-    with Study.open(path) as study:
+    # In one transaction: each alone costs a sync of the disk.
+    with Study.open(path) as study, study.database.writing():
         progress = StudyProgress(study)
         published = StudyProtocol.read(STUDIES / "published-protocol.json")
         progress.set_protocol(replace(published, tasks=("task-1",)))

@@ -156,7 +156,7 @@ class RefusalError(Exception):
 
 
 class OperationalError(RefusalError):
-    """With the same name as psycopg's."""
+    """Has the name of psycopg's error."""
 
 
 @pytest.mark.parametrize(

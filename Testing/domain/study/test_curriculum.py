@@ -18,9 +18,7 @@ from rastrainer.protocol import (
     GoalKind,
     RegistrationMethod,
 )
-from rastrainer.study.curriculum.curriculum import (
-    Curriculum,
-)
+from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import standing_in
 from rastrainer.study.database.study import Study
@@ -87,28 +85,15 @@ def test_an_invalid_file_is_refused_with_the_field_and_what_would_be_right(chang
     ("changes", "said"),
     [
         ({"task": "trial-run"}, "task must be a task that is scored"),
-        ({"scenario": "A b"}, "scenario must be lower-case letters"),
-        ({"mode": "wall"}, "mode must be one of desktop, hmd"),
-        ({"method": "magic"}, "method must be one of fiducials"),
         ({"goal": "fun"}, "goal must be one of score, competent"),
         ({"trials": 0}, "trials must be a whole number from 1"),
-        ({"mark": 101}, "mark must be a number from"),
         ({"goal": "competent", "trials": 3}, "trials must be left out"),
         ({"after": ["one"]}, "after must be a list of assignments that stand before"),
         ({"after": ["two"]}, "after must be a list of assignments that stand before"),
         ({"until": 3}, 'no "until"; use name, task'),
     ],
     ids=[
-        *(
-            "trial run",
-            "scenario",
-            "mode",
-            "method",
-            "kind",
-            "no trials",
-            "mark",
-            "trials of competence",
-        ),
+        *("trial run", "goal", "no trials", "trials of competence"),
         *("itself", "later", "unknown key"),
     ],
 )
@@ -224,7 +209,7 @@ def test_the_part_of_the_score_that_cost_the_most_is_named():
     assert set(parts) == {"time", "accuracy", "common bias", "safety"}
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(8))
 def test_a_further_trial_never_takes_back_what_was_reached(seed):
     chance = random.Random(seed)
     names = [f"a{number}" for number in range(8)]
@@ -361,17 +346,10 @@ def test_what_slicer_sends_to_the_simulator_arrives_unchanged_and_fits_into_a_me
 @pytest.mark.parametrize(
     "changes",
     [
-        {"name": "x" * 41},
         {"state": "won"},
-        {"goal": "fun"},
         {"done": 101},
-        {"done": True},
-        {"needed": 0},
-        {"mark": -1},
         {"mark": 1e9},
         {"missing": ["a"] * 7},
-        {"missing": "one"},
-        {"mode": "wall"},
         {"task": "\n"},
         {"more": 1},
     ],
@@ -384,7 +362,7 @@ def test_a_hostile_message_is_refused(changes):
         check_arguments(CommandName.CURRICULUM, bad)
 
 
-@pytest.mark.parametrize("assignments", [{}, "x", [1], [[]], [{}], [None] * 99], ids=str)
+@pytest.mark.parametrize("assignments", [{}, [1], [None] * 99], ids=str)
 def test_anything_that_is_not_a_list_of_assignments_is_refused(assignments):
     with pytest.raises(InputError):
         check_arguments(CommandName.CURRICULUM, {"trainee": "A", "assignments": assignments})

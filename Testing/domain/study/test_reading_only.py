@@ -18,13 +18,12 @@ from Testing.domain.study.played_study import play, study_with_trials
 from Testing.domain.trial.trial_records import gentle_score, make_record
 
 
-@pytest.fixture
-def path(tmp_path):
+@pytest.fixture(scope="module")
+def played(tmp_path_factory):
     """A study with a stored trial of B that is not counted yet."""
-    path = tmp_path / "study" / "study.db"
-    path.parent.mkdir()
+    path = tmp_path_factory.mktemp("played") / "study.db"
     study_with_trials(path)
-    with Study.open(path) as study:
+    with Study.open(path) as study, study.database.writing():
         play(study, "B", "desktop")
         for number in range(10):
             name = f"{'NE'[number // 5]}{number % 5}"
@@ -35,6 +34,14 @@ def path(tmp_path):
                 error_mm = (0.9 if name[0] == "N" else 0.3) + 0.02 * number
                 score = gentle_score(110.0, error_mm)
                 study.add_trial(record, score=score)
+    return path
+
+
+@pytest.fixture
+def path(played, tmp_path):
+    path = tmp_path / "study" / "study.db"
+    path.parent.mkdir()
+    shutil.copy(played, path)
     os.utime(path, (1_000_000_000, 1_000_000_000))
     return path
 

@@ -1,4 +1,4 @@
-"""The outcome of a procedure is stored with its trial, and counts for the step that asks for it."""
+"""The outcome of a procedure is stored with its trial, and a step can require it."""
 
 from dataclasses import replace
 

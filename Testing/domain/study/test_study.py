@@ -3,6 +3,7 @@
 import csv
 import json
 import uuid
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -71,6 +72,21 @@ def test_a_trial_with_an_invalid_pseudonym_is_refused(study, name):
     with pytest.raises(InputError):
         study.add_trial(record(trainee=name))
     assert study.trainees() == ()
+
+
+def test_a_trial_is_checked_before_anything_is_computed_from_it(study):
+    trial = record_from_json(TrialRecord, record())
+    assert study.check_trial(trial)
+    assert study.trainees() == ()
+    study.add_trial(trial)
+    assert not study.check_trial(trial)
+    with pytest.raises(InputError, match="Another trial is stored under the UUID"):
+        study.check_trial(replace(trial, task="task-2"))
+    with pytest.raises(InputError, match="A pseudonym must be"):
+        study.check_trial(record_from_json(TrialRecord, record(8, trainee="T-001 ")))
+    study.delete_trainee("T-001")
+    with pytest.raises(DeletedTrialError):
+        study.check_trial(trial)
 
 
 def test_only_changed_trials_are_read_again(study, study_place, monkeypatch):

@@ -53,15 +53,15 @@ def test_nothing_is_changed_within_a_transaction_for_reading(tmp_path):
 
 def test_concurrent_writers_lose_and_duplicate_nothing(study_place):
     path = study_place
-    writers = [writer(path, 0, 60), writer(path, 30, 90)]
+    writers = [writer(path, 0, 20), writer(path, 10, 30)]
     for process in writers:
         process.communicate(timeout=60)
         assert process.returncode == 0
-    assert stored_numbers(path) == list(range(90))
+    assert stored_numbers(path) == list(range(30))
     assert check(path) == "ok"
 
 
-@pytest.mark.parametrize("wanted", [8, pytest.param(400, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("wanted", [5, pytest.param(400, marks=pytest.mark.soak)])
 def test_killed_writers_lose_and_duplicate_nothing(study_place, wanted):
     path = study_place
     rng = random.Random(5)

@@ -17,10 +17,11 @@ from rastrainer_simulator.export.xapi import HOME_PAGE, statements
 from Testing.domain.study.played_study import study_with_trials
 
 
-@pytest.fixture
-def data(tmp_path):
-    study_with_trials(tmp_path / "study.db")
-    return read_study_data(tmp_path / "study.db")
+@pytest.fixture(scope="module")
+def data(tmp_path_factory):
+    path = tmp_path_factory.mktemp("exported") / "study.db"
+    study_with_trials(path)
+    return read_study_data(path)
 
 
 def rows_of(text):

@@ -455,7 +455,7 @@ def test_a_password_is_found_in_its_file_and_shown_nowhere(own_server, tmp_path)
 
 def test_another_computer_is_reached_only_over_tls(own_server, tmp_path):
     place = own_server.new_study()
-    # To libpq, a number of the loop that is not in our list is another computer.
+    # A loopback number outside our list is treated as another computer.
     far = f"postgresql://tester@127.0.0.2:{own_server.port}/{place.database}"
     with pytest.raises(InputError, match=r"does not offer TLS|sslrootcert"):
         Study.open(far)

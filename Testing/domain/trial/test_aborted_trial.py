@@ -31,36 +31,12 @@ def test_a_record_survives_json():
         assert record.is_after_all_touches == (touches == 15)
 
 
-def test_unknown_keys_are_ignored_and_unknown_reasons_accepted():
-    record = record_from_json(AbortedTrial, make_aborted(reason="head was dropped", weather="rain"))
-    assert record.reason == "head was dropped"
-
-
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        pytest.param({"trialId": "../../x"}, "trialId must be the UUID", id="id"),
-        pytest.param({"trainee": ""}, "trainee must be printable", id="trainee"),
-        pytest.param({"trainee": "a\nb"}, "trainee must be printable", id="newline"),
-        pytest.param({"task": "t" * 65}, "task must be printable", id="task"),
-        pytest.param({"mode": "hologram"}, "mode must be one of", id="mode"),
         pytest.param({"phase": "scored"}, "phase must be one of running", id="phase"),
-        pytest.param({"phase": []}, "phase must be one of running", id="phase-list"),
-        pytest.param({"reason": "x" * 65}, "reason must be printable", id="reason"),
-        pytest.param({"elapsedS": -1.0}, "elapsedS must be a number", id="elapsed"),
-        pytest.param({"elapsedS": float("nan")}, "elapsedS must be a number", id="nan"),
-        pytest.param({"elapsedS": True}, "elapsedS must be a number", id="bool"),
-        pytest.param({"abortedUtc": "yesterday"}, "abortedUtc must be an ISO", id="when"),
-        pytest.param({"points": "all"}, "points must be a list of at most 15", id="points"),
-        pytest.param(
-            {"points": make_record()["points"] * 2}, "points must be a list of at most", id="many"
-        ),
         pytest.param({"points": make_record()["points"][:1] * 2}, "holds the label", id="twice"),
         pytest.param({"points": make_record()["points"][1::-1]}, "in the order", id="order"),
-        pytest.param({"rejectedTouches": 1.5}, "rejectedTouches must be", id="rejected"),
-        pytest.param({"undoneTouches": -1}, "undoneTouches must be", id="undone"),
-        pytest.param({"versions": {"a": 1}}, "versions.a must be", id="versions"),
-        pytest.param({"touchRule": "near"}, "touchRule must be one of", id="rule"),
     ],
 )
 def test_an_invalid_record_is_refused_with_a_message_and_not_stored(study, change, words):
@@ -69,13 +45,7 @@ def test_an_invalid_record_is_refused_with_a_message_and_not_stored(study, chang
     assert study.trainees() == ()
 
 
-def test_an_incomplete_or_too_large_record_is_refused(study):
-    lacking = make_aborted()
-    del lacking["phase"]
-    with pytest.raises(InputError, match='needs the key "phase"'):
-        study.add_aborted(lacking)
-    with pytest.raises(InputError, match="must be a JSON object"):
-        study.add_aborted(["no", "object"])
+def test_a_too_large_record_and_another_name_for_a_trainee_are_refused(study):
     with pytest.raises(InputError, match="larger than 1 MiB"):
         study.add_aborted(make_aborted(more="x" * 2**20))
     with pytest.raises(InputError, match="pseudonym"):
@@ -187,7 +157,3 @@ def test_an_aborted_trial_keeps_its_method_and_older_records_default_to_fiducial
     record = record_from_json(AbortedTrial, given)
     assert (record.method, record.traced) == (RegistrationMethod.SURFACE, 41)
     assert record_to_json(record) == given
-    with pytest.raises(InputError, match="method must be one of"):
-        record_from_json(AbortedTrial, make_aborted(method="scan"))
-    with pytest.raises(InputError, match="traced must be"):
-        record_from_json(AbortedTrial, make_aborted(method="surface", traced=501))

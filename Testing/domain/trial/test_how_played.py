@@ -5,33 +5,62 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.journal.entries import (
+    CommandDone,
+    Continued,
+    DisplayReport,
+    Line,
+    PlayingSession,
+    Reach,
+    Stamp,
+)
 from rastrainer.json_records import record_from_json, record_to_json
+from rastrainer.protocol import Phase
 from rastrainer.trial.how_played import HowPlayed, PlayRecording
+from Testing.journal_lines import UTC, at, header, phase, sample
+
+
+def timed(entry, sim_time_s, monotonic_s):
+    return Line(Stamp(1, sim_time_s, monotonic_s, UTC), entry)
 
 
 def played(*entries) -> HowPlayed:
     """Return how a trial was played whose entries follow each other by a second."""
     recording = PlayRecording()
     for number, entry in enumerate(entries):
-        recording.add({"simTimeS": float(number), "monotonicS": float(number), **entry})
+        recording.add(entry if isinstance(entry, Line) else at(float(number), entry))
     return recording.played()
 
 
-def session(kind="header", speed=1.0, is_seeded=False):
-    of_session = {"session": {"speed": speed, "isSeeded": is_seeded}}
-    return {"kind": kind, **({"phase": "paused"} if kind == "continued" else {}), **of_session}
+def session(speed=1.0, is_seeded=False):
+    return header(session=PlayingSession(speed, is_seeded))
 
 
-def sample(x_mm, moved_by):
-    return {"kind": "sample", "tipMm": [x_mm, 0.0, 0.0], "movedBy": moved_by}
+def continued(speed=1.0, phase=Phase.PAUSED):
+    return Continued(
+        since_s=0.0,
+        session=PlayingSession(speed, False),
+        camera="far",
+        phase=phase,
+        kept=0,
+        next_point=None,
+        versions={},
+    )
+
+
+def moved(x_mm, moved_by):
+    return sample((x_mm, 0.0, 0.0), moved_by=moved_by)
 
 
 def start(seed=None):
-    return {"kind": "command", "name": "StartTask", "sender": "anna", "arguments": {"seed": seed}}
+    return CommandDone("StartTask", {"seed": seed}, "anna")
+
+
+REACH = Reach(False, "")
 
 
 def test_the_way_is_shared_among_what_moved_the_tip():
-    ways = (sample(0, "sticks"), sample(6, "sticks"), sample(8, "commands"), sample(8, ""))
+    ways = (moved(0, "sticks"), moved(6, "sticks"), moved(8, "commands"), moved(8, ""))
     found = played(session(), start(), *ways)
     assert found.way_mm == {"sticks": 6.0, "commands": 2.0}
     assert found.commanded_share == pytest.approx(0.25)
@@ -45,46 +74,42 @@ def test_a_seed_is_chosen_by_a_client_or_for_the_session():
 
 
 def test_another_speed_after_an_interruption_is_not_hidden_by_the_first():
-    found = played(session(), start(), session("continued", speed=0.5))
+    found = played(session(), start(), continued(speed=0.5))
     assert found.speed == 0.5
     assert found.objections("desktop", ()) != ()
 
 
 def test_a_simulator_that_is_held_up_is_slow_by_the_clock():
-    held_up = {"kind": "reach", "simTimeS": 2.0, "monotonicS": 4.0}
-    found = played(session(), start(), held_up)
+    found = played(session(), start(), timed(REACH, 2.0, 4.0))
     assert (found.speed, found.pace) == (1.0, 0.5)
-    # What passes until a trial is resumed is no part of it.
-    assert played(session(), session("continued") | {"monotonicS": 900.0}).pace == 1.0
+    # The time until a trial is resumed is no part of it.
+    assert played(session(), timed(continued(), 1.0, 900.0)).pace == 1.0
 
 
 @pytest.mark.parametrize(
     ("waits", "then", "pace"),
     [
-        ("paused", "running", 0.5),
-        ("complete", "verifying", 0.5),
+        (Phase.PAUSED, Phase.RUNNING, 0.5),
+        (Phase.COMPLETE, Phase.VERIFYING, 0.5),
         # The trial's time has run on: more points follow.
-        ("complete", "running", 902.0 / 904.0),
+        (Phase.COMPLETE, Phase.RUNNING, 902.0 / 904.0),
     ],
 )
 def test_a_long_wait_does_not_hide_that_the_simulator_was_held_up(waits, then, pace):
-    late = {"simTimeS": 2.0, "monotonicS": 4.0}
-    held_up, wait = {"kind": "reach", **late}, {"kind": "phase", "phase": waits, **late}
-    over = {"kind": "phase", "phase": then, "simTimeS": 902.0, "monotonicS": 904.0}
-    assert played(session(), start(), held_up, wait, over).pace == pace
-    continued = session("continued") | {"phase": waits, **late}
-    assert played(session(), start(), held_up, continued, over).pace == pace
+    held_up, over = timed(REACH, 2.0, 4.0), timed(phase(then), 902.0, 904.0)
+    for wait in (phase(waits), continued(phase=waits)):
+        assert played(session(), start(), held_up, timed(wait, 2.0, 4.0), over).pace == pace
 
 
 def test_pauses_and_views_are_counted():
-    views = [{"kind": "display", "view": name} for name in ("desktop", "headset", "headset")]
-    pause = {"kind": "phase", "phase": "paused"}
-    found = played(session(), pause, {"kind": "phase", "phase": "running"}, pause, *views)
+    views = [DisplayReport(name, "", 60.0, 1, 0) for name in ("desktop", "headset", "headset")]
+    pause = phase(Phase.PAUSED)
+    found = played(session(), pause, phase(Phase.RUNNING), pause, *views)
     assert (found.pauses, found.view_s) == (2, {"desktop": 1, "headset": 2})
 
 
 def test_it_is_read_as_it_was_written_and_invalid_values_are_refused():
-    found = played(session(speed=None), start(seed=1), sample(0, ""), sample(1, "alignment"))
+    found = played(session(speed=None), start(seed=1), moved(0, ""), moved(1, "alignment"))
     assert record_from_json(HowPlayed, record_to_json(found)) == found
     with pytest.raises(InputError, match="seedSource"):
         record_from_json(HowPlayed, record_to_json(replace(found, seed_source="dice")))

@@ -37,7 +37,7 @@ def record():
     shown = transforms.inverse(register(touches, task.fiducials).matrix)
     procedure = SCENARIO.procedure("seeg")
     done = replace(
-        recorded(procedure, shown, drill=16.0), sha256=procedure.sha256(SCENARIO.skull_mesh)
+        recorded(procedure, shown, drill=16.0), sha256=procedure.sha256(SCENARIO.skull.file)
     )
     points = [
         {**point, "positionMm": position.tolist()}

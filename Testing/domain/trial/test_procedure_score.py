@@ -138,15 +138,15 @@ def test_scores_of_version_1_do_not_change():
     assert score(hit, 100.0) == pytest.approx(100 * (0.52 * 0.5 * worst) ** (1 / 6))
 
 
-@pytest.mark.parametrize("field", [field.name for field in fields(ProcedureMeasures)])
 @pytest.mark.parametrize("value", [-1.0, math.nan, math.inf])
-def test_a_measure_that_is_not_a_valid_number_is_refused(field, value):
-    with pytest.raises(InputError, match=rf"The procedure's {field} must be"):
-        score_procedure(replace(PERFECT, **{field: value}), 100.0)
+def test_a_measure_that_is_not_a_valid_number_is_refused(value):
+    for field in fields(ProcedureMeasures):
+        with pytest.raises(InputError, match=f"{field.name} must be a number from 0"):
+            score_procedure(replace(PERFECT, **{field.name: value}), 100.0)
 
 
 def test_a_procedure_without_duration_is_refused():
-    with pytest.raises(InputError, match="duration must be a number of seconds above 0"):
+    with pytest.raises(InputError, match="duration must be above 0 s"):
         score_procedure(replace(PERFECT, duration_s=0.0), 100.0)
 
 

@@ -139,16 +139,16 @@ def test_scores_of_version_1_do_not_change():
 
 @pytest.mark.parametrize("time", [0.0, -1.0, math.nan, math.inf])
 def test_an_invalid_time_is_refused(time):
-    with pytest.raises(InputError, match="completion time"):
+    with pytest.raises(InputError, match="completion"):
         gentle_score(time, 1.0)
 
 
 @pytest.mark.parametrize("value", [-0.1, math.nan, math.inf])
-@pytest.mark.parametrize("measure", LIMITS)
-def test_an_invalid_measure_is_refused(measure, value):
+def test_an_invalid_measure_is_refused(value):
     measures = ScoreMeasures(100.0, 0.4, 0.0, 0.0, 0.0, 0.0)
-    with pytest.raises(InputError, match="0 or above"):
-        score_trial(replace(measures, **{measure: value}), REFERENCES[0])
+    for measure in LIMITS:
+        with pytest.raises(InputError, match=f"{measure} must be a number from 0"):
+            score_trial(replace(measures, **{measure: value}), REFERENCES[0])
 
 
 def test_a_trial_whose_contacts_were_not_measured_has_no_score():

@@ -31,9 +31,9 @@ def scenario():
 
 
 def touched(scenario, skin):
-    """Return a trial whose fiducials were touched exactly, on skin that lay so, and its pose."""
+    """Return a trial whose fiducials were touched exactly on such skin, and its pose."""
     pose, task = scenario.perturbed_head_to_world(8), scenario.task("task-1")
-    places = skin.measured(task.fiducials, read_head_mesh(scenario.head_mesh))
+    places = skin.measured(task.fiducials, read_head_mesh(scenario.head))
     points = tuple(
         TouchedPoint(label, tuple(place), float(number), UTC)
         for number, (label, place) in enumerate(
@@ -68,8 +68,8 @@ def touched(scenario, skin):
 def scored(scenario, skin):
     record, pose = touched(scenario, skin)
     analysis = analyze_trial(record, scenario)
-    off = transforms.apply(analysis.rigid.matrix @ pose, scenario.target_position)
-    tre_mm = float(np.linalg.norm(off - scenario.target_position))
+    off = transforms.apply(analysis.rigid.matrix @ pose, scenario.target.position_ras)
+    tre_mm = float(np.linalg.norm(off - scenario.target.position_ras))
     truth = RevealedTruth(tuple(pose.ravel().tolist()), tre_mm, skin)
     return analysis.scored(scenario, truth), truth
 

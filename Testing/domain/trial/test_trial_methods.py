@@ -33,8 +33,8 @@ def scenario():
 
 @pytest.fixture(scope="module")
 def traced(scenario):
-    """Return what was given by a trainee who misses the landmarks and traces exactly."""
-    head, pose = read_head_mesh(scenario.head_mesh), scenario.perturbed_head_to_world(8)
+    """Return the points of a trainee who misses the landmarks and traces exactly."""
+    head, pose = read_head_mesh(scenario.head), scenario.perturbed_head_to_world(8)
     trace = np.concatenate([on_skin(head, corners, 2.0) for corners in OVER_THE_FACE])
     missed = np.random.default_rng(4).normal(0.0, SLIP_MM / np.sqrt(3), (3, 3))
     places = np.array([landmark.position_ras for landmark in LANDMARKS[:3]]) + missed
@@ -45,7 +45,7 @@ def traced(scenario):
 
 
 def off_target(scenario, registered, pose):
-    target = scenario.target_position
+    target = scenario.target.position_ras
     found = transforms.apply(registered.rigid.matrix @ pose, target)
     return float(np.linalg.norm(found - target))
 
@@ -88,10 +88,14 @@ def test_an_unfinished_trial_is_registered_from_the_simulators_answer(scenario, 
     ("changes", "said"),
     [
         pytest.param({"trace": None}, "a list of at most 500 points", id="no trace"),
-        pytest.param({"trace": [[1.0, 2.0, 3.0, 4.0]]}, "trace of 30 points", id="too short"),
-        pytest.param({"touches": []}, "a list of landmarks", id="no landmark"),
-        pytest.param({"method": "fiducials"}, "a list of 15", id="fiducials"),
-        pytest.param({"method": "laser"}, "methods are fiducials, landmarks", id="unknown"),
+        pytest.param(
+            {"trace": [[1.0, 2.0, 3.0, 4.0]]}, "trace must be a list of 30 points", id="too short"
+        ),
+        pytest.param({"touches": []}, "touches must be a list of 3 to 15", id="no landmark"),
+        pytest.param({"method": "fiducials"}, "touches must be a list of 15", id="fiducials"),
+        pytest.param(
+            {"method": "laser"}, "method must be one of fiducials, landmarks", id="unknown"
+        ),
     ],
 )
 def test_an_answer_that_cannot_be_registered_is_refused_with_a_message(traced, changes, said):

@@ -88,9 +88,9 @@ class Player:
         (journal,) = self._records.glob(f"*_{trial_id}.journal")
         header = read_journal(journal).header
         scenario = load_scenario(asset_path("scenarios", "colin27"))
-        head_to_world = scenario.perturbed_head_to_world(header["seed"])
-        fiducials = scenario.task(header["task"]).fiducials
-        center = transforms.apply(head_to_world, scenario.target_position)
+        head_to_world = scenario.perturbed_head_to_world(header.seed)
+        fiducials = scenario.task(header.task).fiducials
+        center = transforms.apply(head_to_world, scenario.target.position_ras)
         for fiducial in transforms.apply(head_to_world, fiducials):
             outward = (fiducial - center) / np.linalg.norm(fiducial - center)
             yield fiducial + ABOVE_MM * outward, fiducial, center

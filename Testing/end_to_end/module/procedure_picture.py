@@ -15,7 +15,7 @@ from rastrainer.procedure.plan import read_procedure_meshes
 from rastrainer.procedure.record import UsedRegistration
 from rastrainer.registration.registration import register
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.logic.views import AlongInstrument
+from rastrainer.sections.views import AlongInstrument
 from rastrainer.trial.procedure_outcome import (
     ProcedureMeasures,
     ProcedureOutcome,
@@ -37,7 +37,7 @@ SECTION = "procedureCollapsibleButton"
 def carried_out() -> tuple[ProcedureOutcome, list[TrueLine]]:
     """Return what virtual hands made of stereo-EEG after a careless registration."""
     scenario = load_scenario(asset_path("scenarios", "colin27"))
-    procedure, skull = scenario.procedure(PROCEDURE), scenario.skull_mesh
+    procedure, skull = scenario.procedure(PROCEDURE), scenario.skull.file
     assert skull is not None
     random, truth = np.random.default_rng(21), scenario.perturbed_head_to_world(21)
     fiducials = np.asarray(scenario.task(TASK).fiducials)

@@ -13,7 +13,7 @@ import slicer
 
 import rastrainer
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.logic.views import jumpTo
+from rastrainer.sections.views import jumpTo
 from rastrainer.slicer.settings import PROGRAM
 from rastrainer_simulator.assets import asset_path
 from Testing.end_to_end.module.installed_simulator import write_program

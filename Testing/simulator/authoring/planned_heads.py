@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.scenario.points import LABELS, Task
+from rastrainer.scenario.points import Task, task_file
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.scenario.writer import HeadDraft, write_scenario
 from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
@@ -35,7 +35,10 @@ def setup_of(name: str, folder: Path) -> SimulationSetup:
     own.mkdir()
     head = HEADS[name]()
     tasks = tuple(
-        Task(labels=LABELS, **{**values, "fiducials": np.array(values["fiducials"])})
+        Task(
+            **{**values, "fiducials": np.array(values["fiducials"])},
+            file=task_file(values["name"]),
+        )
         for values in json.loads(FILE.read_text(encoding="utf-8"))[name]
     )
     write_scenario(own, replace(_scenario(name, head), tasks=tasks), head, None, None)
@@ -52,7 +55,7 @@ def as_json(tasks: tuple[Task, ...]) -> list[dict]:
     """Return the tasks of one head in the file."""
     return [
         {
-            **{key: value for key, value in vars(task).items() if key != "labels"},
+            **{key: value for key, value in vars(task).items() if key not in ("labels", "file")},
             "fiducials": task.fiducials.tolist(),
         }
         for task in tasks

@@ -24,7 +24,7 @@ from rastrainer_simulator.robot.model import load_robot
 
 FOLDER = asset_path("scenarios", "colin27")
 SCENARIO = load_scenario(FOLDER)
-MESH = read_head_mesh(SCENARIO.head_mesh)
+MESH = read_head_mesh(SCENARIO.head)
 GRAPH = SurfaceGraph(MESH)
 TASK_NAMES = ["trial-run", "task-1", "task-2", "task-3", "task-4", "task-5"]
 
@@ -86,7 +86,7 @@ def test_the_head_is_upright_with_its_face_to_the_camera_and_its_right_to_the_ro
     assert np.allclose(turn @ [1, 0, 0], [-1, 0, 0])
     base = transforms.apply(SCENARIO.head_to_world, MESH.vertices)[:, 2].min()
     assert base > 100
-    assert np.allclose(SCENARIO.target_position, MESH.centroid, atol=1e-3)
+    assert np.allclose(SCENARIO.target.position_ras, MESH.centroid, atol=1e-3)
 
 
 def test_there_are_a_trial_run_and_five_tasks():
@@ -138,10 +138,12 @@ def test_the_fiducials_locate_the_center_of_the_head_well(name):
     fiducials = SCENARIO.task(name).fiducials
     same = register(fiducials, fiducials)
     unit = LocalizationError(np.tile(np.eye(3), (len(fiducials), 1, 1)), np.inf)
-    expected_mm = expected_tre(same, SCENARIO.target_position[None], unit, common_bias_sd_mm=0.0)
+    expected_mm = expected_tre(
+        same, SCENARIO.target.position_ras[None], unit, common_bias_sd_mm=0.0
+    )
     ratio = expected_mm[0] / np.sqrt(3)
     assert ratio < (0.7 if name == "trial-run" else 0.4)
-    assert target_spread(fiducials, SCENARIO.target_position) == pytest.approx(ratio**2)
+    assert target_spread(fiducials, SCENARIO.target.position_ras) == pytest.approx(ratio**2)
 
 
 @pytest.mark.parametrize("count", [4, pytest.param(20, marks=pytest.mark.soak)])

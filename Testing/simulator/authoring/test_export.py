@@ -69,10 +69,10 @@ def test_by_default_the_face_is_removed_from_mesh_and_picture_and_the_skull_is_l
         capsys.readouterr().out
     )
     given = load_scenario(unpack(tmp_path / "out.zip", tmp_path / "library"))
-    head, before = read_head_mesh(given.head_mesh), egg()
+    head, before = read_head_mesh(given.head), egg()
     nose = before.vertices[face_vertices(before)][:, 1].max()
     assert head.vertices[:, 1].max() < nose - 3.0
-    assert given.skull_mesh is None
+    assert given.skull is None
     assert "The face was taken off." in given.provenance.method
     images = read_head_volume(given.volume)
     in_front = transforms.apply(transforms.inverse(images.ijk_to_ras), [0.0, 84.0, -36.0])
@@ -89,8 +89,8 @@ def test_face_and_names_are_kept_where_requested(folder, tmp_path, capsys):
     assert main([*words, "--keep-names"]) == 0
     assert "Nothing was removed." in capsys.readouterr().out
     given = load_scenario(unpack(tmp_path / "out.zip", tmp_path / "library"))
-    assert given.head_mesh.read_bytes() == (folder / "head.ply").read_bytes()
-    assert given.skull_mesh is not None
+    assert given.head.read_bytes() == (folder / "head.ply").read_bytes()
+    assert given.skull is not None
     assert given.volume.file.read_bytes() == (folder / "volume.nrrd").read_bytes()
     assert given.preview.read_bytes() == png()
     before = load_scenario(folder)
@@ -208,7 +208,7 @@ OBLIQUE = np.array([[0.8, -0.6, 0], [0.6, 0.8, 0], [0, 0, -1.0]]) * 2.0
 def colin27():
     """The default scenario's head, its images, and these without the face."""
     scenario = load_scenario(asset_path("scenarios", "colin27"))
-    head, volume = read_head_mesh(scenario.head_mesh), read_head_volume(scenario.volume)
+    head, volume = read_head_mesh(scenario.head), read_head_volume(scenario.volume)
     return head, volume, without_face_in(volume, head)
 
 

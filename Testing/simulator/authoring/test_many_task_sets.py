@@ -68,7 +68,7 @@ def crowded(planning, places, poses):
 
     The planner's posture is judged by a separate collision model, as a simulation makes it.
     """
-    collision = head_collision(planning.setup.shape, planning.mesh, planning.scenario.furniture)
+    collision = head_collision(planning.setup.shape, planning.mesh, planning.scenario)
     kinematics = make_kinematics(planning.setup.robot)
     planner = TouchPlanner(planning.setup.robot, planning.collision)
     found = []

@@ -8,7 +8,7 @@ import pytest
 from rastrainer.files.point_files import write_markups
 from rastrainer.files.point_list import PointList
 from rastrainer.head.mesh import nearest_on_mesh, outward_normals
-from rastrainer.scenario.points import LABELS
+from rastrainer.scenario.points import LABELS, PlannedTarget
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
@@ -93,7 +93,8 @@ def test_everything_that_is_wrong_is_reported_at_once(planning, on_skin, tmp_pat
     low[8] = nearest_on_mesh(planning.mesh, np.array([0.0, -30.0, -75.0])).position
     low[5] = nearest_on_mesh(planning.mesh, np.array([30.0, -20.0, -75.0])).position
     far = PlanningSetup(
-        replace(planning.scenario, target_position=np.array([0.0, 0.0, -60.0])), planning.mesh
+        replace(planning.scenario, target=PlannedTarget("Tumor", np.array([0.0, 0.0, -60.0]))),
+        planning.mesh,
     )
     _, wrong, _ = read(far, tmp_path, low)
     assert "cannot touch fiducials 6, 9 where the head is" in " ".join(wrong)

@@ -10,7 +10,8 @@ from rastrainer.errors import InputError
 from rastrainer.files.point_files import write_markups
 from rastrainer.files.point_list import PointList
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, read_head_mesh
-from rastrainer.scenario.points import LABELS, PlannedTarget, PlannedTrajectory, read_task
+from rastrainer.scenario.points import LABELS, PlannedTarget, PlannedTrajectory, read_fiducials
+from rastrainer.scenario.scenario import SkullKind
 from rastrainer.scenario.setup import HeadPlace, SetUp
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer_simulator.authoring.face_removal import face_vertices
@@ -65,12 +66,14 @@ def test_every_promise_about_a_task_set_is_kept(planning, tasks):
 
 
 def test_the_first_planned_target_is_the_one_whose_error_is_reported(planning):
-    assert planning.scenario.target_name == "Tumor"
+    assert planning.scenario.target.name == "Tumor"
     assert check_plan(planning) == []
 
 
 def test_a_target_outside_the_head_is_reported(planning):
-    outside = replace(planning.scenario, target_position=np.array([0.0, -100.0, 95.0]))
+    outside = replace(
+        planning.scenario, target=PlannedTarget("Tumor", np.array([0.0, -100.0, 95.0]))
+    )
     found = check_plan(PlanningSetup(outside, planning.mesh))
     assert any("Tumor is" in sentence and "outside of the head" in sentence for sentence in found)
 
@@ -113,7 +116,7 @@ def test_a_first_target_too_deep_to_start_above_becomes_an_additional_one_and_th
     warnings = []
     wishes = replace(WISHES, targets=(deep, *WISHES.targets))
     scenario = without_tasks(HeadDraft(egg(), "made up"), wishes, warnings.append)
-    assert scenario.target_name == "Center of the head"
+    assert scenario.target.name == "Center of the head"
     assert [target.name for target in scenario.targets] == ["Brainstem", "Tumor"]
     (sentence,) = warnings
     assert sentence.startswith("Brainstem is too deep for trials to start above it")
@@ -153,20 +156,24 @@ def placed(tmp_path, tasks):
     return replace(WISHES, task_files=(path,))
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_hand_placed_fiducials_become_tasks_and_a_skull_made_meanwhile_is_included(
     tmp_path, tasks, placed
 ):
     skull = HeadMesh(0.9 * egg().vertices, egg().triangles)
-    first, whole = HeadDraft(egg(), "made up"), HeadDraft(egg(), "with skull", skull, True)
+    first, whole = (
+        HeadDraft(egg(), "made up"),
+        HeadDraft(egg(), "with skull", skull, SkullKind.APPROXIMATION),
+    )
     scenario = make_scenario(first, placed, tmp_path / "egg", wait_for_skull=lambda: whole)
     assert scenario.provenance.method == "with skull"
-    assert scenario.is_skull_approximate
-    assert len(read_head_mesh(scenario.skull_mesh).triangles) == len(skull.triangles)
+    assert scenario.skull.kind is SkullKind.APPROXIMATION
+    assert len(read_head_mesh(scenario.skull.file).triangles) == len(skull.triangles)
     assert [task.title for task in scenario.tasks] == ["Trial run"]
     assert scenario.tasks[0].complexity == pytest.approx(tasks[0].complexity, abs=0.02)
     assert scenario.preview is not None
-    again = read_task(placed.task_files[0], "trial-run", "Trial run", 0.0)
-    assert np.array_equal(scenario.tasks[0].fiducials, again.fiducials)
+    again = read_fiducials(placed.task_files[0])
+    assert np.array_equal(scenario.tasks[0].fiducials, again)
 
 
 @pytest.mark.usefixtures("unrendered")

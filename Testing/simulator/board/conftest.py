@@ -61,7 +61,7 @@ class BoardClient:
         return json.loads(answer)["key"]
 
     def ask(self, path: str, method: str = "GET", key: str | None = None, **values):
-        """Return the status, and what is answered: decoded, or the sentence of a refusal."""
+        """Return the status, and the answer: decoded, or the sentence of a refusal."""
         headers = {"Authorization": f"Bearer {self.key if key is None else key}"}
         data = json.dumps(values) if method == "POST" else None
         asking = answered(self.url, path, method, headers=headers, data=data)
@@ -121,7 +121,7 @@ def simulator(serve, tmp_path, certificates):  # noqa: F811
 
 @pytest.fixture
 def open_board(loop_thread, tmp_path):
-    """Open a board; another one with the same settings is one that was started again."""
+    """Open a board; opening a second board with the same settings restarts it."""
     opened = []
 
     def start(study=None) -> BoardClient:

@@ -34,6 +34,7 @@ from rastrainer_simulator.export.grades import PLATFORMS, RULES
 from rastrainer_simulator.export.xapi import HOME_PAGE
 from rastrainer_simulator.ops.instructor_pin import PIN_WORDS
 from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record, make_traced
+from Testing.simulator.report.without_charts import without_charts
 
 STUDY = Path(__file__).parents[3] / "assets" / "studies" / "published.csv"
 
@@ -160,7 +161,8 @@ def test_score_reproduces_the_published_tables(run_json):
 def test_score_and_report_print_the_same_score_of_every_task(tmp_path, capsys):
     assert run("score", STUDY) == 0
     scores = re.findall(r"^Task \d +(\d+\.\d\d)$", capsys.readouterr().out, re.MULTILINE)
-    assert main(["report", str(STUDY), "-o", str(tmp_path)]) == 0
+    with without_charts():
+        assert main(["report", str(STUDY), "-o", str(tmp_path)]) == 0
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert len(scores) == 10
     assert [score for score in scores if f">{score}</td>" not in page] == []
@@ -344,7 +346,8 @@ def words(study, *more, novices=NOVICES, experts=EXPERTS):
 
 def means(path, names):
     with Study.open(path) as study:
-        return [sum(t.score for t in study.attempts(name)[-3:]) / 3 for name in names]
+        scored = [[t.score for t in study.attempts(name) if not t.is_aborted] for name in names]
+    return [sum(scores[-3:]) / 3 for scores in scored]
 
 
 def test_the_pass_mark_lies_between_the_groups_last_trials_without_trial_runs(study, capsys):

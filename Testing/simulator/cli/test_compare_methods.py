@@ -30,7 +30,7 @@ def landmarked(tmp_path_factory):
 def traced(landmarked):
     """Landmarks and trace of a trial, in World, and the true pose World→RAS."""
     scenario = load_scenario(landmarked)
-    head, pose = read_head_mesh(scenario.head_mesh), scenario.perturbed_head_to_world(3)
+    head, pose = read_head_mesh(scenario.head), scenario.perturbed_head_to_world(3)
     trace = np.concatenate([on_skin(head, corners, 3.0) for corners in OVER_THE_FACE])
     fixed = np.array([landmark.position_ras for landmark in LANDMARKS])
     missed = fixed + np.random.default_rng(2).normal(0.0, 1.5, fixed.shape)

@@ -8,8 +8,10 @@ import pytest
 from rastrainer.head.trial_head import Perturbation
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.authoring import make
 from rastrainer_simulator.cli.main import command_parser, main
 from rastrainer_simulator.cli.scenario import options_of
+from Testing.domain.scenario.made_up_scenario import png
 
 
 def wished(*words):
@@ -89,16 +91,17 @@ def copied(copy, *words):
     return main(["scenario", "plan", str(COLIN27), "-o", str(copy), *words])
 
 
-def test_a_copy_with_a_trajectory_keeps_head_tasks_target_and_provenance(tmp_path):
+def test_a_copy_with_a_trajectory_keeps_head_tasks_target_and_provenance(tmp_path, monkeypatch):
+    monkeypatch.setattr(make, "draw_preview", lambda path, *_: path.write_bytes(png()))
     words = ("--title", "With a biopsy", "--trajectory", "Biopsy", *ENTRY, *INSIDE)
     assert copied(tmp_path / "copy", *words) == 0
     before, copy = load_scenario(COLIN27), load_scenario(tmp_path / "copy")
     assert (copy.name, copy.title) == ("with-a-biopsy", "With a biopsy")
     assert (copy.trajectory.name, copy.trajectory.entry_ras.tolist()) == ("Biopsy", [0, -20, 100])
-    assert copy.head_mesh.read_bytes() == before.head_mesh.read_bytes()
+    assert copy.head.read_bytes() == before.head.read_bytes()
     assert copy.volume.file.read_bytes() == before.volume.file.read_bytes()
     assert (copy.volume.window, copy.volume.level) == (before.volume.window, before.volume.level)
-    assert copy.target_position.tolist() == before.target_position.tolist()
+    assert copy.target.position_ras.tolist() == before.target.position_ras.tolist()
     assert copy.provenance == before.provenance
     for task, same in zip(copy.tasks, before.tasks, strict=True):
         assert np.array_equal(task.fiducials, same.fiducials)
@@ -110,7 +113,7 @@ def test_a_copy_with_targets_reports_the_error_at_the_first(tmp_path):
     words = ("--target", "Tumor", *INSIDE, "--target", "Cyst", "20", "0", "20")
     assert copied(tmp_path / "copy", *words) == 0
     copy = load_scenario(tmp_path / "copy")
-    assert (copy.target_name, copy.target_position.tolist()) == ("Tumor", [2, -15, 5])
+    assert (copy.target.name, copy.target.position_ras.tolist()) == ("Tumor", [2, -15, 5])
     assert [target.name for target in copy.targets] == ["Cyst"]
 
 

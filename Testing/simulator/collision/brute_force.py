@@ -1,4 +1,4 @@
-"""Distances computed from every triangle, to check the fast ones against."""
+"""Distances computed from every triangle, to check the fast computations."""
 
 from collections.abc import Callable, Sequence
 
@@ -20,7 +20,7 @@ def point_to_triangles(point: np.ndarray, corners: np.ndarray) -> np.ndarray:
 
 
 def segment_to_triangles(start: np.ndarray, end: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Return the distances (m,) of a segment to triangles (m, 3, 3), 0 where it goes through."""
+    """Return the distances (m,) of a segment to triangles (m, 3, 3), 0 if it goes through."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     distances = [point_to_triangles(start, corners), point_to_triangles(end, corners)]
     distances += [segment_to_segments(start, end, u, v) for u, v in ((a, b), (b, c), (c, a))]

@@ -48,7 +48,7 @@ class DefaultHead:
     """The head of the default scenario, where it stands, and VTK's distance to it."""
 
     def __init__(self, scenario):
-        mesh = read_head_mesh(scenario.head_mesh)
+        mesh = read_head_mesh(scenario.head)
         self.to_world = scenario.head_to_world.copy()
         self.to_world[:3, 3] /= MM_PER_M
         self.vertices = transforms.apply(self.to_world, mesh.vertices / MM_PER_M)
@@ -152,7 +152,7 @@ def test_the_tip_slides_evenly_over_the_edges_of_triangles():
     sizes = np.linalg.norm(steps, axis=1)
     assert sizes.min() > 0.8 * np.linalg.norm(push[:2])
     assert sizes.max() < np.linalg.norm(push)
-    # From facet to facet, 4 mm long, the ball turns by 3°, and the tip speeds up by no more.
+    # The ball turns by 3° between facets, 4 mm long, and the tip speeds up by no more.
     assert np.abs(np.diff(sizes) / sizes[1:]).max() < 0.05
     turns = np.einsum("ij,ij->i", steps[1:], steps[:-1]) / sizes[1:] / sizes[:-1]
     assert np.degrees(np.arccos(turns.clip(-1, 1))).max() < 5.0

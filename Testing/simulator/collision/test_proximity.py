@@ -5,7 +5,7 @@ import pytest
 
 from rastrainer.protocol import Proximity
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.collision.clearance import FAR, Clearance
+from rastrainer_simulator.collision.clearance import FAR, SHAFT_NEAR, Clearance
 from rastrainer_simulator.collision.contact import REST
 from rastrainer_simulator.collision.head_surface import Nearest
 from rastrainer_simulator.collision.proximity import (
@@ -23,7 +23,9 @@ def clearance(tip_mm, shaft_mm=1000.0):
     def nearest(distance_mm):
         return Nearest(distance_mm / MM_PER_M, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 0)
 
-    return Clearance(nearest(tip_mm), nearest(shaft_mm), FAR, FAR, FAR)
+    tip, shaft = nearest(tip_mm), nearest(shaft_mm)
+    tool_m = min(tip.distance_m, shaft.distance_m)
+    return Clearance(tip, shaft, shaft.distance_m, tool_m, FAR, FAR, FAR)
 
 
 def states(tips_mm, settings=ProximitySettings(), start=FREE):  # noqa: B008
@@ -85,7 +87,9 @@ UP = (0.0, 0.0, 1.0)
 def skin(tip_m=REST, shaft=None):
     """Return clearances above level skin, unless the shaft is given as (m, normal)."""
     behind = None if shaft is None else Nearest(shaft[0], ZERO, shaft[1], 0)
-    return Clearance(Nearest(tip_m, ZERO, UP, 0), behind, FAR, FAR, FAR)
+    shaft_m = max(tip_m, SHAFT_NEAR) if shaft is None else shaft[0]
+    tip = Nearest(tip_m, ZERO, UP, 0)
+    return Clearance(tip, behind, shaft_m, min(tip_m, shaft_m), FAR, FAR, FAR)
 
 
 @pytest.fixture

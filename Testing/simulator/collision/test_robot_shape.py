@@ -1,13 +1,8 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 import trimesh
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.collision.clearance import FAR
-from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.robot_shape import (
     SHAFT_START,
     capsules_along,
@@ -16,8 +11,8 @@ from rastrainer_simulator.collision.robot_shape import (
     surface_points,
 )
 from rastrainer_simulator.robot.meshes import load_meshes
-from rastrainer_simulator.robot.model import FOLDER, load_robot, read_prepared, robot_model
-from Testing.simulator.collision.heads_and_arms import KINEMATICS, ROBOT, SHAPE, ball
+from rastrainer_simulator.robot.model import load_robot
+from Testing.simulator.collision.heads_and_arms import ROBOT, SHAPE
 
 MESHES = load_meshes(ROBOT, "collision")
 
@@ -119,29 +114,6 @@ def test_the_same_robot_always_gets_the_same_capsules():
             assert (a.start == b.start).all()
             assert (a.end == b.end).all()
             assert a.radius == b.radius
-
-
-def test_a_robot_without_meshes_is_a_rod_from_the_tip_to_the_wrist():
-    robot = replace(ROBOT, meshes=())
-    shape = robot_shape(robot)
-    (rod,) = shape.tool.capsules
-    assert shape.links == ()
-    np.testing.assert_allclose(rod.start, [0.0, 0.0, -SHAFT_START], atol=1e-9)
-    np.testing.assert_allclose(rod.end, [0.0, 0.0, -robot.arm.tool], atol=1e-9)
-    vertices, triangles = ball(0.05, 3)
-    found = Collision(shape, vertices, triangles).check(KINEMATICS.links(robot.home))
-    assert (found.links_m, found.self_m) == (FAR, FAR)
-    assert found.shaft_m == pytest.approx(found.tip_m, abs=0.02)
-
-
-def test_the_flange_is_the_tool_if_it_carries_none():
-    model = read_prepared()["model"]
-    toolless = {**model, "links": model["links"][:8], "tip": "iiwa_link_7"}
-    robot = robot_model(toolless, asset_path(*FOLDER))
-    assert robot.tip.name == "iiwa_link_7"
-    shape = robot_shape(robot)
-    assert shape.tool.name == "iiwa_link_7"
-    assert len(shape.links) == 7
 
 
 def test_a_tool_one_millimeter_long_is_covered_too():

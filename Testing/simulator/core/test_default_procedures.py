@@ -22,7 +22,7 @@ SHIFT_MM = (0.6, -0.5, 0.4)
 PAST_INNER_M = 0.0005
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def surgeon(anywhere):
     """A surgeon at the default head."""
     return Surgeon(Simulation(anywhere, SEED))
@@ -49,9 +49,9 @@ def test_a_default_procedure_can_be_carried_out_and_its_error_is_the_registratio
     for trajectory in plan.trajectories:
         place(surgeon, trajectory)
     assert surgeon.state.training.phase is Phase.REGISTERED
-    sha256 = plan.sha256(scenario.skull_mesh)
+    sha256 = plan.sha256(scenario.skull.file)
     record = procedure_record(surgeon.state.training.procedure, plan, sha256, FeedRecording())
-    meshes = read_procedure_meshes(plan, scenario.skull_mesh)
+    meshes = read_procedure_meshes(plan, scenario.skull.file)
     truth = surgeon.simulation.truth.head_to_world
     analysis = analyze_procedure(record, plan, meshes, truth)
     for errors in analysis.trajectories:

@@ -1,4 +1,4 @@
-"""From the tip's motion to the joints': exact for the tip, within limits, without wandering."""
+"""The joints follow the tip exactly, within limits, and do not wander."""
 
 import numpy as np
 import pytest

@@ -9,17 +9,18 @@ from scipy.spatial.transform import Rotation
 from rastrainer import transforms
 from rastrainer.commands import CommandName, check_arguments
 from rastrainer.head.mesh import read_head_mesh
+from rastrainer.journal import entries
 from rastrainer.protocol import Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.state import EventKind, Motion, OperatorCommand, OperatorInput
+from rastrainer_simulator.state import Motion, OperatorCommand, OperatorInput
 from rastrainer_simulator.trial_state import Tool
 from Testing.simulator.core.test_simulation import Driver
 from Testing.simulator.planned_procedures import INNER_MM, OUTER_MM
 
 SEED = 4
 IDENTITY = Rotation.identity()
-MANY_LINES = 20
+MANY_LINES = 6
 RIGHT = OperatorInput(translation=(1.0, 0.0, 0.0), operator="gamepad")
 TURN = OperatorInput(rotation=(1.0, 0.0), operator="gamepad")
 IN = OperatorInput(translation=(0.0, 0.0, -1.0), operator="gamepad")
@@ -72,7 +73,7 @@ class Surgeon(Driver):
         self.must(CommandName.ALIGN_GUIDE, standOffMm=stand_off_mm)
         while self.state.motion is not Motion.NONE:
             self.step()
-        return [e.data["outcome"] for e in self.events if e.kind is EventKind.MOTION][-1]
+        return [e.entry.outcome for e in self.events if isinstance(e.entry, entries.MotionEnd)][-1]
 
     @property
     def through(self):
@@ -174,7 +175,7 @@ def test_the_stick_takes_over_the_guide_from_the_robot(surgeon):
     for _ in range(50):
         surgeon.step()
     surgeon.step(RIGHT)
-    assert surgeon.events[-1].data == {"outcome": "overridden"}
+    assert surgeon.events[-1].entry == entries.MotionEnd("overridden")
     surgeon.step()
     assert surgeon.state.motion is Motion.NONE
 
@@ -200,7 +201,7 @@ def test_the_robot_does_not_align_the_guide_where_the_setting_forbids_it(planned
 
 
 def test_a_line_on_which_the_robot_cannot_hold_the_guide_is_refused_at_once(surgeon):
-    # By this registration the head is half a meter farther away.
+    # This registration puts the head half a meter farther away.
     surgeon.to(Phase.ALIGNING, shift_mm=(500.0, 0.0, 0.0))
     answer = surgeon.do(CommandName.ALIGN_GUIDE, standOffMm=30.0)
     assert "with a stand-off of 30 mm" in answer.message
@@ -227,10 +228,10 @@ def test_the_distances_ahead_are_those_of_the_true_surfaces(surgeon):
         )
 
     for depth, radius in ((ahead.outer, OUTER_MM), (ahead.inner, INNER_MM)):
-        away = np.linalg.norm(in_head(depth) - scenario.target_position)
+        away = np.linalg.norm(in_head(depth) - scenario.target.position_ras)
         # The made-up skull is a polyhedron in these spheres.
         assert radius - 0.5 <= away <= radius
-    skin = read_head_mesh(scenario.head_mesh)
+    skin = read_head_mesh(scenario.head)
     nearest = np.linalg.norm(skin.vertices - in_head(ahead.skin), axis=1).min()
     assert nearest < 3.0
     assert 0.0 < ahead.skin < ahead.outer < ahead.inner
@@ -257,10 +258,10 @@ def test_the_drill_follows_the_stick_through_skin_and_bone_and_reports_what_is_f
     surgeon.to(Phase.DRILLING)
     ahead = surgeon.simulation._procedure_motion.feed.ahead
     surgeon.feed(ahead.inner + 0.001, IN)
-    felt = [e.data for e in surgeon.events if e.kind is EventKind.FEED]
-    assert [each["layer"] for each in felt] == ["scalp", "bone", "through"]
+    felt = [e.entry for e in surgeon.events if isinstance(e.entry, entries.FeedChange)]
+    assert [each.layer for each in felt] == ["scalp", "bone", "through"]
     for each, depth in zip(felt, (ahead.skin, ahead.outer, ahead.inner), strict=True):
-        assert each["feedMm"] == pytest.approx(MM_PER_M * depth, abs=0.02)
+        assert each.feed_mm == pytest.approx(MM_PER_M * depth, abs=0.02)
     assert surgeon.state.motion is Motion.FEED
     assert surgeon.state.operator == "gamepad"
     depth = surgeon.state.feed
@@ -305,7 +306,7 @@ def test_an_instrument_stops_where_the_bone_is_not_drilled_through(surgeon):
     for _ in range(2 * round(drilled / 0.010 / 0.004)):
         surgeon.step(IN)
     assert surgeon.state.feed == drilled
-    assert surgeon.events[-1].data["layer"] == "blocked"
+    assert surgeon.events[-1].entry.layer == "blocked"
 
 
 def test_the_instruments_place_is_on_the_guides_axis_and_an_abort_leaves_nothing(surgeon):

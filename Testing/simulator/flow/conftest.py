@@ -7,6 +7,7 @@ from unittest import mock
 
 import pytest
 
+from rastrainer.journal.entries import AT_ZERO
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.running_presenter import RunningPresenter
@@ -16,7 +17,7 @@ from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.ops import instructor_pin
 from rastrainer_simulator.ops.instructor_pin import InstructorPin
-from rastrainer_simulator.state import Answer, OperatorCommand, OperatorInput, StartingPoint
+from rastrainer_simulator.state import Answer, OperatorCommand, OperatorInput
 from rastrainer_simulator.viewpoint.best_view import TouchViews
 from Testing.sdl_virtual_gamepad import VirtualGamepad
 from Testing.simulator.at_once import at_once
@@ -27,15 +28,15 @@ from Testing.without_tutorial import WITHOUT_TUTORIAL, skip_tutorial
 @pytest.fixture(scope="session", autouse=True)
 def _known_marks():
     """Compute once where the numbers of a task are on the skin, not again for each presenter."""
-    known, on_skin = {}, TouchViews._on_skin
+    known, on_skin = {}, TouchViews.on_skin
 
     def kept(views, task):
-        key = views._scenario.head_mesh, task.fiducials.tobytes()
+        key = views._scenario.head, task.fiducials.tobytes()
         if key not in known:
             known[key] = on_skin(views, task)
         return known[key]
 
-    with mock.patch.object(TouchViews, "_on_skin", kept):
+    with mock.patch.object(TouchViews, "on_skin", kept):
         yield
 
 
@@ -104,7 +105,7 @@ def put_back(simulation):
     commands = (OperatorCommand("Abort"), OperatorCommand("StartTask", start))
     simulation.step(0.004, OperatorInput(commands=(*commands, OperatorCommand("Abort"))))
     simulation._training._number = 0
-    simulation.restart_from(StartingPoint())
+    simulation.restart_from(AT_ZERO)
 
 
 @pytest.fixture

@@ -141,7 +141,14 @@ OWN_TRIALS = tuple(
     )
     for number in range(MOST_TRIALS)
 )
-LEARNED = TutorialOutcome("P07", "gamepad", "desktop", 112.0, 2.34, (1.2, 0.8, 0.6))
+LEARNED = TutorialOutcome(
+    trainee="P07",
+    device="gamepad",
+    mode="desktop",
+    duration_s=112.0,
+    first_error_mm=2.34,
+    errors_mm=(1.2, 0.8, 0.6),
+)
 
 
 class _SetPin:

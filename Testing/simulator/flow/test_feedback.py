@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rastrainer.protocol import TouchRule
+from rastrainer.journal.entries import CameraChange, ProximityChange
+from rastrainer.protocol import Phase, Proximity, TouchRule
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.presentation.feedback_event import (
@@ -16,7 +17,8 @@ from rastrainer_simulator.presentation.feedback_event import (
     feedback_event,
     touch_feedback,
 )
-from rastrainer_simulator.state import TOUCH_ERRORS, Event, EventKind, TouchStage
+from rastrainer_simulator.state import TOUCH_ERRORS, Event, TouchStage, TrainingState
+from rastrainer_simulator.training.replies import phase_change
 from Testing.simulator.flow.test_whole_flow import REGISTRATION, SCORE
 
 
@@ -102,23 +104,26 @@ def test_muted_sounds_have_zero_volume(trainee):
     assert trainee.watcher.feedbacks[-1].volume == 0.0
 
 
+def change(before, after):
+    return ProximityChange(from_=before, to=after, clearance_mm=0.0)
+
+
 @pytest.mark.parametrize(
-    ("kind", "data", "meant"),
+    ("entry", "meant"),
     [
-        (EventKind.REJECTED, {}, FeedbackEvent.ERROR),
-        (EventKind.PROXIMITY, {"from": "free", "to": "contact"}, FeedbackEvent.CONTACT),
-        (EventKind.PROXIMITY, {"from": "free", "to": "proximity"}, FeedbackEvent.PROXIMITY_IN),
-        (EventKind.PROXIMITY, {"from": "contact", "to": "free"}, FeedbackEvent.PROXIMITY_OUT),
-        (EventKind.PHASE, {"phase": "paused"}, None),
-        (EventKind.CAMERA, {"camera": "far"}, None),
+        (change(Proximity.FREE, Proximity.CONTACT), FeedbackEvent.CONTACT),
+        (change(Proximity.FREE, Proximity.PROXIMITY), FeedbackEvent.PROXIMITY_IN),
+        (change(Proximity.CONTACT, Proximity.FREE), FeedbackEvent.PROXIMITY_OUT),
+        (phase_change(TrainingState(phase=Phase.PAUSED)), None),
+        (CameraChange("far"), None),
     ],
 )
-def test_each_event_maps_to_its_feedback(kind, data, meant):
-    assert feedback_event(Event(kind, 0.0, data), TouchStage.ELSEWHERE) is meant
+def test_each_event_maps_to_its_feedback(entry, meant):
+    assert feedback_event(Event(0.0, entry), TouchStage.ELSEWHERE) is meant
 
 
 def test_reaching_the_skin_where_a_touch_counts_plays_a_soft_tone_and_no_alarm():
-    reached = Event(EventKind.PROXIMITY, 0.0, {"from": "proximity", "to": "contact"})
+    reached = Event(0.0, change(Proximity.PROXIMITY, Proximity.CONTACT))
     assert feedback_event(reached, TouchStage.ON_SKIN) is FeedbackEvent.ON_SKIN
     soft, alarm = FeedbackEvent.ON_SKIN, FeedbackEvent.CONTACT
     assert soft.sound != alarm.sound

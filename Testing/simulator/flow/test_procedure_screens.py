@@ -420,7 +420,7 @@ def test_the_picture_of_a_procedure_shows_the_same_lines_as_the_head_in_the_view
     ends = [arrow.end for arrow in screen_of(operation, "lines").errors]
     np.testing.assert_allclose(drawn, ends, atol=MICROMETER)
     path = tmp_path / "procedure.png"
-    draw_procedure(path, read_head_mesh(scenario.head_mesh), procedure, lines)
+    draw_procedure(path, read_head_mesh(scenario.head), procedure, lines)
     pixels = read_png(path).reshape(-1, 3)
     for color in (PLANNED, SHOWN, PLACED):
         is_that = np.abs(pixels - 255.0 * np.array(color.color)).max(axis=1) < 40.0

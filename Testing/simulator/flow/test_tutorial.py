@@ -27,7 +27,14 @@ from Testing.tutorial_player import TutorialPlayer
 
 FIRST = "The tutorial comes first, with the device that you use now: it takes two minutes."
 STUDY_RUN = StudyStep("P07", "trial-run", 2, 9, "trial-run", "desktop", minutes=8.0)
-LEARNED = TutorialOutcome("P07", "keyboard", "desktop", 112.0, 2.3, (1.2, 0.8, 0.6))
+LEARNED = TutorialOutcome(
+    trainee="P07",
+    device="keyboard",
+    mode="desktop",
+    duration_s=112.0,
+    first_error_mm=2.3,
+    errors_mm=(1.2, 0.8, 0.6),
+)
 
 
 def session_of(trainee):

@@ -100,7 +100,7 @@ def test_the_whole_flow_is_done_with_a_gamepad_alone_and_its_trial_replays_bit_f
     (path,) = (tmp_path / "records").glob(f"*{trial_id}.journal")
     reading = read_journal(path)
     assert reading.integrity is Integrity.INTACT
-    assert reading.header["trainee"] == "P07"
+    assert reading.header.trainee == "P07"
     assert {entry["operator"] for entry in reading.of_kind("input")} <= {"gamepad", ""}
     assert replay(reading, setup).difference is None
 

@@ -25,7 +25,7 @@ class Ear:
 
 
 class HeardGamepads(Gamepads):
-    """Gamepads whose every poll is told to an ear."""
+    """Gamepads that report every poll to an ear."""
 
     def __init__(self, ear):
         super().__init__()
@@ -50,7 +50,7 @@ def gamepads(ear):
 
 @pytest.fixture
 def plugged(gamepads, ear):
-    """Return a virtual gamepad that the gamepads have found, and what it felt."""
+    """Return a virtual gamepad that the gamepads have found, and its vibrations."""
     felt = []
     gamepad = VirtualGamepad(lambda *strengths: felt.append(strengths))
     gamepad.plug_in()

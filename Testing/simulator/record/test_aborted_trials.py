@@ -12,6 +12,7 @@ import pytest
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, read_journal
+from rastrainer.journal.recording import Recording
 from rastrainer.protocol import MIN_ABORTED_S, TRIAL_RUN, Phase
 from rastrainer.study.database.study import Study
 from rastrainer.trial.aborted_trial import AbortedTrial
@@ -47,7 +48,7 @@ def touch(server, count):
 
 
 def wait_for_offer(server):
-    """Return what is offered; the journal's thread has written all that came before."""
+    """Return the offered records; the journal's thread has written everything before."""
     server.loop._writer.submit(lambda: None).result()
     return server.loop.archive.unacknowledged()
 
@@ -210,7 +211,7 @@ def test_an_aborted_trial_that_a_full_disk_could_not_take_is_offered_and_written
 
 
 def test_of_two_simultaneous_commands_that_end_a_trial_only_one_takes_effect(simulation, tmp_path):
-    """A trainee registers while a client aborts: there is one record, of what came first."""
+    """A trainee registers while a client aborts: there is one record, of the first command."""
     kinds = []
     with Server(simulation, tmp_path) as server:
         for commands in (
@@ -290,7 +291,8 @@ def test_an_interrupted_trial_is_not_aborted_as_long_as_it_can_be_resumed(simula
     assert (record.phase, record.reason, len(record.points)) == ("paused", "trainee", touches)
 
 
-def test_a_journal_cut_at_any_byte_reports_every_complete_touch(simulation, tmp_path):
+def test_a_journal_cut_at_any_byte_keeps_every_complete_touch(simulation, tmp_path):
+    """The trial can be resumed with these touches, and is recorded with them if it is not."""
     original = tmp_path / "original"
     with Server(simulation, original) as server:
         server.start()
@@ -310,30 +312,21 @@ def test_a_journal_cut_at_any_byte_reports_every_complete_touch(simulation, tmp_
         cut(path, rng.randrange(len(data)))
         found = find_interrupted(folder)
         record = interrupted_attempt(read_journal(path))
-        assert (record is None) == (found is None)
+        whole = read_journal(path).of_kind("phase")
+        assert (record is None) == (found is None) == (not whole)
         if found is not None:
             simulation.resume_trial(found[1])
-            touches = simulation.state.training.touches
-            assert [point.label for point in record.points] == [each.label for each in touches]
+            training = simulation.state.training
+            kept = [touch.label for touch in training.touches]
+            lines = tuple(read_journal(path).lines())
+            assert kept == [touch.label for touch in Recording.of(lines).trajectory().touches]
+            assert kept == [point.label for point in record.points]
+            assert training.phase in (Phase.PAUSED, Phase.COMPLETE)
             archive = TrialArchive(folder)
             archive.add_interrupted(path)
             assert not archive.problems
             assert archive.unacknowledged() == (record,)
             assert TrialArchive(folder).unacknowledged() == archive.unacknowledged()
-
-
-def test_trials_aborted_before_such_records_existed_are_not_offered(simulation, tmp_path):
-    with Server(simulation, tmp_path) as server:
-        server.start()
-        touch(server, 2)
-        server.do(CommandName.ABORT)
-    lines = server.path.read_bytes().splitlines(keepends=True)
-    assert json.loads(lines[-1])["kind"] == "attempt"
-    server.path.write_bytes(b"".join(lines[:-1]))
-    assert TrialArchive(tmp_path).unacknowledged() == ()
-    with Restarted(simulation, tmp_path) as server:
-        server.start()
-        assert wait_for_offer(server) == ()
 
 
 def test_an_altered_leftover_journal_is_named_and_not_offered(simulation, tmp_path):

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from rastrainer.commands import CommandName, check_arguments
-from rastrainer.journal import journal_file
+from rastrainer.journal import entries
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import Phase
@@ -29,7 +29,7 @@ def jumping(monkeypatch):
     def now(zone):
         return datetime.now(zone) + jump.by
 
-    monkeypatch.setattr(journal_file, "datetime", SimpleNamespace(now=now))
+    monkeypatch.setattr(entries, "datetime", SimpleNamespace(now=now))
     return jump
 
 
@@ -60,7 +60,7 @@ def test_a_clock_that_jumps_in_a_trial_changes_no_duration(
     times = [entry["monotonicS"] for entry in reading.entries]
     assert times == sorted(times)
     assert times[-1] - times[0] <= time.monotonic() - started
-    simulated = reading.entries[-1]["simTimeS"] - reading.header["before"]["simTimeS"]
+    simulated = reading.entries[-1]["simTimeS"] - reading.header.before.sim_time_s
     assert 0.0 < record.completion_time_s <= simulated
     years = {point.utc[:4] for point in record.points}
     assert len(years) > 10
@@ -100,8 +100,8 @@ def test_the_most_recently_started_trial_is_resumed_even_if_the_clock_was_set_ba
     reading, interrupted = find_interrupted(tmp_path)
     assert reading.path == names[0]
     assert interrupted is not None
-    assert reading.header["trainee"] == "P02"
-    assert [read_journal(path).header["number"] for path in names] == [2, 1]
+    assert reading.header.trainee == "P02"
+    assert [read_journal(path).header.number for path in names] == [2, 1]
 
 
 def test_a_journal_without_a_number_is_older_than_any_with_one(simulation, tmp_path):

@@ -11,7 +11,8 @@ import pytest
 
 from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
-from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, read_journal
+from rastrainer.journal.entries import read_lines
+from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.journal.recording import Recording
 from rastrainer.json_records import record_from_json
 from rastrainer.protocol import Phase, Proximity
@@ -22,6 +23,7 @@ from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.replay.resimulation import replay
 from rastrainer_simulator.state import OperatorInput
+from Testing.journal_lines import at, proximity
 
 TIMEOUT_S = 120.0
 
@@ -143,37 +145,6 @@ def test_the_trial_continues_at_the_next_fiducial_and_its_single_journal_replays
     ]
 
 
-def test_a_journal_cut_at_any_byte_is_resumed_with_every_complete_touch(simulation, tmp_path):
-    original = tmp_path / "original"
-    with Server(simulation, original) as server:
-        server.start()
-        for number in range(6):
-            assert server.do(CommandName.CAPTURE).ok
-            if number == 2:
-                assert server.do(CommandName.UNDO).ok
-                assert server.do(CommandName.PAUSE).ok
-                assert server.do(CommandName.RESUME).ok
-    data = server.path.read_bytes()
-    rng = random.Random(4)
-    for number in range(30):
-        folder = tmp_path / str(number)
-        folder.mkdir()
-        path = folder / server.path.name
-        shutil.copy(server.path.with_suffix(SEED_SUFFIX), folder)
-        path.write_bytes(data[: rng.randrange(len(data))])
-        found = find_interrupted(folder)
-        entries = read_journal(path).entries if path.stat().st_size else ()
-        if not any(entry["kind"] == "phase" for entry in entries):
-            assert found is None
-            continue
-        kept = [touch.label for touch in Recording.of(entries).trajectory().touches]
-        simulation.resume_trial(found[1])
-        training = simulation.state.training
-        assert training.phase is Phase.PAUSED
-        assert [touch.label for touch in training.touches] == kept
-        assert training.next_point == str(len(kept) + 1)
-
-
 def test_ten_interruptions_of_one_trial_leave_one_intact_journal(simulation, anywhere, tmp_path):
     rng = random.Random(8)
     with Server(simulation, tmp_path) as server:
@@ -192,7 +163,7 @@ def test_ten_interruptions_of_one_trial_leave_one_intact_journal(simulation, any
             touched = len(server.training.touches)
             size = server.path.stat().st_size
             server.move(ticks=70)
-        # What was acknowledged is on the disk; of the rest, a kill may leave any part.
+        # Everything acknowledged is on the disk; a kill may leave any part of the rest.
         if rng.random() < 0.8:
             cut(server.path, rng.randrange(size, server.path.stat().st_size + 1))
     with Server(simulation, tmp_path) as server:
@@ -221,10 +192,10 @@ def test_the_trials_clock_is_stopped_until_it_is_resumed(simulation, tmp_path):
         server.finish()
         (record,) = server.loop.archive.unacknowledged()
         at_end = server.loop.latest.sim_time
-    started = read_journal(server.path).header["before"]["simTimeS"]
+    started = read_journal(server.path).header.before.sim_time_s
     assert elapsed == pytest.approx(last - started, abs=1e-6)
     assert elapsed <= record.completion_time_s < at_end - started - 500 * 0.004
-    times = Recording.of(read_journal(server.path).entries).trajectory().times_s
+    times = Recording.of(read_journal(server.path).lines()).trajectory().times_s
     assert np.all(np.diff(times) > 0.0)
 
 
@@ -247,7 +218,7 @@ def test_a_trial_interrupted_while_pressing_continues_unpressed_and_replays(
         (record,) = server.loop.archive.unacknowledged()
     reading = read_journal(server.path)
     assert replay(reading, anywhere).difference is None
-    contacts = Recording.of(reading.entries).trajectory().contacts
+    contacts = Recording.of(reading.lines()).trajectory().contacts
     assert max(contact.greatest_depth_mm for contact in contacts) >= pressed_mm
     assert record.motion["pressing_depth_mm"] >= (1 - 1e-9) * pressed_mm / np.sqrt(15)
 
@@ -339,10 +310,13 @@ def test_a_forged_journal_is_refused_with_a_message(simulation, tmp_path, change
         server.start()
         server.do(CommandName.CAPTURE)
         server.move(ticks=30)
-    entries = [dict(entry) for entry in read_journal(server.path).entries]
-    entries.append({"kind": "proximity", "to": "free", "tick": entries[-1]["tick"], "simTimeS": 0})
+    reading = read_journal(server.path)
+    reading.entries[0]["seed"] = reading.seed
+    near = at(1.0, proximity(Proximity.PROXIMITY, Proximity.FREE), reading.entries[-1]["tick"])
+    entries = [*reading.entries, near.to_json()]
+    assert InterruptedTrial.of(tuple(read_lines(entries))) is not None
     for entry in entries:
         if entry["kind"] == change["kind"]:
             entry.update(change)
-    with pytest.raises(InputError):
-        InterruptedTrial.of(entries)
+    with pytest.raises(InputError, match="malformed"):
+        InterruptedTrial.of(tuple(read_lines(entries)))

@@ -10,6 +10,7 @@ import pytest
 from rastrainer import transforms
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
+from rastrainer.journal.entries import MotionEnd, read_lines
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.journal.recording import Recording, WholeRecording, read_track
 from rastrainer.json_records import record_from_json, record_to_json
@@ -25,7 +26,7 @@ from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record.trial_archive import interrupted_attempt
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial
 from rastrainer_simulator.replay.resimulation import replay
-from rastrainer_simulator.state import EventKind, OperatorInput
+from rastrainer_simulator.state import OperatorInput
 from rastrainer_simulator.trial_state import Tool
 from Testing.simulator.record.test_interrupted_trial import TIMEOUT_S, Server, cut
 
@@ -77,13 +78,13 @@ class Theater(Server):
         """Have the robot align the guide; return how the motion ended."""
         ended = []
         unsubscribe = self.loop.subscribe(
-            lambda result: ended.extend(e for e in result.events if e.kind is EventKind.MOTION)
+            lambda result: ended.extend(e for e in result.events if isinstance(e.entry, MotionEnd))
         )
         self.must(CommandName.ALIGN_GUIDE, standOffMm=20.0)
         while not ended:
             self.do(CommandName.LIST_TASKS)
         unsubscribe()
-        assert ended[-1].data == {"outcome": "reached"}
+        assert ended[-1].entry == MotionEnd("reached")
         assert self.loop.latest.alignment.is_exact
 
     def place(self, drilled_mm, placed_mm):
@@ -201,7 +202,7 @@ def test_the_record_has_every_attempt_and_instrument(finished, planned):
     assert [touch.label for touch in accepted.touches] == list(record.labels)
     left, right = procedure.instruments
     assert (left.alignments, right.alignments) == (2, 1)
-    # How far the stick overshoots depends on the machine; what was sampled is what is recorded.
+    # How far the stick overshoots depends on the machine; the record has the last sample.
     sampled = sampled_depths(read_journal(path).entries)
     for number, instrument in enumerate(procedure.instruments):
         assert instrument.drill_depth_mm == sampled[number, "drilling"] >= 55.0
@@ -216,8 +217,8 @@ def test_the_record_has_every_attempt_and_instrument(finished, planned):
 
 def test_the_motion_of_a_trial_is_that_of_its_touches_alone(finished):
     path, record = finished
-    entries = read_journal(path).entries
-    touching, whole = (kind.of(entries).trajectory() for kind in (Recording, WholeRecording))
+    lines = tuple(read_journal(path).lines())
+    touching, whole = (kind.of(lines).trajectory() for kind in (Recording, WholeRecording))
     assert len(touching.touches) == len(whole.touches) == 15
     times = record.procedure.phase_times_s
     assert touching.times_s[-1] == pytest.approx(times["running"], abs=0.05)
@@ -371,12 +372,13 @@ def test_a_forged_procedure_is_refused_with_a_message(drilled, kind, change):
         if entry["kind"] == kind:
             entry.update(change)
     with pytest.raises(InputError):
-        InterruptedTrial.of(entries)
+        InterruptedTrial.of(tuple(read_lines(entries)))
 
 
 def test_a_journal_of_another_procedure_is_neither_replayed_nor_resumed(finished, planned):
     track = read_track(finished[0])
-    track.header["procedure"]["sha256"] = "0" * 64
+    other = replace(track.header.procedure, sha256="0" * 64)
+    track = replace(track, header=replace(track.header, procedure=other))
     with pytest.raises(InputError, match=r"^The trial was recorded with another procedure\.$"):
         RecordedTrial(track, planned)
     assert find_interrupted(finished[0].parent) is None

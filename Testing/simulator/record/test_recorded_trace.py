@@ -208,7 +208,7 @@ def test_aborted_and_interrupted_trials_report_their_method_and_how_much_was_tra
         server.loop._writer.submit(lambda: None).result()
         (record,) = server.loop.archive.unacknowledged()
     assert (record.method, record.traced) == (RegistrationMethod.SURFACE, traced)
-    data, seed = server.path.read_bytes(), read_journal(server.path).header["seed"]
+    data, seed = server.path.read_bytes(), read_journal(server.path).header.seed
     server.path.with_suffix(SEED_SUFFIX).write_text(str(seed))
     server.path.write_bytes(data[: data.index(b'"kind":"aborted"')])
     interrupted = interrupted_attempt(read_journal(server.path))

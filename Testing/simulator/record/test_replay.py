@@ -9,7 +9,6 @@ import pytest
 from rastrainer.commands import CommandName, check_arguments
 from rastrainer.files.writing import write_json
 from rastrainer.journal.journal_file import SEED_SUFFIX, read_journal
-from rastrainer.json_records import record_to_json
 from rastrainer.protocol import TouchRule
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.transforms import MM_PER_M
@@ -22,6 +21,7 @@ from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.record.trial_context import setup_of
 from rastrainer_simulator.state import OperatorInput
 from Testing.domain.procedure.made_up_procedure import write_planned
+from Testing.journal_lines import header
 
 CHAIN = ("n", "previous", "sha256")
 
@@ -53,8 +53,8 @@ def recorded(setup, tmp_path_factory) -> Path:
 
 
 def open_copy(recorded: Path, tmp_path: Path) -> Path:
-    """Return where a copy is to be cut; beside it is the seed, as of a trial that is open."""
-    seed = read_journal(recorded).header["seed"]
+    """Return the path of a copy to be cut; its seed is next to it, as for an open trial."""
+    seed = read_journal(recorded).header.seed
     (tmp_path / "cut").with_suffix(SEED_SUFFIX).write_text(str(seed))
     return tmp_path / "cut"
 
@@ -182,12 +182,8 @@ def test_a_hostile_journal_gives_one_sentence_and_status_2(recorded, tmp_path, c
     assert "Traceback" not in said
 
 
-def header(setup):
-    return record_to_json(setup.recorded())
-
-
 def test_the_recorded_touch_rule_is_applied(setup):
-    recorded = setup_of(header(setup)).settings.training
+    recorded = setup_of(header(**vars(setup.recorded()))).settings.training
     assert recorded.touch_rule is TouchRule.ON_SKIN
 
 

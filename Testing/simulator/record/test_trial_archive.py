@@ -1,4 +1,4 @@
-"""The archive of registered trials: what has to be delivered, and the truth kept until scored."""
+"""The archive of registered trials: deliveries, and the truth kept until scored."""
 
 import gc
 import json
@@ -9,7 +9,8 @@ import pytest
 
 from rastrainer.commands import CommandName, check_arguments, decode_json_object
 from rastrainer.errors import InputError
-from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, Integrity, read_journal, stamp
+from rastrainer.journal.entries import FORMAT, FORMAT_VERSION, Stamp
+from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.json_checks import MAX_DEPTH
 from rastrainer.json_records import record_to_json
 from rastrainer.trial.record import TouchedPoint, TrialRecord
@@ -55,7 +56,7 @@ SCORE = {
     "score": 50.0,
     "details": {"kind": "acknowledged", "previous": "0" * 64},
 }
-NOW = stamp(0, 0.0)
+NOW = Stamp.now(0, 0.0)
 
 
 def write_trial(folder, *more, trial_id=TRIAL_ID):

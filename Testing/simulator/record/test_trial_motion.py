@@ -6,6 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
+from rastrainer.journal.entries import Acknowledged
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.journal.recording import Recording
 from rastrainer.json_records import record_from_json
@@ -18,6 +19,7 @@ from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
 from rastrainer_simulator.virtual.play import play_virtual_trial
 from rastrainer_simulator.virtual.scripted_trainee import Skill
+from Testing.journal_lines import at
 
 DT = 0.02
 BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04)
@@ -56,7 +58,7 @@ def test_the_record_has_the_same_metrics_as_the_journal_to_the_last_bit(journal)
     (registered,) = journal.of_kind("registered")
     record = record_from_json(TrialRecord, registered["record"])
     assert len(record.motion) > 20
-    assert record.motion == trial_motion(Recording.of(journal.entries).trajectory())
+    assert record.motion == trial_motion(Recording.of(journal.lines()).trajectory())
     assert record.motion["completion_time_s"] == pytest.approx(record.completion_time_s, abs=1e-9)
     assert record.motion["undone_touches"] == record.undone_touches
     assert record.motion["contacts"] >= 15
@@ -64,20 +66,17 @@ def test_the_record_has_the_same_metrics_as_the_journal_to_the_last_bit(journal)
 
 
 def test_metrics_of_a_part_are_those_of_the_trial_up_to_then(journal):
-    half = journal.entries[: len(journal.entries) // 2]
-    streamed = Recording()
-    for entry in half:
-        streamed.add(entry)
-    part = trial_motion(streamed.trajectory())
-    whole = trial_motion(Recording.of(journal.entries).trajectory())
+    half = tuple(journal.lines())[: len(journal.entries) // 2]
+    part = trial_motion(Recording.of(half).trajectory())
+    whole = trial_motion(Recording.of(journal.lines()).trajectory())
     assert 0 < part["path_length_mm"] < whole["path_length_mm"]
     assert 0 < part["contacts"] < whole["contacts"]
 
 
 def test_anything_after_the_trial_changes_nothing(journal):
-    again = Recording.of([*journal.entries, {"kind": "acknowledged", "simTimeS": 1e6}])
+    again = Recording.of([*journal.lines(), at(1e6, Acknowledged("Slicer"))])
     assert trial_motion(again.trajectory()) == trial_motion(
-        Recording.of(journal.entries).trajectory()
+        Recording.of(journal.lines()).trajectory()
     )
 
 

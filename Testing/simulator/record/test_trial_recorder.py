@@ -1,4 +1,4 @@
-"""What the first trial needs is loaded before it begins; a tick has no time to load anything."""
+"""Everything is loaded before the first trial begins; a tick has no time to load anything."""
 
 from __future__ import annotations
 
@@ -8,17 +8,14 @@ import sys
 from dataclasses import replace
 
 from rastrainer.commands import CommandName, check_arguments
+from rastrainer.journal.entries import DisplayReport, GhostReport, GuidanceReport, ProximityChange
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trial_motion import trial_motion
+from rastrainer.protocol import Proximity
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.record.trial_context import (
-    DisplayReport,
-    DisplayUse,
-    GhostReport,
-    GuidanceReport,
-)
+from rastrainer_simulator.record.trial_context import DisplayUse
 from rastrainer_simulator.record.trial_entries import TrialEntries
-from rastrainer_simulator.state import Event, EventKind, OperatorCommand, OperatorInput
+from rastrainer_simulator.state import Event, OperatorCommand, OperatorInput
 
 PLAY_THE_FIRST_TRIAL = """
 import json, sys, tempfile
@@ -50,7 +47,7 @@ def test_no_module_is_loaded_while_the_first_trial_is_played_and_recorded():
 
 
 DT = 0.004
-CONTACT = {"from": "proximity", "to": "contact", "clearanceMm": 0.0}
+CONTACT = ProximityChange(from_=Proximity.PROXIMITY, to=Proximity.CONTACT, clearance_mm=0.0)
 
 
 def test_a_contact_in_the_register_tick_counts_in_the_record_as_in_the_journal(anywhere):
@@ -69,7 +66,7 @@ def test_a_contact_in_the_register_tick_counts_in_the_record_as_in_the_journal(a
         _, given, touched = step(CommandName.CAPTURE)
         entries.add(simulation, given, touched)
     _, given, done = step(CommandName.REGISTER)
-    contact = Event(EventKind.PROXIMITY, done.state.sim_time, CONTACT)
+    contact = Event(done.state.sim_time, CONTACT)
     record = entries.add(
         simulation, given, replace(done, events=(*done.events, contact))
     ).measured()

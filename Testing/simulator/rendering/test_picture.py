@@ -1,5 +1,7 @@
 """Pictures of the scene, and their legend and scale."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import trimesh
@@ -8,7 +10,7 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.protocol import Proximity
 from rastrainer.scenario.points import Task
-from rastrainer.scenario.scenario import Camera, Furniture, OperatingTable, Stand
+from rastrainer.scenario.scenario import Camera, OperatingTable, Stand
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.rendering.lighting import Shadows
 from rastrainer_simulator.rendering.picture import SceneMoment, render_picture, write_png
@@ -23,9 +25,8 @@ RADIUS = 80.0
 SIZE = (480, 270)
 UP = np.array([0.0, 0.0, 1.0])
 FAR = Camera(np.array([660.0, -2350.0, 950.0]), np.array([420.0, 0.0, 330.0]), UP, 24.0)
-FURNITURE = Furniture(
-    OperatingTable(np.array([300.0, 0.0]), np.array([1300.0, 1000.0, 40.0])), Stand(80.0)
-)
+TABLE = OperatingTable(np.array([300.0, 0.0]), np.array([1300.0, 1000.0, 40.0]))
+STAND = Stand(80.0)
 FRONT = RADIUS * np.array([[0.0, 1.0, 0.0], [0.5, 0.75**0.5, 0.0], [-0.5, 0.75**0.5, 0.0]])
 
 
@@ -41,7 +42,7 @@ def ball() -> HeadMesh:
 
 @pytest.fixture(scope="module")
 def head_to_world() -> np.ndarray:
-    """A ball beside the tool, its face to the camera."""
+    """A ball next to the tool, its face to the camera."""
     pose = np.diag([-1.0, -1.0, 1.0, 1.0])
     pose[:3, 3] = 760.0, 0.0, 300.0
     return pose
@@ -58,9 +59,9 @@ def picture(tmp_path_factory, ball, head_to_world):
     base = (head_to_world @ np.append(ball.base, 1.0))[:3] / MM_PER_M
     nodes = [
         *robot_nodes(robot),
-        head_node(ball, Task("ball", "Ball", ("1", "2", "3"), FRONT, 1.0)),
-        stand_node(FURNITURE, base),
-        table_node(FURNITURE, base),
+        head_node(ball, Task("ball", "Ball", Path(), 1.0, labels=("1", "2", "3"), fiducials=FRONT)),
+        stand_node(STAND, base),
+        table_node(TABLE, STAND, base),
         *room_nodes(),
     ]
 

@@ -23,6 +23,8 @@ from Testing.domain.study.played_study import study_with_trials
 from Testing.domain.trial.trial_records import make_aborted
 from Testing.simulator.report.test_report import words_of
 
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 REASON = "the head had slipped from its stand"
 
 

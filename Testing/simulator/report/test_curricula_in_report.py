@@ -4,6 +4,8 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
+import pytest
+
 from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.database.study import Study
@@ -11,6 +13,8 @@ from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.report.report import report_html
 from rastrainer_simulator.report.trainees import curricula
 from Testing.domain.study.played_study import study_with_trials
+
+pytestmark = pytest.mark.usefixtures("undrawn")
 
 SHIPPED = Path(__file__).parents[3] / "assets" / "studies" / "example-curriculum.json"
 

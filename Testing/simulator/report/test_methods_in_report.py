@@ -20,6 +20,8 @@ from rastrainer_simulator.statistics.paired import compare_paired
 from Testing.error_rates.compared_methods import decisions, drawn_errors, study_of
 from Testing.simulator.report.test_report import cohort, words_of
 
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 TRUE_MM = {"fiducials": 0.8, "landmarks": 2.4, "surface": 0.8}
 
 

@@ -12,6 +12,8 @@ from rastrainer_simulator.report.report import report_html
 from rastrainer_simulator.statistics.agreement import intraclass_correlations, quadratic_kappa
 from Testing.simulator.report.test_report import cohort
 
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 
 def rated(trainees=4, names=("R1", "R2"), forms=(GEARS, OSATS), noise=0.6, seed=3):
     """Return a study whose trials have UUIDs, and marks that go with a scored quality."""

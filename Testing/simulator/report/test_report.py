@@ -23,7 +23,7 @@ from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.report.comparisons import compare_modes, mode_delays, paired_means
 from rastrainer_simulator.report.published_tables import (
     cohort_scores,
-    complexity_correlation,
+    complexity,
     performance_color,
     with_ctps,
 )
@@ -195,7 +195,7 @@ def test_the_claim_that_ctps_falls_with_complexity_is_checked(published, page):
     found = []
     for mode in ("hmd", "desktop"):
         scores = cohort_scores(published, mode)
-        one = complexity_correlation(scores.tasks.items())
+        one = complexity(published, mode, scores)["task_scores"]
         expected = pearsonr(range(1, 6), mean_ctps_of_tasks(mode))
         assert (one.r, one.p) == pytest.approx((expected.statistic, expected.pvalue), abs=1e-9)
         limits = expected.confidence_interval(0.95)
@@ -227,6 +227,7 @@ def test_the_unknown_order_of_modes_is_stated(published, page):
     assert rmse.result.ranks.p == rmse.result.ranks.smallest_p == 0.125
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_balanced_order_of_modes_separates_the_period_and_is_tabulated():
     model = OutcomeModel([120.0] * 5, [1.5] * 5, learning=0.3, carries_practice=True)
     modes = ("desktop", "hmd")
@@ -281,6 +282,7 @@ def test_the_same_study_gives_the_same_page(published, page):
     assert report_html(published, "today") == page
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_command_writes_the_page_and_the_numbers(tmp_path, capsys):
     assert main(["report", str(PUBLISHED), "-o", str(tmp_path / "new" / "folder")]) == 0
     folder = tmp_path / "new" / "folder"
@@ -292,6 +294,7 @@ def test_the_command_writes_the_page_and_the_numbers(tmp_path, capsys):
     assert len(lines) == 41
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
@@ -320,6 +323,7 @@ def test_a_large_cohort_gets_tables_curves_and_a_methods_paragraph():
     assert len(page) < 2_000_000
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_single_mode_is_described_and_not_tested():
     one = StudyData("One", tuple(t for t in cohort(3).trials if t.mode == "hmd"))
     words = words_of(report_html(one))
@@ -327,6 +331,7 @@ def test_a_single_mode_is_described_and_not_tested():
     assert "No trainee did two modes" in words
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_trainees_are_compared_on_the_tasks_done_in_both_modes():
     def row(mode, task, time):
         return TrialRow("a", mode, task, 1, {"completion_time_s": time})
@@ -339,6 +344,7 @@ def test_trainees_are_compared_on_the_tasks_done_in_both_modes():
     )
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_trials_with_long_pauses_are_reported_as_a_limitation():
     def row(number, paused):
         values = {"completion_time_s": 10.0, "pause_time_s": paused}
@@ -350,6 +356,7 @@ def test_trials_with_long_pauses_are_reported_as_a_limitation():
     assert "were paused" not in words_of(report_html(never))
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_passed_trials_and_competent_trainees_are_counted():
     rows = []
     for trainee, score, acceptable in (("A", 70.0, True), ("B", 69.9, True), ("C", 90.0, False)):
@@ -372,6 +379,7 @@ def scored(trainee, number, score, method="fiducials", acceptable=True):
     return TrialRow(trainee, "hmd", "task-1", number, values, method=method, acceptable=acceptable)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_report_explains_the_score_of_its_method():
     def words(method):
         return words_of(report_html(StudyData("One", (scored("A", 1, 80.0, method),))))
@@ -392,6 +400,7 @@ def test_a_report_explains_the_score_of_its_method():
         assert "Harrington 1965, The desirability function" in each
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_pass_mark_of_fiducials_passes_no_trial_of_another_method_and_the_report_says_so():
     published = StudyProtocol.read(STUDIES / "published-protocol.json")
     protocol = replace(published, pass_mark=65.0)
@@ -403,6 +412,7 @@ def test_a_pass_mark_of_fiducials_passes_no_trial_of_another_method_and_the_repo
     assert "LC-CUSUM of every trainee" not in words
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("has_protocol", [True, False], ids=["silent protocol", "no protocol"])
 def test_a_pass_mark_without_protocol_is_called_the_default(has_protocol):
     published = StudyProtocol.read(STUDIES / "published-protocol.json")
@@ -443,6 +453,7 @@ def test_hostile_pseudonyms_and_titles_are_escaped():
     assert "&lt;script&gt;" in page
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_report_of_a_database_has_scores_motion_questionnaires_and_skipped_steps(tmp_path):
     study_with_trials(tmp_path / "study.db")
     data = read_study_data(tmp_path / "study.db")
@@ -460,6 +471,7 @@ def test_a_report_of_a_database_has_scores_motion_questionnaires_and_skipped_ste
     assert "Left out: 1 trial that the protocol had not asked for." in words
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_trainees_without_consent_are_left_out_and_counted(tmp_path):
     study_with_trials(tmp_path / "study.db", consent=False)
     data = read_study_data(tmp_path / "study.db")
@@ -475,6 +487,7 @@ def test_a_study_without_any_consent_is_refused(tmp_path):
         write_report(read_study_data(tmp_path / "study.db"), tmp_path)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_no_line_ends_between_a_number_and_its_unit():
     rows = tuple(scored("A", number, 80.0) for number in range(1, 3))
     page = report_html(StudyData("At most 8 s and 160 mm", rows), "today")

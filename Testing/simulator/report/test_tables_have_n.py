@@ -13,7 +13,10 @@ from Testing.simulator.report.test_aborted_in_report import path  # noqa: F401
 from Testing.simulator.report.test_methods_in_report import played
 from Testing.simulator.report.test_raters_in_report import rated
 from Testing.simulator.report.test_report import PUBLISHED, cohort
+from Testing.simulator.report.without_charts import without_charts
 from Testing.simulator.statistics.test_variation import drawn
+
+pytestmark = pytest.mark.usefixtures("undrawn")
 
 WORDS = {
     ("Metric", "Definition", "Source"),
@@ -75,12 +78,13 @@ def drawn_pages():
     studies = (
         read_study_data(PUBLISHED),
         with_intervals(drawn()),
-        in_two_groups(cohort(30, tasks=6)),
+        in_two_groups(cohort(16, tasks=2)),
         with_procedures(cohort(4)),
         played(4),
         rated(),
     )
-    return [report_html(data, "today") for data in studies]
+    with without_charts():
+        return [report_html(data, "today") for data in studies]
 
 
 @pytest.fixture

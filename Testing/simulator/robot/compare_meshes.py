@@ -5,7 +5,7 @@
 FOLDER holds link_0.stl … link_7.stl, in meters, all in the base frame at q = 0 (or a folder
 `collision` with them). Points are drawn evenly over each robot's surface at q = 0 and kept where
 they can be seen from outside: not on the ground, and with at least one in twenty of the directions
-over the point open. From each of these the distance to the nearest point of the other robot is
+over the point open. The distance from each of these to the nearest point of the other robot is
 taken. The tool is left out: it is ours.
 """
 
@@ -20,7 +20,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.robot_shape import sphere_directions
 
 sys.path.insert(0, str(Path(__file__).parents[3] / "assets" / "robots"))
-from iiwa7_dimensions import LINK_NAMES, link_origins
+from iiwa7_dimensions import JOINTS, LINK_NAMES
 from make_iiwa7 import visual_parts
 
 DIRECTIONS = 128
@@ -38,10 +38,11 @@ def main() -> None:
     if (folder / "collision").is_dir():
         folder = folder / "collision"
     # Links 0 to 7 as they look, at q = 0, in the base frame, in meters.
-    parts, origins = visual_parts(), link_origins()
+    parts = visual_parts()
+    origins = np.cumsum([(0.0, 0.0, 0.0), *(joint.origin for joint in JOINTS)], axis=0)
     ours = [
-        trimesh.util.concatenate(list(parts[name].values())).apply_translation(origins[name])
-        for name in LINK_NAMES[:8]
+        trimesh.util.concatenate(list(parts[name].values())).apply_translation(origin)
+        for name, origin in zip(LINK_NAMES, origins, strict=False)
     ]
     official = [trimesh.load_mesh(folder / f"link_{number}.stl") for number in range(8)]
     for title, one, other in (

@@ -61,10 +61,10 @@ def test_without_a_task_the_head_is_bare(setup):
 
 
 def test_the_skin_is_the_scenarios_head_in_meters(glb, scenario):
-    head = read_head_mesh(scenario.head_mesh)
+    head = read_head_mesh(scenario.head)
     vertices = glb.vertices("skin")
     assert vertices[: len(head.vertices)] == pytest.approx(head.vertices / MM_PER_M, abs=1e-6)
-    # Those at the base's sharp rim are there twice: each side of it has a normal of its own.
+    # Vertices at the base's sharp rim are there twice: each side has its normal.
     assert np.isin(vertices[len(head.vertices) :], vertices[: len(head.vertices)]).all()
     assert len(vertices) < 1.05 * len(head.vertices)
 
@@ -105,8 +105,8 @@ def test_the_tools_origin_is_its_tip(glb):
 
 def test_the_table_top_is_the_plane_on_which_the_robot_stands(glb, scenario):
     center, size = (
-        np.array(scenario.furniture.table.center_mm) / MM_PER_M,
-        np.array(scenario.furniture.table.size_mm) / MM_PER_M,
+        np.array(scenario.table.center_mm) / MM_PER_M,
+        np.array(scenario.table.size_mm) / MM_PER_M,
     )
     table = glb.vertices("table")
     assert table[:, :2].min(axis=0) == pytest.approx(center - size[:2] / 2, abs=1e-6)
@@ -119,7 +119,7 @@ def test_the_table_top_is_the_plane_on_which_the_robot_stands(glb, scenario):
 
 def test_the_stand_reaches_from_the_table_to_the_head_in_every_trial(glb, scenario):
     stand = glb.vertices("stand")
-    head = read_head_mesh(scenario.head_mesh)
+    head = read_head_mesh(scenario.head)
     assert stand[:, 2].max() <= 0.0
     for seed in range(50):
         pose = scenario.perturbed_head_to_world(seed)

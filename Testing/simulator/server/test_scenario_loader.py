@@ -61,7 +61,7 @@ def simulation_of(folder):
 
 @pytest.fixture
 def library(tmp_path):
-    """A user's library with one scenario, and one that is broken."""
+    """A user's library with a good and a broken scenario."""
     ball = tmp_path / "library" / "ball"
     (tmp_path / "library" / "broken").mkdir(parents=True)
     (tmp_path / "library" / "broken" / "scenario.json").write_text("{")
@@ -142,7 +142,7 @@ def test_no_scenario_is_read_during_a_trial(make):
     loop = Loop()
     loop.is_trial_open = True
     loader = make(loop, may_be_anywhere=True)
-    # `nowhere` would have another reason: it was not looked for.
+    # `nowhere` would have another reason: the loader did not search it.
     assert loader.load("nowhere").result(60) == Answer(0, False, TRIAL_IS_OPEN)
     assert loader.reload().result(60) == Answer(0, False, TRIAL_IS_OPEN)
     loop.is_trial_open = False

@@ -54,6 +54,7 @@ def test_the_interval_of_a_difference_contains_it_in_95_of_100_cases(dof, other_
     assert 0.935 <= np.mean(held) <= 0.98
 
 
-def test_an_estimate_changes_its_sign_with_its_interval():
-    assert -Estimate(1.0, (-0.5, 2.0)) == Estimate(-1.0, (-2.0, 0.5))
+def test_an_estimate_is_mapped_with_its_interval_and_may_be_certain():
+    mapped = Estimate(1.0, (-0.5, 2.0)).mapped(lambda value: 10.0 * value)
+    assert mapped == Estimate(10.0, (-5.0, 20.0))
     assert coefficient(1.0, 0.0, 5).interval == (1.0, 1.0)

@@ -1,7 +1,6 @@
 """A trial without a robot: the tip, the guide and the feed are put wherever they are wanted."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
@@ -47,7 +46,7 @@ class Trial:
     """A trial driven by hand."""
 
     def __init__(self, scenario, seed=5, **others):
-        planned = replace(scenario, procedures=(PROCEDURE, PLAIN), skull_mesh=Path("skull.ply"))
+        planned = replace(scenario, procedures=(PROCEDURE, PLAIN))
         self.training = Training(planned, seed, **others)
         self.now = 10.0
 

@@ -9,7 +9,7 @@ from rastrainer.commands import CommandName
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.json_records import record_from_json
 from rastrainer.protocol import TouchRule
-from rastrainer.scenario.points import LABELS, Task
+from rastrainer.scenario.points import LABELS, Task, task_file
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.writer import HeadDraft, write_scenario
 from rastrainer.transforms import MM_PER_M
@@ -47,7 +47,7 @@ def scenario(request, tmp_path_factory):
     width = random.uniform(60.0, 200.0)
     away = np.linalg.norm(head.vertices - center / np.linalg.norm(center) * 90.0, axis=1)
     places = head.vertices[(head.vertices[:, 2] > -40.0) & (away < width)]
-    task = Task("task-1", "Task 1", LABELS, _apart(places, random), 10.0)
+    task = Task("task-1", "Task 1", task_file("task-1"), 10.0, fiducials=_apart(places, random))
     options = ScenarioOptions("random", "random", "none")
     made = replace(without_tasks(HeadDraft(head, "made up"), options), tasks=(task,))
     folder = tmp_path_factory.mktemp("head")

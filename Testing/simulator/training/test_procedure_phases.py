@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from rastrainer.commands import CommandName
+from rastrainer.journal.entries import AcceptedCheckpoint, Rejected
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.state import EventKind
 from rastrainer_simulator.training.feed import Feed, HeadAhead
 from rastrainer_simulator.training.rules import RECORDING_FAILED
 from rastrainer_simulator.trial_state import Tool
@@ -103,7 +103,9 @@ def test_true_distances_ahead_of_the_guide_are_recorded_and_never_sent_in_an_ans
     reply = trial.must(CommandName.LOCK_GUIDE, (0.5, 0.0, 0.4), feed=LOCKABLE)
     assert "ahead" not in reply.data
     (event,) = reply.events
-    assert event.data["ahead"] == pytest.approx({"skinMm": 20.0, "outerMm": 27.0, "innerMm": 34.0})
+    assert vars(event.entry.ahead) == pytest.approx(
+        {"skin_mm": 20.0, "outer_mm": 27.0, "inner_mm": 34.0}
+    )
     assert reply.feed == Feed(ahead=AHEAD)
 
 
@@ -161,7 +163,7 @@ def test_the_error_at_a_checkpoint_follows_from_the_trainees_own_registration(sc
     assert f"Vertex is {expected:.1f} mm off with your registration" in trial.state.instruction
     (point,) = trial.procedure.checkpoints
     assert MM_PER_M * point.error == pytest.approx(expected, abs=1e-9)
-    assert [event.kind for event in reply.events] == [EventKind.CHECKPOINT]
+    assert [type(event.entry) for event in reply.events] == [AcceptedCheckpoint]
 
 
 @pytest.mark.parametrize(
@@ -181,7 +183,7 @@ def test_a_touch_off_every_checkpoint_is_refused_with_what_would_be_right(
     assert trial.state.instruction == reply.message
     assert trial.state.rejected == 0
     assert trial.procedure.checkpoints == ()
-    assert [event.kind for event in reply.events] == [EventKind.REJECTED]
+    assert [type(event.entry) for event in reply.events] == [Rejected]
 
 
 def test_nothing_is_checked_or_accepted_before_there_is_a_registration(scenario):

@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.commands import CommandName
+from rastrainer.journal.entries import Stroke
 from rastrainer.protocol import MAX_TRACE_POINTS, MIN_TRACE_POINTS, Phase, RegistrationMethod
-from rastrainer_simulator.state import EventKind
 from Testing.simulator.landmarked import LANDMARKS, with_landmarks
 from Testing.simulator.training.hand_driven import Trial
 
@@ -97,12 +97,12 @@ def test_a_traced_point_does_not_raise_the_revision_but_a_stroke_does(landmarked
     trial.touch(3)
     before = trial.state.revision
     (event,) = trial.must(CommandName.TRACE, on=True).events
-    assert (event.kind, event.data["on"]) == (EventKind.STROKE, True)
+    assert event.entry == Stroke(True, 0, 1)
     drag(trial, 5)
     assert trial.state.revision == before + 1
     assert trial.must(CommandName.TRACE, on=True).events == ()
     (event,) = trial.must(CommandName.TRACE, on=False).events
-    assert event.data == {"on": False, "kept": 5, "strokes": 1}
+    assert event.entry == Stroke(False, 5, 1)
     assert trial.state.revision == before + 2
 
 

@@ -7,9 +7,9 @@ import pytest
 
 from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
+from rastrainer.journal.entries import AcceptedTouch, PhaseChange, Rejected, Undo
 from rastrainer.protocol import PROCEDURE_PHASES, Phase, TouchRule
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.state import EventKind
 from rastrainer_simulator.texts.texts import ENGLISH, Texts
 from rastrainer_simulator.training.rules import (
     RECORDING_FAILED,
@@ -130,7 +130,7 @@ def test_a_touch_records_where_the_tip_was_and_when(scenario):
     touch = trial.state.touches[0]
     assert (touch.position, touch.sim_time, touch.elapsed) == (tip, 12.5, 2.5)
     assert reply.data["positionMm"] == [MM_PER_M * v for v in tip]
-    assert [event.kind for event in reply.events] == [EventKind.TOUCH]
+    assert [type(event.entry) for event in reply.events] == [AcceptedTouch]
 
 
 @pytest.mark.parametrize(("away_mm", "counts"), [(9.99, True), (10.01, False)])
@@ -154,7 +154,7 @@ def test_a_touch_above_the_skin_is_refused_with_its_height_and_the_direction_to_
     reply = trial.do(CommandName.CAPTURE, trial.fiducial("1"), above_mm=3.2)
     assert reply.message == "3.2 mm above the skin: lower the tip onto point 1."
     assert (trial.state.instruction, trial.state.rejected) == (reply.message, 1)
-    assert reply.events[0].data["clearanceMm"] == pytest.approx(3.2)
+    assert reply.events[0].entry.clearance_mm == pytest.approx(3.2)
 
 
 def test_under_the_papers_rule_a_touch_counts_at_any_height_within_the_radius(scenario):
@@ -185,7 +185,7 @@ def test_a_touch_too_far_away_is_refused_with_the_distance_where_it_does_not_lea
     assert reply.message == f"Too far from point 1: {said}; a touch counts within 10 mm."
     assert trial.state.instruction == reply.message
     assert trial.state.rejected == 1
-    assert [event.kind for event in reply.events] == [EventKind.REJECTED]
+    assert [type(event.entry) for event in reply.events] == [Rejected]
 
 
 def test_a_refusal_gives_way_to_the_instruction_after_some_seconds(scenario):
@@ -223,7 +223,7 @@ def test_undo_removes_the_last_touch_even_after_the_fifteenth(scenario):
     assert trial.state.next_point == "15"
     assert len(trial.state.touches) == 14
     assert trial.state.undone == 1
-    assert {event.kind for event in reply.events} == {EventKind.UNDO, EventKind.PHASE}
+    assert {type(event.entry) for event in reply.events} == {Undo, PhaseChange}
 
 
 def test_undo_without_a_touch_says_what_comes_first(scenario):
@@ -413,7 +413,7 @@ def test_a_touch_that_could_not_be_written_is_undone_and_the_trial_pauses(scenar
     assert trial.state.touches == kept.touches
     assert trial.state.next_point == "4"
     assert "No space left on device" in trial.state.instruction
-    assert reply.events[0].kind is EventKind.PHASE
+    assert isinstance(reply.events[0].entry, PhaseChange)
     trial.do(CommandName.RESUME)
     trial.touch()
     assert len(trial.state.touches) == 4

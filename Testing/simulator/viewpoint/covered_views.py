@@ -34,7 +34,7 @@ LEANING_DEG = 55.0
 SWIVEL_DEG = 80.0
 """The most that the tool leans from the skin's normal, and that the elbow is turned aside."""
 AWAY_M = (0.005, 0.1)
-"""From tip to point while the tip is on its way."""
+"""Distances of tip and point while the tip is on its way."""
 ROOM_M = 0.005
 SKIN_M = 0.0005
 BEHIND_TIP_M = 0.004
@@ -72,8 +72,8 @@ class RandomPostures:
 
     def __init__(self, setup: SimulationSetup, seed: int) -> None:
         self.setup = setup
-        self.head: HeadMesh = read_head_mesh(setup.scenario.head_mesh)
-        self.collision = head_collision(setup.shape, self.head, setup.scenario.furniture)
+        self.head: HeadMesh = read_head_mesh(setup.scenario.head)
+        self.collision = head_collision(setup.shape, self.head, setup.scenario)
         self.kinematics = make_kinematics(setup.robot)
         self.head_to_world = setup.scenario.head_to_world.copy()
         self.head_to_world[:3, 3] /= MM_PER_M
@@ -190,7 +190,7 @@ def _is_hit(
 
 @dataclass
 class Count:
-    """Views of many postures: in how many tip or point are covered, and what is translucent.
+    """Counts of views of many postures in which tip or point are covered, or translucent.
 
     Attributes:
         views: all.
@@ -229,8 +229,8 @@ def count_covered(
 ) -> dict[str, Count]:
     """Count them for `count` postures that touch, and as many on the way, at every nth point.
 
-    Returns it for the best view of the touch as planned ("planned"), for that of the posture
-    ("present"), and for the view along the skin that goes with it ("beside").
+    The counts are for the best view of the touch as planned ("planned"), for the best view of the
+    posture ("present"), and for its view along the skin ("beside").
     """
     postures, cover, views = RandomPostures(setup, seed), ArmCover(setup), TouchViews(setup)
     drawn = DrawnBodies(postures)

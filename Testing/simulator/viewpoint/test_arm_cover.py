@@ -1,4 +1,4 @@
-"""What covers tip or point is not looked at, and where it is, it is seen through."""
+"""Parts of the arm that cover tip or point are translucent."""
 
 from dataclasses import replace
 
@@ -52,7 +52,7 @@ def test_only_marked_points_of_an_open_trial_make_links_translucent(setup, state
     tip, next_point = places_to_see(marked, setup.scenario)
     assert tip == pytest.approx(state.tool_tip_to_world[:3, 3])
     assert next_point == pytest.approx(point[:3])
-    # Landmarks have to be found: what is translucent must not tell where one is.
+    # Landmarks have to be found: no translucent part may tell where one is.
     unmarked = replace(marked, training=replace(training, method=RegistrationMethod.LANDMARKS))
     assert len(places_to_see(unmarked, setup.scenario)) == 1
     assert places_to_see(state, setup.scenario) == []

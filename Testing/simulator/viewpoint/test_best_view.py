@@ -15,20 +15,20 @@ from rastrainer_simulator.viewpoint.best_view import (
     HeldTool,
     PointViews,
     TouchViews,
-    ViewedPoint,
     best_view,
 )
 from Testing.simulator.authoring.planned_heads import setup_of
 
 SEEDS = (None, *(pytest.param(seed, marks=pytest.mark.soak) for seed in (11, 12)))
-"""Of the poses of the head: the nominal one, and two of trials."""
+"""Seeds of the head's poses: the nominal pose, and two of trials."""
 TASKS = ("trial-run", *(f"task-{number}" for number in range(1, 6)))
 
 
 HEADS = (
-    *(("colin27", task) for task in TASKS),
-    *(("egg", task) for task in TASKS[::5]),
-    *(pytest.param("egg", task, marks=pytest.mark.soak) for task in TASKS[1:5]),
+    *(("colin27", task) for task in TASKS[::5]),
+    ("egg", TASKS[0]),
+    *(pytest.param("colin27", task, marks=pytest.mark.soak) for task in TASKS[1:5]),
+    *(pytest.param("egg", task, marks=pytest.mark.soak) for task in TASKS[1:]),
     *(pytest.param("small", task, marks=pytest.mark.soak) for task in TASKS),
 )
 
@@ -40,7 +40,7 @@ def made(request, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def mesh(made):
-    return read_head_mesh(made.scenario.head_mesh)
+    return read_head_mesh(made.scenario.head)
 
 
 @pytest.fixture(scope="module")
@@ -67,7 +67,7 @@ def test_every_touch_is_visible_within_60_degrees_of_the_normal(made, mesh, view
     assert [label for label, view in found.items() if view is None] == []
     for label, point, normal in zip(chosen.labels, chosen.fiducials, normals, strict=True):
         view = found[label]
-        # In the head's own frame, and by another computation than the one that has found it.
+        # Computed in the head's own frame, in another way than the search.
         eye = seen_in_ras(head_to_world, view.eye)
         assert not hides(mesh, eye, point + 2.0 * normal, slack_mm=0.0), label
         assert degrees(eye - point, normal) <= 60.0 + 1e-6, label
@@ -104,7 +104,7 @@ def test_the_view_along_the_skin_rises_or_falls_by_at_most_45_degrees(normal):
     fiducial = (0.5, 0.1, 0.3)
     eyes = np.array([np.add(fiducial, 0.5 * np.array(normal))])
     mark = tuple(np.add(fiducial, 0.002 * np.array(normal)).tolist())
-    views = PointViews(ViewedPoint(fiducial, normal, (mark, mark)), eyes, None)
+    views = PointViews(fiducial, normal, (mark, mark), eyes, None)
 
     def beside(least_deg, most_deg):
         held = HeldTool((0.5, 0.1, 0.9), (0.0, 0.0, -1.0), SightFrom(least_deg, most_deg))
@@ -115,24 +115,9 @@ def test_the_view_along_the_skin_rises_or_falls_by_at_most_45_degrees(normal):
     assert beside(46.0, 91.0) is None
 
 
-def test_the_default_camera_alone_leaves_many_touches_hidden(setup):
-    scenario = setup.scenario
-    mesh = read_head_mesh(scenario.head_mesh)
-    hidden = 0
-    for task in scenario.tasks:
-        normals = outward_normals(mesh, task.fiducials)
-        for point, normal in zip(task.fiducials, normals, strict=True):
-            eyes = [
-                seen_in_ras(scenario.head_to_world, camera.position_mm / MM_PER_M)
-                for camera in scenario.cameras.values()
-            ]
-            hidden += all(hides(mesh, eye, point + 2.0 * normal, 0.0) for eye in eyes)
-    assert hidden > 15
-
-
 def test_the_check_of_a_scenario_names_what_no_view_shows(setup, monkeypatch):
     scenario = setup.scenario
-    planning = PlanningSetup(scenario, read_head_mesh(scenario.head_mesh), setup)
+    planning = PlanningSetup(scenario, read_head_mesh(scenario.head), setup)
     task = scenario.task("task-1")
     monkeypatch.setattr("rastrainer_simulator.authoring.scenario_check.POSES_TRIED", 0)
     assert check_tasks(planning, [task]) == []

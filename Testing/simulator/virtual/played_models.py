@@ -1,4 +1,4 @@
-"""A task played by a model that only looks, or by one that only reads, in simulated time."""
+"""A task played by a model that only looks, or only reads, in simulated time."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import t
 
+from rastrainer.journal.entries import AcceptedTouch
 from rastrainer.protocol import Phase, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
@@ -24,7 +25,7 @@ from rastrainer_simulator.flow.running_presenter import RunningPresenter
 from rastrainer_simulator.flow.session.preferences import PREFERENCES_FILE
 from rastrainer_simulator.flow.session.services import FlowServices
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.state import TOUCH_ERRORS, Answer, EventKind, StepResult, TouchStage
+from rastrainer_simulator.state import TOUCH_ERRORS, Answer, StepResult, TouchStage
 from Testing.sdl_virtual_gamepad import VirtualGamepad
 from Testing.simulator.at_once import at_once
 from Testing.simulator.flow.trainee import Trainee
@@ -110,7 +111,7 @@ class WatchedLandings:
             self._is_in_contact = is_in_contact
             self._deepest_mm = max(self._deepest_mm, MM_PER_M * state.depth)
             self._was_red = self._was_red or state.touch in TOUCH_ERRORS
-        if any(event.kind is EventKind.TOUCH for event in result.events):
+        if any(isinstance(event.entry, AcceptedTouch) for event in result.events):
             elapsed = state.elapsed - self._since
             self.seen.append((self._deepest_mm, self._was_red, self._tries, elapsed))
             self._begin(state.elapsed)
@@ -132,7 +133,7 @@ def play(
 ) -> Outcome:
     """Let a model (one of `MODELS`) play a task, until all is touched or its time is over.
 
-    The seed is that of the head's pose, and of the model's eyes or choices. A model that looks
+    The seed gives the head's pose, and the model's eyes or choices. A model that looks
     works one of the devices of `HANDS`.
     """
     landings = WatchedLandings()
@@ -175,7 +176,7 @@ def play(
 def _at_work(
     setup: SimulationSetup, seed: int, folder: Path, model: str, device: str
 ) -> Iterator[Trainee]:
-    """Yield a trainee with a device, at the start menu of their own simulator."""
+    """Yield a trainee with a device, at the start menu of a new simulator."""
     done: Future[Answer] = Future()
     done.set_result(Answer(0, True))
     services = FlowServices(

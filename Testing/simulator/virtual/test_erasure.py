@@ -24,7 +24,14 @@ def test_no_byte_of_the_trainees_data_is_left(copied, tmp_path, capsys):
     with Study.open(copied / DATABASE) as study:
         ids = [trial.record.trial_id.encode() for trial in study.history("V0002")]
     for name in ("V0001", "V0002"):
-        learned = TutorialOutcome(name, "keyboard", "desktop", 112.0, 2.3, (1.2, 0.8, 0.6))
+        learned = TutorialOutcome(
+            trainee=name,
+            device="keyboard",
+            mode="desktop",
+            duration_s=112.0,
+            first_error_mm=2.3,
+            errors_mm=(1.2, 0.8, 0.6),
+        )
         TraineeHistory(copied / RECORDS).keep_tutorial(learned)
     assert all(word in bytes_below(copied) for word in (b"V0002", *ids))
     words = ["delete-trainee", copied / DATABASE, "V0002", "--records", copied / RECORDS]
@@ -47,7 +54,7 @@ def test_no_byte_of_the_trainees_data_is_left(copied, tmp_path, capsys):
 
 def test_damaged_and_unfinished_journals_of_the_trainee_are_deleted_too(copied):
     folder = copied / RECORDS
-    first = next(p for p in journals(folder) if read_journal(p).header["trainee"] == "V0001")
+    first = next(p for p in journals(folder) if read_journal(p).header.trainee == "V0001")
     content = first.read_bytes()
     first.write_bytes(content[: len(content) // 2])
     erased, unreadable = erase_journals(folder, "V0001")
@@ -57,7 +64,7 @@ def test_damaged_and_unfinished_journals_of_the_trainee_are_deleted_too(copied):
 
 def test_a_journal_with_a_damaged_first_line_is_deleted_by_its_trial_or_named(copied, capsys):
     folder = copied / RECORDS
-    own = next(p for p in journals(folder) if read_journal(p).header["trainee"] == "V0001")
+    own = next(p for p in journals(folder) if read_journal(p).header.trainee == "V0001")
     unknown = folder / "20260101T000000Z_00000000-0000-0000-0000-000000000000.journal"
     unknown.write_bytes(own.read_bytes().replace(b'{"n":1', b"\0\0\0\0\0\0", 1))
     own.write_bytes(b"\0" * 200)
@@ -86,7 +93,7 @@ def test_journals_that_would_be_left_elsewhere_are_named(copied, tmp_path, capsy
 
 def test_a_journal_being_written_stops_the_deletion_before_it_starts(copied):
     folder = copied / RECORDS
-    path = next(p for p in journals(folder) if read_journal(p).header["trainee"] == "V0001")
+    path = next(p for p in journals(folder) if read_journal(p).header.trainee == "V0001")
     journal = Journal.reopened(read_journal(path))
     journal.write([{"kind": "acknowledged", "simTimeS": 0.0}], sync=False)
     with Study.open(copied / DATABASE) as study:

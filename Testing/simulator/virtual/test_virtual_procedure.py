@@ -31,7 +31,7 @@ OFF = transforms.rigid(np.eye(3), np.array([1.0, 0.0, 0.0]))
 
 @pytest.fixture(scope="module")
 def meshes():
-    return read_procedure_meshes(SEEG, SCENARIO.skull_mesh)
+    return read_procedure_meshes(SEEG, SCENARIO.skull.file)
 
 
 def analyzed(meshes, hands, seed=1):

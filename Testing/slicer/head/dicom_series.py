@@ -25,7 +25,7 @@ def write_series(folder, values, spacing, series="1.2.3.4", first=(0.0, 0.0, 0.0
 
 
 def write_slices(folder, datasets, prefix="IM"):
-    """Write each data set into its own file, in another order than that of their places."""
+    """Write each data set into its own file, not in the order of their places."""
     folder.mkdir(exist_ok=True, parents=True)
     for k, each in enumerate(datasets):
         path = folder / f"{prefix}-{(k * 7) % len(datasets):03d}-{k}.dcm"

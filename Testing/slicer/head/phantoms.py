@@ -18,7 +18,7 @@ SAGITTAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 def depth_mm(ras, size=1.0):
     """Return how deep positions (n, 3) are below the skin, mm, roughly; negative outside.
 
-    `size` is that of the head: with 0.5, half as wide, long and high as usual.
+    `size` scales the head: 0.5 makes it half as wide, long and high as usual.
     """
     ras = ras / size
     radius = np.linalg.norm(ras / SEMI_AXES, axis=1)
@@ -42,8 +42,8 @@ def phantom(
 ):
     """Return a head as a volume with partial volume at the skin.
 
-    It is turned in the scanner about S, or stored along `axes`, the columns of (3, 3). As many
-    voxels as the head needs are there, or those of `shape`. A head of half the `size`, with half
+    It is turned in the scanner about S, or stored along `axes`, the columns of (3, 3). It has
+    as many voxels as the head needs, or `shape`. A head of half the `size`, with half
     the air around it, takes a fifth of the time to be found; scalp and skull are as thick as ever.
     """
     spacing = np.array(spacing, dtype=float)

@@ -23,7 +23,7 @@ def add_volume(scene, volume, name):
 def fiducials(size=1.0):
     """Return fifteen positions on the phantom's skin, (15, 3) float, RAS mm, ring by ring.
 
-    `size` is that of `phantom`.
+    `phantom` explains `size`.
     """
     directions = []
     for count, polar_deg in ROWS:

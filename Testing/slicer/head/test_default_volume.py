@@ -29,7 +29,7 @@ def volume():
 @pytest.fixture(scope="module")
 def skin():
     """Positions (n, 3), RAS mm, on the head's skin that the scan covers."""
-    vertices = read_head_mesh(SCENARIO.head_mesh).vertices.astype(float)
+    vertices = read_head_mesh(SCENARIO.head).vertices.astype(float)
     low, high = np.array(COVERED_MM).T
     return vertices[((vertices > low) & (vertices < high)).all(axis=1)]
 
@@ -60,7 +60,7 @@ def test_the_skin_in_the_mri_is_within_a_millimeter_of_the_head(volume, skin):
 
 
 def test_across_the_heads_surface_the_mri_goes_from_dark_to_bright(volume, skin):
-    mesh = read_head_mesh(SCENARIO.head_mesh)
+    mesh = read_head_mesh(SCENARIO.head)
     vertices = mesh.vertices.astype(float)
     low, high = np.array(COVERED_MM).T
     covered = ((vertices > low + 4) & (vertices < high - 4)).all(axis=1)

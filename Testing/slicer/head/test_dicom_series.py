@@ -31,7 +31,7 @@ def placed(axes=AXIAL, spacing=(2.0, 3.0, 4.0)):
 
 
 def expect(volume, values=VALUES, lps_matrix=None):
-    """Check that each voxel is where it was, whichever way the slices are counted."""
+    """Check that each voxel is where it was, with the slices counted in either direction."""
     lps = placed() if lps_matrix is None else lps_matrix
     ijk = np.indices(values.shape).reshape(3, -1)
     ras = (LPS_TO_RAS @ lps @ np.vstack([ijk, np.ones(ijk.shape[1])]))[:3]

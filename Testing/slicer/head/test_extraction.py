@@ -120,7 +120,7 @@ def test_the_skin_is_found_however_the_scan_is_oriented_and_stored(directions, s
     assert mesh.vertices[:, 2].min() == pytest.approx(LOWEST + 1.0, abs=0.5)
 
 
-@pytest.mark.parametrize("seed", range(24))
+@pytest.mark.parametrize("seed", range(8))
 def test_a_head_turned_by_up_to_15_degrees_is_cut_flat_and_closed_at_any_height(seed):
     chance = np.random.default_rng(seed)
     turn = Rotation.from_euler("xyz", chance.uniform(-15.0, 15.0, 3), degrees=True).as_matrix()

@@ -5,6 +5,7 @@ import pytest
 
 from rastrainer.head.mesh import nearest_on_mesh
 from rastrainer.procedure.geometry import bone_ahead
+from rastrainer.scenario.scenario import SkullKind
 from rastrainer.slicer.head.extraction import findHead
 from rastrainer.slicer.head.head_draft import BONE_MM, SCALP_MM, makeDraft
 from rastrainer.slicer.head.volume import HeadSettings, Volume
@@ -95,7 +96,7 @@ def test_the_skull_is_closed_within_the_skin_and_ends_at_the_heads_base(draft):
 
 def test_the_skull_of_a_ct_is_its_bone(ct):
     draft, _warnings = ct
-    assert not draft.is_skull_approximate
+    assert draft.skull_kind is SkullKind.BONE
     upper = draft.skull.vertices[draft.skull.vertices[:, 2] > 0]
     depth = depth_mm(upper, SIZE)
     outer = depth[depth < phantoms.SCALP_MM + 3]
@@ -106,7 +107,7 @@ def test_the_skull_of_a_ct_is_its_bone(ct):
 
 def test_the_skull_of_an_mri_is_one_body_as_deep_below_the_skin_as_its_method_states(mri):
     draft, _warnings = mri
-    assert draft.is_skull_approximate
+    assert draft.skull_kind is SkullKind.APPROXIMATION
     assert draft.skull.euler_characteristic == 2
     assert "an approximation, a shell from 7 to 14 mm below the skin" in draft.method
     depth = depth_mm(draft.skull.vertices[draft.skull.vertices[:, 2] > 0.0], SIZE)

@@ -12,7 +12,7 @@ from rastrainer_headless.volume_files import readVolume
 from Testing.slicer.head.phantoms import CT, DOUBLE_OBLIQUE, MRI, depth_mm, phantom
 
 SIZE = 0.5
-"""Of the phantom's head: a small one tests the same, and faster."""
+"""Size of the phantom's head: a small head tests the same, and faster."""
 
 
 def images(scan):
@@ -54,9 +54,14 @@ def test_mri_with_8_bit_values_keeps_them():
     assert np.median(made.values[depths(made) > 20]) == MRI["brain"]
 
 
-def test_ct_keeps_its_hounsfield_units_within_their_usual_range():
+@pytest.fixture(scope="module")
+def ct():
     scan = phantom({**CT, "bone": 9000.0}, spacing=(2.0, 2.0, 2.0), lowest=-20.0, size=SIZE)
-    made, sentence, _head = images(scan)
+    return images(scan)
+
+
+def test_ct_keeps_its_hounsfield_units_within_their_usual_range(ct):
+    made, sentence, _head = ct
     assert made.values.dtype == np.int16
     assert made.values.max() == HOUNSFIELD[1]
     depth = depths(made)
@@ -77,8 +82,8 @@ def test_anything_far_from_the_head_becomes_air():
     assert (corners[1] < skin.vertices.max(axis=0) + KEPT_MM + 3).all()
 
 
-def test_slicer_reads_the_file_as_it_was_written(tmp_path):
-    made, _sentence, _head = images(phantom(CT, spacing=(2.0, 2.0, 2.0), lowest=-20.0, size=SIZE))
+def test_slicer_reads_the_file_as_it_was_written(ct, tmp_path):
+    made, _sentence, _head = ct
     path = tmp_path / "volume.nrrd"
     write_nrrd(path, made.values, made.ijk_to_ras)
     assert path.stat().st_size < MAX_FILE_BYTES / 2

@@ -1,4 +1,4 @@
-"""What a program has put into an image is not taken for the patient; CT and MRI are told apart."""
+"""Values that a program has put into an image are not tissue; CT differs from MRI."""
 
 import numpy as np
 import pytest
@@ -6,12 +6,12 @@ from scipy import ndimage
 from scipy.spatial.transform import Rotation
 
 from rastrainer.slicer.head.extraction import findHead
-from rastrainer.slicer.head.head_draft import imageOf, makeDraft
-from rastrainer.slicer.head.intensities import cleaned, isHounsfield
+from rastrainer.slicer.head.head_draft import imageOf
+from rastrainer.slicer.head.intensities import cleaned, isHounsfield, skullWarnings
 from rastrainer.slicer.head.volume import HeadSettings, Volume
 from Testing.slicer.head.phantoms import CT, MRI, SCALP_MM, SKULL_MM, depth_mm, phantom
 
-SIZE = 0.6
+SIZE = 0.45
 COARSE = (4.0, 4.0, 4.0)
 LARGE_MRI = {kind: 10.0 * value for kind, value in MRI.items()}
 
@@ -70,7 +70,7 @@ def test_a_ct_is_one_of_air_around_a_head_whatever_was_put_around_it(make):
     values = cleaned(make())[0].values
     assert isHounsfield(values)
     assert np.mean(values < -900.0) > 0.3
-    # No block of a fill: what is tissue is one head's, away from the image's upper corners.
+    # No block of a fill: all tissue belongs to one head, away from the image's upper corners.
     assert (values[:3, :3, -3:] < -900.0).all()
     assert (values[-3:, -3:, -3:] < -900.0).all()
     middle = tuple(n // 2 for n in values.shape)
@@ -122,7 +122,6 @@ def with_odd(volume, count, value):
     "make",
     [
         pytest.param(lambda: with_odd(scan(LARGE_MRI), 9, -32000.0), id="wrapped to negatives"),
-        pytest.param(lambda: with_odd(scan(LARGE_MRI), 60, -3000.0), id="more of them"),
         pytest.param(lambda: with_odd(scan(LARGE_MRI), 9, 65000.0), id="wrapped to positives"),
         pytest.param(lambda: normalized(scan(), False), id="normalized"),
         pytest.param(lambda: normalized(scan(), True), id="normalized within a mask"),
@@ -146,9 +145,10 @@ def test_tissue_keeps_its_contrast_and_the_skin_its_place(make):
 
 
 def test_a_brain_without_its_skull_is_used_with_a_warning_only():
-    whole = phantom(spacing=(3.0, 3.0, 3.0), size=1.0)
-    brain = depths(whole, 1.0) > SCALP_MM + SKULL_MM
+    whole = phantom(spacing=(3.0, 3.0, 3.0), size=0.6)
+    brain = depths(whole, 0.6) > SCALP_MM + SKULL_MM
     stripped = Volume(np.where(brain, whole.values, 0.0).astype(np.float32), whole.ijkToRas)
     for volume, warned in ((whole, False), (stripped, True)):
-        _draft, warnings = makeDraft(volume, hasSkull=False, hasVolume=False)
+        found = findHead(volume, HeadSettings(), lambda _step, _share: None)
+        warnings = skullWarnings(volume, found)
         assert any("No skull is seen" in warning for warning in warnings) == warned

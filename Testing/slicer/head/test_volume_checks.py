@@ -1,4 +1,4 @@
-"""Volumes that are broken or not heads: one error each. Odd but sound ones are used."""
+"""Volumes that are broken or not heads: one error each. Odd but sound volumes are used."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""A file that cannot be used says what it is; one without an orientation is never guessed at."""
+"""A file that cannot be used is named with its kind; a missing orientation is never guessed."""
 
 import gzip
 import struct
@@ -57,7 +57,7 @@ def sheared():
 
 
 def nrrd(*lines):
-    """Return an NRRD file without what is not in its lines."""
+    """Return an NRRD file of these lines only."""
     fields = ("NRRD0004", "type: short", "encoding: raw", "endian: little", *lines)
     return "\n".join(fields).encode() + b"\n\n" + VALUES.tobytes(order="F") * 4
 

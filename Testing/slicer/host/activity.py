@@ -1,4 +1,4 @@
-"""What a module does while nothing happens: each of it costs Slicer time, or a whole repaint."""
+"""Activity of a module while nothing happens: it costs Slicer time, or a whole repaint."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class ActivityWatch(QtCore.QObject):
     Attributes:
         writes: what the module has assigned to widgets, as `name.property` or `name.setProperty`,
             whether or not it was another value.
-        drawn: names of the widgets that were painted or laid out anew.
+        drawn: names of the widgets that were painted, or got another layout.
         ticks: how often timers of the module were over.
         busy_s: processor time of what the module does for timers and widgets.
         clock: periods of `CLOCK_MS` that Qt has counted, however busy the machine is.
@@ -63,7 +63,7 @@ def note_write(written: QtCore.QObject, name: str) -> None:
 
 
 def run_slot(function: Callable[..., Any], arguments: Sequence[Any], is_tick: bool) -> None:
-    """Call a function of the module for a signal, perhaps that of a timer."""
+    """Call a function of the module for a signal, perhaps from a timer."""
     begin = time.thread_time()
     try:
         function(*arguments)

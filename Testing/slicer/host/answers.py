@@ -1,4 +1,4 @@
-"""What the user answers when a dialog opens; the test says so beforehand."""
+"""The user's answers to dialogs; the test prepares them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Message:
 
     Attributes:
         title: of its window.
-        text: what it says.
+        text: its sentence.
         details: what its button Show Details would show.
         answer: name of the button that was pressed.
     """

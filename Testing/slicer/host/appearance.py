@@ -13,7 +13,7 @@ OFFSCREEN_REMARK = "This plugin does not support propagateSizeHints()"
 
 
 def application() -> QtWidgets.QApplication:
-    """Return the one QApplication of this process."""
+    """Return this process's QApplication."""
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
     running = QtWidgets.QApplication.instance()
     if running is not None:
@@ -36,7 +36,7 @@ def _pass_on(_kind: QtCore.QtMsgType, _context: object, text: str) -> None:
 
 
 def light_palette() -> QtGui.QPalette:
-    """Return colors like those of Slicer's light style."""
+    """Return the colors of Slicer's light style."""
     palette = QtGui.QPalette()
     role, group = QtGui.QPalette.ColorRole, QtGui.QPalette.ColorGroup
     gray = QtGui.QColor("#9a9a9a")

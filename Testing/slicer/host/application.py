@@ -22,7 +22,7 @@ NAME = "3D Slicer of the tests"
 
 
 class Application(Checked):
-    """Stands in for `qSlicerApplication`; its folders lie in a temporary one."""
+    """Stands in for `qSlicerApplication`; its folders are temporary."""
 
     measured = frozenset(FACTS["slicer.app"])
     title = "slicer.app"
@@ -141,7 +141,7 @@ class Application(Checked):
 def _settings_of_last_time(folder: Path) -> QtCore.QSettings:
     """Return the settings that an earlier Slicer has left in the folder.
 
-    Qt would hand out what it still has in memory, with its types; a new file is read as a text.
+    Qt would return the values in its memory, with their types; a new file is read as text.
     """
     earlier = sorted(folder.glob("Slicer-*.ini"))
     path = folder / f"Slicer-{len(earlier):03d}.ini"

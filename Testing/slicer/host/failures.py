@@ -1,4 +1,4 @@
-"""What goes wrong in slots, where PythonQt prints it, and in VTK, and Slicer's log of it."""
+"""Errors in slots, which PythonQt prints, and in VTK, and Slicer's log of them."""
 
 from __future__ import annotations
 

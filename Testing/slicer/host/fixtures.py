@@ -24,7 +24,7 @@ def module_widget(host):
 
 @pytest.fixture
 def start_slicer(tmp_path):
-    """Returns a function that starts Slicer, after closing the one before, and opens sections."""
+    """Returns a function that closes the former Slicer, starts another, and opens sections."""
     from Testing.slicer.host.host import Host
 
     running = []

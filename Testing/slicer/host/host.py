@@ -152,7 +152,7 @@ class Host(User):
             raise AssertionError(f"{path} was not written.")
 
     def load_scene(self, path: Path) -> None:
-        """Close the scene and open that of a bundle (.mrb), by Slicer's menu."""
+        """Close the scene and open the scene of a bundle (.mrb), by Slicer's menu."""
         slicer.util.loadScene(str(path), {"clear": True})
         self.process_events()
 
@@ -169,7 +169,7 @@ class Host(User):
         """Press Reload; return the new widget.
 
         As `slicer.util.reloadScriptedModule` does: the module's own file is read anew, but nothing
-        that it imports; what is in the frame is hidden, not deleted, and a new widget is laid in.
+        that it imports; the former widget in the frame is hidden, not deleted.
         """
         self.made_widget()
         self._execute_module()

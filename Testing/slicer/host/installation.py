@@ -20,7 +20,7 @@ _MISSING = object()
 
 
 class Installation:
-    """What was there before, until `remove`."""
+    """Modules and attributes as they were before, until `remove`."""
 
     def __init__(self) -> None:
         self._modules: dict[str, Any] = {}
@@ -60,7 +60,7 @@ class Installation:
         setattr(slicer, name, value)
 
     def remove(self) -> None:
-        """Restore what was there."""
+        """Restore the former state."""
         for name, value in self._modules.items():
             if value is _MISSING:
                 sys.modules.pop(name, None)
@@ -90,7 +90,7 @@ class Home:
         QStandardPaths.setTestModeEnabled(True)
 
     def leave(self) -> None:
-        """Restore what was there."""
+        """Restore the former state."""
         for name, value in self._former.items():
             if value is None:
                 os.environ.pop(name, None)

@@ -136,7 +136,7 @@ class LayoutManager(Checked):
         self._three_d.look_at_everything()
 
     def resetSliceViews(self) -> None:
-        """Center each slice view on what it shows, which moves its slice."""
+        """Center each slice view on its content, which moves its slice."""
         for logic in self._slice_logics.values():
             width, height, _ = logic.GetSliceNode().GetDimensions()
             logic.FitSliceToAll(width, height)

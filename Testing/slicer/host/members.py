@@ -1,6 +1,6 @@
-"""The members that real Slicer's classes have: what panels may use, and what they may not.
+"""The members of real Slicer's classes, which panels may use.
 
-`slicer_members.json` holds what was measured in Slicer 5.13 (Qt 5.15, PythonQt), by listing each
+`slicer_members.json` holds the members measured in Slicer 5.13 (Qt 5.15, PythonQt), by listing each
 class's meta-object and `dir()`; `python -m Testing.slicer.host.members full.json` makes it of the
 full measurement. `UNMEASURED` adds the few classes that the measurement left out.
 """
@@ -36,7 +36,7 @@ class Members:
 
 
 def module_of(class_name: str) -> str | None:
-    """Return the module that has the class; None where Slicer has no such class."""
+    """Return the module that has the class; None if Slicer has no such class."""
     for module in MODULES:
         if class_name in FACTS[module]:
             return module

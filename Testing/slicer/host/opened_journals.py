@@ -1,4 +1,4 @@
-"""Which processes open trials' journals: Slicer's own, or those of its Python."""
+"""The processes that open trials' journals: Slicer itself, or children of its Python."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """`slicer.parameterNodeWrapper`: typed parameters over a node of the scene.
 
-Only what is documented and used: str, int, float, bool, Path, Enum and nodes (one class, or an
+Only documented types that are used: str, int, float, bool, Path, Enum and nodes (one class, or an
 `Optional[Union[...]]` of several), `Annotated` with a default or a check, and widgets bound by
 their property `SlicerParameterName`. It refuses what Slicer refuses (measured in 5.13): a node
 class that is abstract, as soon as a widget is bound to it, and a `Union` without room for None.
@@ -18,7 +18,7 @@ from Testing.slicer.host.parameter_gui import Binding
 
 
 def parameterNodeWrapper(kind: type) -> type:
-    """Turn a class with annotations into one that stores its values in a node."""
+    """Have a class with annotations store its values in a node."""
     hints = typing.get_type_hints(kind, include_extras=True)
     namespace: dict[str, Any] = {"__doc__": kind.__doc__, "allParameters": {}}
     for name, hint in hints.items():

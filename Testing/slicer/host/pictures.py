@@ -11,7 +11,7 @@ GAP = 4
 
 
 def window(panel: QtWidgets.QWidget, layout: LayoutManager) -> QtGui.QPixmap:
-    """Return the panel beside the four views, which are as high as the panel, within reason."""
+    """Return the panel next to the four views, which are as high as the panel, within reason."""
     height = min(max(panel.height() // 2, 240), 420)
     width = height * 4 // 3
     left = panel.width() + GAP

@@ -1,12 +1,12 @@
 """PythonSlicer as it is in a release of Slicer: a launcher with the real Python as its child.
 
 It behaves as CTK's launcher, which Slicer renames: it saves the environment that it was started in
-under `APPLAUNCHER_<level>_…`, puts Slicer's folders before what is there, starts the real Python
-as a child, passes no signal on, and reports a child that a signal has ended as status 1. Killing
+under `APPLAUNCHER_<level>_…`, puts Slicer's folders first in its lists, starts the real Python as
+a child, passes no signal on, and reports a child that a signal has ended as status 1. Killing
 the launcher leaves the real Python alone.
 
-Its packages are Slicer's. Those of the tests lie in the same environment, so that they can be
-imported, too, but not the simulator's: they are only in the private folder of a set-up.
+Its packages are Slicer's. The tests' packages are in the same environment, so that they can be
+imported, too; the simulator's packages are only in the private folder of a set-up.
 """
 
 from __future__ import annotations
@@ -21,8 +21,7 @@ LIBRARIES = Path("lib", "Slicer-5.13")
 PACKAGES = Path("lib", "Python", "lib", "site-packages")
 """Folder of packages in Slicer's Python, below Slicer's own; in PYTHONPATH."""
 LENT_LIBRARIES = ("libstdc++.so.6", "libgcc_s.so.1")
-"""Of this computer; a copy lies in Slicer's folder, so that a process that takes its libraries
-from there can be seen to."""
+"""A library of this computer. A copy lies in Slicer's folder: a test sees which one is loaded."""
 
 NOT_SLICERS = ("rastrainer_simulator", "rastrainer_headless")
 """Packages of the simulator. A private folder is searched without `site`, and so without this."""
@@ -78,8 +77,8 @@ sys.exit(status if status >= 0 else 1)
 def write_python_slicer(home: Path) -> Path:
     """Put the launcher where Slicer has it, in the folder `home`, and return its path.
 
-    The real Python is that of the tests; Slicer's packages are one that says whose it is, and one
-    that hides the simulator's.
+    The real Python runs the tests. Slicer has two packages: the first names its owner, the second
+    hides the simulator's.
     """
     program = home / "bin" / "PythonSlicer"
     if os.name == "nt" or program.exists():

@@ -20,8 +20,8 @@ class RenderCounter:
     """Counts as Slicer was measured to render.
 
     Each change of a transform or of what can be shown is a reason to render, also one to the same
-    matrix, of a hidden node, in any module. What comes in one turn of the event loop makes one
-    rendering.
+    matrix, of a hidden node, in any module. All changes in one turn of the event loop make
+    one rendering.
 
     Attributes:
         count: renderings so far.

@@ -1,4 +1,4 @@
-"""Slicer's module Sample Data: what is registered, and how it comes into the scene."""
+"""Slicer's module Sample Data: registered samples, and their way into the scene."""
 
 from __future__ import annotations
 

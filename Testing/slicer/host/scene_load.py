@@ -1,7 +1,7 @@
 """Counts what the module hands to the scene in each turn: each call by a click or a timer.
 
 The host cannot measure how long Slicer's views work on that, as they are not drawn here. But they
-work in proportion to it, and before the next turn: so what comes in one turn makes a stall.
+work in proportion to it, and before the next turn: so all changes in one turn make one stall.
 """
 
 from __future__ import annotations
@@ -113,7 +113,7 @@ class SceneLoad:
 
 
 def _data_of(node: Any) -> tuple:
-    """Return the surface or image of a node and when it has changed; empty where it has none."""
+    """Return the surface or image of a node and when it has changed; empty if it has none."""
     data = None
     if node.IsA("vtkMRMLModelNode") and not node.GetHideFromEditors():
         data = node.GetPolyData()

@@ -1,4 +1,4 @@
-"""What a user of Slicer does and sees: presses, choices, texts and pictures."""
+"""A user of Slicer: presses, choices, seen texts and pictures."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class User:
     _frame: Any
     _layout: Any
 
-    # What a user does
+    # Actions of a user
 
     def find(self, name: str) -> Any:
         """Return the widget of that name."""
@@ -45,7 +45,7 @@ class User:
         return wrap(found)
 
     def press(self, name: str) -> None:
-        """Press a button; one that is disabled or hidden cannot be pressed."""
+        """Press a button, which must be enabled and visible."""
         self._click(self._usable(name))
 
     def choose(self, name: str, choice: Any) -> None:
@@ -108,7 +108,7 @@ class User:
         """Answer the next dialog that contains `part`: a button, path, text or function."""
         ANSWERS.prepare(part, answer)
 
-    # What a user sees
+    # Sights of a user
 
     def text(self, name: str) -> str:
         """Return the text of a widget."""
@@ -118,8 +118,8 @@ class User:
         """Process events until something is true.
 
         Raises:
-            AssertionError: it is not true in time, or something failed meanwhile; `what` says
-                what was awaited.
+            AssertionError: it is not true in time, or something failed meanwhile; `what` names
+                the condition.
         """
         deadline = time.monotonic() + timeout_s
         while not condition():
@@ -132,14 +132,14 @@ class User:
             self._wait()
 
     def finish_work(self) -> None:
-        """Wait until the module has shown what it computes in the background."""
+        """Wait until the module has shown the results of its background work."""
         work = self.widget.logic.session.work
-        # What was requested begins when the module's timer notices it.
+        # Requested work begins when the module's timer notices it.
         self.widget.onTimeout()
         self.wait_until(lambda: not work.isBusy, "all work is done")
 
     def _now(self) -> str:
-        """Return what may explain why nothing happens."""
+        """Return possible reasons why nothing happens."""
         found = [message.text for message in self.messages]
         work = None if self.widget is None else vars(self.widget.logic.session.work)
         return (
@@ -262,11 +262,11 @@ class User:
         self.process_events()
 
     def _usable(self, name: str) -> Any:
-        """Return a widget, in an open section: a user opens the one that is needed."""
+        """Return a widget, and open its section before, as a user would."""
         self.unfold(name)
         deadline = time.monotonic() + TIMEOUT_S
         # One that was just recreated or unfolded is shown by an event. Slicer's panel scrolls:
-        # no widget is squeezed to nothing where many sections are open.
+        # no widget is squeezed to nothing when many sections are open.
         rounds = 0
         while not _has_area(self.find(name)._qt):
             rounds += 1

@@ -110,7 +110,7 @@ CONNECTIONS = "_connectionsOfHost"
 
 
 class Slot:
-    """Calls a function with as many arguments as it takes; what it raises is caught.
+    """Calls a function with as many arguments as it takes, and catches its errors.
 
     Attributes:
         is_tick: whether it is called by a timer.

@@ -38,7 +38,7 @@ SLICE_MANAGERS = (
     "vtkMRMLLinearTransformsDisplayableManager",
     "vtkMRMLSegmentationsDisplayableManager2D",
 )
-"""Those of Slicer's own views, and of its modules whose nodes ours uses."""
+"""Displayable managers of Slicer's views, and of modules whose nodes our module uses."""
 SLICES = {"Red": "Axial", "Green": "Coronal", "Yellow": "Sagittal"}
 SLICE_COLORS = {
     "Red": (0.95, 0.29, 0.20),
@@ -91,7 +91,7 @@ class View:
         former, self.window = self.window, vtk.vtkRenderWindow()
         self.window.SetOffScreenRendering(1)
         self.window.SetNumberOfLayers(former.GetNumberOfLayers())
-        # Legends have a renderer of their own, in a layer above.
+        # Legends have a separate renderer, in a layer above.
         for renderer in list(former.GetRenderers()):
             former.RemoveRenderer(renderer)
             self.window.AddRenderer(renderer)
@@ -204,7 +204,7 @@ class SliceView(View):
         self._actor.GetProperty().SetDisplayLocationToBackground()
 
     def picture(self, width: int, height: int) -> QtGui.QImage:
-        """Return what the view shows: the slice, as large as fits, and what lies in it."""
+        """Return the picture of the view: the slice, as large as fits, and its content."""
         self._open_window()
         # Markups place their labels by the window's size.
         self.window.SetSize(width, height)

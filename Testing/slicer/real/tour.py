@@ -30,7 +30,7 @@ def main(words: list[str]) -> int:
     parser.add_argument("--only", nargs="+", default=(), help="names of steps; all if left out")
     parser.add_argument("--patience", type=float, default=120.0, help="seconds for each wait")
     parser.add_argument("--window", action="store_true", help="open the trainee's window, too")
-    # Slicer hands on the dashes that separate its own arguments from those of the script.
+    # Slicer passes on the dashes between its arguments and the script's.
     arguments = parser.parse_args([word for word in words if word != "--"])
     if slicer.app.testingEnabled():
         print("Start Slicer without --testing: with it, all questions are answered with no.")

@@ -1,4 +1,4 @@
-"""What is done with a trial that is scored: plan, replay, tables, exports, report, scene."""
+"""Work after a trial is scored: plan, replay, tables, exports, report, scene."""
 
 from __future__ import annotations
 

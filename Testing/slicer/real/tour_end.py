@@ -146,5 +146,5 @@ def _processes(group: int) -> list[str]:
     words = ["ps", "-A", "-o", "pgid=,stat=,args="]
     lines = subprocess.run(words, capture_output=True, text=True, check=True).stdout.splitlines()
     known = [line.split(None, 2) for line in lines]
-    # What has ended and waits to be noticed has a Z.
+    # A Z marks a process that has ended and is not noticed yet.
     return [each[-1] for each in known if int(each[0]) == group and "Z" not in each[1]]

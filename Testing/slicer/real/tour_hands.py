@@ -95,9 +95,9 @@ class Hands:
         """Let Slicer process its events until something is true.
 
         Args:
-            condition: what is waited for.
-            what: the same in words.
-            at_least_s: patience for what may take longer than other things.
+            condition: ends the wait.
+            what: names the condition.
+            at_least_s: patience for slow work.
 
         Raises:
             TourError: it is not true in time, or an unexpected dialog has opened.

@@ -14,7 +14,7 @@ SCENARIO_TIMEOUT_S = 600.0
 
 
 def place(tour: Tour) -> str:
-    """Change the landmarks of the head and undo that; save proposed ones in a copy."""
+    """Change the landmarks of the head and undo that; save proposed landmarks in a copy."""
     hands, text = tour.hands, "landmarksText"
     hands.open("scenarioCollapsibleButton", "newScenarioCollapsibleButton", "landmarksGroupBox")
     table = hands.find("landmarksTable")

@@ -8,7 +8,7 @@ from tour_stage import Tour
 PROCEDURE = "Biopsy"
 STRUCTURE = "Superior sagittal sinus (schematic)"
 SECOND_LINE_MM = (45.0, 44.0, 62.0), (34.0, 26.0, 26.0)
-"""Entry and target of a line beside the scenario's own; the robot need not reach it."""
+"""Entry and target of a line next to the scenario's line; the robot need not reach it."""
 CHECKPOINT = 3
 TITLE = "Procedure of the tour"
 SCENARIO_TIMEOUT_S = 600.0

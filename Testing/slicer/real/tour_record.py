@@ -22,7 +22,7 @@ class Step:
     """One step of the tour.
 
     Attributes:
-        name: what was done.
+        name: of the action.
         ok: whether all was as it should be.
         seconds: how long it took.
         note: what there is to say about it; why not, where it is not well.

@@ -1,4 +1,4 @@
-"""What the steps of the tour share: hands, dialogs, separate studies, the trainee's process."""
+"""Shared by the steps of the tour: hands, dialogs, separate studies, the trainee's process."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ class Tour:
         shutil.rmtree(folder)
 
     def touch(self, first: int, last: int) -> str:
-        """Let the trainee touch points, and wait until Slicer shows them; return what it says."""
+        """Let the trainee touch points, and wait until Slicer shows them; return its sentence."""
         hands = self.hands
         self.play("--points", str(first), str(last), "--slip-at", str(SLIP_AT))
         hands.wait_until(lambda: hands.find("pointsProgressBar").value == last, "they are shown")

@@ -1,7 +1,7 @@
 """A trainee in a separate process, over OpenIGTLink: touches, and feeds drill and instrument.
 
 Run by Slicer's own Python, which the tour does. The journal of the trial says where the head
-stands, which a person sees on the screen. Depths are those of the plan, as a person reads them.
+stands, which a person sees on the screen. Depths are measured along the plan.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 ABOVE_MM, SINK_MM, SLIP_MM = 40.0, 1.0, 6.0
-"""How far above the skin the tip travels, below it is sent, and beside it is at a slip."""
+"""Distances of the tip: above the skin in travel, below it in a touch, to the side at a slip."""
 NEAR_ENOUGH_MM = 1.5
 TRAVEL_MM_S, TOUCH_MM_S = 400, 100
 LOOK_EVERY_S = 0.2
@@ -82,9 +82,9 @@ def _places(scenario: Any, header: dict[str, Any]) -> list[tuple[Any, Any]]:
     from rastrainer import transforms
     from rastrainer.trial.score_reference import fiducial_normals
 
-    head_to_world = scenario.perturbed_head_to_world(header["seed"])
-    fiducials = transforms.apply(head_to_world, scenario.task(header["task"]).fiducials)
-    normals = fiducial_normals(scenario, header["task"]) @ head_to_world[:3, :3].T
+    head_to_world = scenario.perturbed_head_to_world(header.seed)
+    fiducials = transforms.apply(head_to_world, scenario.task(header.task).fiducials)
+    normals = fiducial_normals(scenario, header.task) @ head_to_world[:3, :3].T
     return list(zip(fiducials, normals, strict=True))
 
 
@@ -94,9 +94,9 @@ def _checkpoint(scenario: Any, header: dict[str, Any], number: int) -> tuple[Any
 
     from rastrainer import transforms
 
-    head_to_world = scenario.perturbed_head_to_world(header["seed"])
-    position = scenario.procedure(header["procedure"]["name"]).checkpoints[number - 1].position
-    outward = np.asarray(position) - scenario.target_position
+    head_to_world = scenario.perturbed_head_to_world(header.seed)
+    position = scenario.procedure(header.procedure.name).checkpoints[number - 1].position
+    outward = np.asarray(position) - scenario.target.position_ras
     outward /= np.linalg.norm(outward)
     return transforms.apply(head_to_world, position), head_to_world[:3, :3] @ outward
 
@@ -106,16 +106,16 @@ def _depth(scenario: Any, header: dict[str, Any], is_drill: bool) -> float:
     from rastrainer.procedure.checks import planned_bone
     from rastrainer.procedure.plan import read_procedure_meshes
 
-    procedure = scenario.procedure(header["procedure"]["name"])
+    procedure = scenario.procedure(header.procedure.name)
     line = procedure.trajectories[0]
     if not is_drill:
         return STAND_OFF_MM + line.length_mm
-    bone = planned_bone(line, read_procedure_meshes(procedure, scenario.skull_mesh).skull)
+    bone = planned_bone(line, read_procedure_meshes(procedure, scenario.skull.file).skull)
     return STAND_OFF_MM + bone.inner_mm + PAST_INNER_MM
 
 
 class TourTrainee:
-    """What a trainee does, by commands; each waits until it is done.
+    """Actions of a trainee, by commands; each waits for its end.
 
     `patience_s` is how long one wait may take.
     """
@@ -149,7 +149,7 @@ class TourTrainee:
         self._move(above, TRAVEL_MM_S)
 
     def feed_to(self, depth_mm: float) -> None:
-        """Feed what is in the guide until it is so far beyond the guide's tip."""
+        """Feed drill or instrument until it is so far beyond the guide's tip."""
         fed = self._fed(-1.0)
         while depth_mm - fed > FED_MM:
             seconds = min((depth_mm - fed) / FEED_MM_S, LONGEST_FEED_S)

@@ -1,1 +1,1 @@
-"""Reading and writing files safely: what comes from outside is hostile until checked."""
+"""Reading and writing files safely: content from outside is hostile until checked."""

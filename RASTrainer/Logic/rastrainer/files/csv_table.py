@@ -49,7 +49,7 @@ class CsvTable:
     ) -> list[tuple[int, dict[str, str]]]:
         """Return the line number and the named cells of each row.
 
-        The header may have other columns, in any order. Decimal commas in the required ones become
+        The header may have other columns, in any order. Decimal commas in required columns become
         points.
         """
         wanted = [*optional, *required]
@@ -145,7 +145,6 @@ def _remarks(lines: list[str]) -> tuple[dict[str, str], int]:
 def number_in(
     path: object, line: int, cells: dict[str, str], column: str, minimum: float, maximum: float
 ) -> float:
-    """Return the number in a cell."""
     try:
         value = float(cells[column])
     except ValueError:

@@ -5,11 +5,10 @@ Text and both binary forms are read, with any elements, properties and lists, in
 
 from __future__ import annotations
 
-import io
 import os
 import re
 import struct
-from collections.abc import Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,7 +22,6 @@ MAX_ROWS = 4_000_000
 LPS_TO_RAS = np.array([-1.0, -1.0, 1.0])
 
 _HEADER_BYTES = 64 * 2**10
-_LINE_BYTES = 64 * 2**10
 _HEADER = re.compile(rb"ply *(\r\n|\n|\r).*?\1end_header *\1", re.DOTALL)
 _SPACE = re.compile(r"comment\b.*\bSPACE=(\w+)", re.IGNORECASE)
 _BYTE_ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
@@ -39,7 +37,7 @@ _TYPES = {
 }
 
 Column = np.ndarray | list[np.ndarray]
-"""The numbers of a property, (n,); of one that holds lists, (n, k) if all are equally long."""
+"""The numbers of a property, (n,); (n, k) of lists that are all equally long."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +80,6 @@ class _Element:
 
 
 def read_ply(path: str | os.PathLike[str]) -> PlyFile:
-    """Return the content of a PLY file."""
     content = read_bytes(path, LIMIT_BYTES)
     header = _HEADER.match(content, 0, _HEADER_BYTES)
     try:
@@ -100,7 +97,7 @@ def read_ply(path: str | os.PathLike[str]) -> PlyFile:
     spaces = [match[1].upper() for match in map(_SPACE.match, lines) if match]
     try:
         body = content[header.end() :]
-        columns = _binary(elements, body, order) if order else _text(elements, body)
+        columns = _columns(elements, body, order)
     except (ValueError, LookupError, OverflowError, struct.error):
         raise InputError(
             f"The PLY file {path} is cut short, damaged or has bytes left over: it does not hold "
@@ -135,57 +132,51 @@ def _described(lines: list[str]) -> tuple[str, list[_Element]]:
     return order, elements
 
 
-def _text(elements: list[_Element], body: bytes) -> dict[str, dict[str, Column]]:
-    lines = _words(io.TextIOWrapper(io.BytesIO(body), "latin-1"))
-    read: dict[str, dict[str, Column]] = {}
-    for element in elements:
-        table: list[list] = [[] for _ in element.properties]
-        for _ in range(element.rows):
-            words = next(lines, [])
-            at = 0
-            for column, cells in zip(element.properties, table, strict=True):
-                number = float if column.type in "fd" else int
-                if column.length:
-                    count = int(words[at])
-                    at += 1 + count
-                    if not 0 <= count < at <= len(words):
-                        raise ValueError
-                    values = [number(word) for word in words[at - count : at]]
-                    cells.append(np.array(values, column.type))
-                else:
-                    cells.append(number(words[at]))
-                    at += 1
-        read[element.name] = _columns(element, table)
-    if next(lines, None) is not None:
-        raise ValueError
-    return read
-
-
-def _words(text: io.TextIOBase) -> Iterator[list[str]]:
-    """Yield the words of each line that is not empty; raise ValueError for an endless one."""
-    while line := text.readline(_LINE_BYTES):
-        if len(line) == _LINE_BYTES:
-            raise ValueError
-        if words := line.split():
-            yield words
-
-
-def _binary(elements: list[_Element], body: bytes, order: str) -> dict[str, dict[str, Column]]:
+def _columns(elements: list[_Element], body: bytes, order: str) -> dict[str, dict[str, Column]]:
+    """Return the columns of all elements; `order` is empty for text."""
+    words = [] if order else body.split()
     at = 0
+
+    def take(type_: str, count: int) -> np.ndarray:
+        nonlocal at
+        start, at = at, at + count * (struct.calcsize(type_) if order else 1)
+        if not start <= at <= len(body if order else words):
+            raise ValueError
+        if order:
+            return np.frombuffer(body[start:at], order + type_)
+        number = float if type_ in "fd" else int
+        return np.array([number(word) for word in words[start:at]], type_)
+
     read: dict[str, dict[str, Column]] = {}
     for element in elements:
-        table = _even_table(element, body, at, order)
+        properties = element.properties
+        table = _even_table(element, body, at, order) if order else None
         if table is not None:
             at += table.nbytes
             read[element.name] = {
-                column.name: table[f"values{number}"]
-                for number, column in enumerate(element.properties)
+                column.name: table[f"values{number}"] for number, column in enumerate(properties)
             }
-        else:
-            read[element.name], at = _uneven_table(element, body, at, order)
-    if body[at:].strip():
+            continue
+        read[element.name] = _uneven_columns(element, take)
+    if body[at:].strip() if order else words[at:]:
         raise ValueError
     return read
+
+
+def _uneven_columns(element: _Element, take: Callable[[str, int], np.ndarray]) -> dict[str, Column]:
+    """Return the columns of an element, read row by row."""
+    columns: dict[str, Column] = {}
+    cells: list[list] = [[] for _ in element.properties]
+    for _ in range(element.rows):
+        for column, values in zip(element.properties, cells, strict=True):
+            if column.length:
+                values.append(take(column.type, int(take(column.length, 1)[0])))
+            else:
+                values.append(take(column.type, 1)[0])
+    for column, values in zip(element.properties, cells, strict=True):
+        is_even = not column.length or len({len(value) for value in values}) == 1
+        columns[column.name] = np.array(values, column.type) if is_even else values
+    return columns
 
 
 def _even_table(element: _Element, body: bytes, at: int, order: str) -> np.ndarray | None:
@@ -214,34 +205,6 @@ def _even_table(element: _Element, body: bytes, at: int, order: str) -> np.ndarr
         return np.empty(0, fields)
     table = np.frombuffer(body, np.dtype(fields), element.rows, at)
     return table if all((table[name] == count).all() for name, count in lists) else None
-
-
-def _uneven_table(
-    element: _Element, body: bytes, at: int, order: str
-) -> tuple[dict[str, Column], int]:
-    """Return the columns read row by row, and where they end."""
-    table: list[list] = [[] for _ in element.properties]
-    for _ in range(element.rows):
-        for column, cells in zip(element.properties, table, strict=True):
-            count = 1
-            if column.length:
-                (count,) = struct.unpack_from(order + column.length, body, at)
-                at += struct.calcsize(column.length)
-            values = np.frombuffer(body, order + column.type, count, at) if count else _NO_NUMBERS
-            at += values.nbytes
-            cells.append(values if column.length else values[0])
-    return _columns(element, table), at
-
-
-_NO_NUMBERS = np.empty(0, "i4")
-
-
-def _columns(element: _Element, table: list[list]) -> dict[str, Column]:
-    columns: dict[str, Column] = {}
-    for column, cells in zip(element.properties, table, strict=True):
-        is_even = not column.length or len({len(cell) for cell in cells}) == 1
-        columns[column.name] = np.array(cells, column.type) if is_even else cells
-    return columns
 
 
 def write_point_cloud(path: str | os.PathLike[str], points: np.ndarray, frame: str) -> None:

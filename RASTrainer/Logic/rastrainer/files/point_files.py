@@ -51,7 +51,7 @@ def write_markups(
 ) -> None:
     """Write points in RAS mm as a markups file for Slicer, whole or not at all.
 
-    With a name, two points are the ends of a line.
+    `line_name` makes two points the ends of a line.
     """
     labels = point_list.labels or tuple("" for _ in point_list.points)
     control_points = [
@@ -142,8 +142,8 @@ _AXES = (("x", "y", "z"), ("r", "a", "s"), ("l", "p", "s"))
 def read_points(path: str | os.PathLike[str]) -> PointList:
     """Return the points of a file in mm; a name in `.json` means markups, in `.ply` a point cloud.
 
-    What is known to be in RAS or LPS is returned in RAS: markups, Slicer's `.fcsv` and its tables
-    with columns r, a, s or l, p, s, and a point cloud that says so. Columns x, y, z are taken as
+    Points known to be in RAS or LPS are returned in RAS: from markups, Slicer's `.fcsv`, tables
+        with columns r, a, s or l, p, s, and point clouds that say so. Columns x, y, z are taken as
     they are; the column `label` is optional. A point cloud has no labels.
     """
     name = os.fspath(path).lower()
@@ -159,7 +159,7 @@ def read_points(path: str | os.PathLike[str]) -> PointList:
 
 
 def _from_csv(table: CsvTable) -> tuple[tuple[str, ...], np.ndarray, dict[int, str]]:
-    """Return labels and points, (n, 3) float, of a table, and what it leaves out."""
+    """Return labels and points, (n, 3) float, of a table, and the points left out."""
     axes = next((axes for axes in _AXES if {*axes} <= {*table.header}), _AXES[0])
     limit = COORDINATE_LIMIT_MM
     labels, points, left_out = [], [], {}

@@ -31,7 +31,10 @@ class PointList:
     left_out: Mapping[int, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        points = np.array(self.points, dtype=float)
+        try:
+            points = np.array(self.points, dtype=float)
+        except (TypeError, ValueError, OverflowError):
+            raise InputError("Points must be numbers, three for each (x, y, z in mm).") from None
         if self.left_out and len(points) == 0:
             raise InputError("All its points are deselected or not placed in Slicer.")
         if points.ndim != 2 or points.shape[1] != 3 or len(points) == 0:
@@ -60,6 +63,14 @@ class PointList:
     @property
     def left_out_names(self) -> tuple[str, ...]:
         return tuple(label or str(place + 1) for place, label in sorted(self.left_out.items()))
+
+
+def points_of(points: object, problem: str) -> np.ndarray:
+    """Return a read-only copy of points, (n, 3) float, mm; `problem` begins the error."""
+    try:
+        return PointList((), points).points  # type: ignore[arg-type]
+    except InputError as error:
+        raise InputError(f"{problem}: {error}") from None
 
 
 def pair(moving: PointList, fixed: PointList) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:

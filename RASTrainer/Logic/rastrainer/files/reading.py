@@ -1,4 +1,4 @@
-"""Read untrusted files: only regular ones of limited size, as text, JSON or XML."""
+"""Read untrusted files as text, JSON or XML: only regular files of limited size."""
 
 from __future__ import annotations
 
@@ -18,7 +18,6 @@ T = TypeVar("T")
 
 
 def read_bytes(path: str | os.PathLike[str], limit_bytes: int) -> bytes:
-    """Return the content of a file."""
     try:
         # Opening a pipe would wait for its writer.
         flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
@@ -115,13 +114,12 @@ def path_beside(file: Path, relative: Path, key: str) -> Path:
 
 
 def failure_reason(error: Exception) -> str:
-    """Return the system's description of a failure."""
     strerror = getattr(error, "strerror", None)
     return strerror.lower() if strerror else "its name is not valid"
 
 
 def printable_name(path: object) -> str:
-    """Return a path for a sentence, escaped where it holds what cannot be printed."""
+    """Return a path for a sentence; characters that cannot be printed are escaped."""
     return ascii(str(path)) if not str(path).isprintable() else str(path)
 
 

@@ -13,7 +13,7 @@ import shutil
 import stat
 import uuid
 from collections.abc import Mapping
-from pathlib import Path, PurePath
+from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
@@ -57,12 +57,8 @@ def write_bytes(path: str | os.PathLike[str], content: bytes, is_private: bool =
 
 
 def write_json(path: str | os.PathLike[str], value: object, is_private: bool = False) -> None:
-    """Write JSON; paths are written with slashes."""
-    text = json.dumps(
-        value, indent=2, ensure_ascii=False, allow_nan=False, default=PurePath.as_posix
-    )
-    text += "\n"
-    write_text(path, text, is_private)
+    text = json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False)
+    write_text(path, text + "\n", is_private)
 
 
 def rounded(value: Any, decimals: Mapping[str, int], key: str = "") -> Any:

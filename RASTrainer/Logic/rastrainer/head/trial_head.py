@@ -1,7 +1,7 @@
 """The pose of the head in a trial, near the nominal one, and the shift of its skin.
 
-Only the simulator knows either. Skin and scalp move on the skull when the head is laid down
-otherwise, when its holder is tightened or tape is stuck to it, while bone, brain and targets stay.
+Only the simulator knows either. Skin and scalp move on the skull when the head is positioned
+differently, its holder is tightened or tape is stuck to it; bone, brain and targets stay.
 The shift is smooth, seeded and of a stated size: a sum of waves of random directions (random
 Fourier features), a normal field in space whose covariance is Gaussian in the distance: neighboring
 places move alike. Its size and its reach are stated, not measured.
@@ -18,7 +18,7 @@ from numpy.random import default_rng
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.head.mesh import HeadMesh
+from rastrainer.head.mesh import HeadMesh, nearest_vertices
 from rastrainer.json_checks import number, whole_number
 from rastrainer.protocol import SKIN_LIMIT_MM
 
@@ -69,7 +69,7 @@ BASE_MM = 30.0
 """So far above the flat base, where the images end, the shift grows from none to all."""
 _Amount = Annotated[float, number(0, SKIN_LIMIT_MM, "mm")]
 INVERSIONS = 8
-"""Steps by which a shift is taken back; each leaves a part of what was wrong, 4 % for 2 mm."""
+"""Steps that undo a shift; each leaves a part of the error, 4 % for 2 mm."""
 
 
 @dataclass(frozen=True)
@@ -123,8 +123,8 @@ class SkinShift:
         """
         if self.indentation_mm == 0.0:
             return points + self.moved(points, mesh)
-        squares = np.sum(mesh.vertices**2, axis=1) - 2.0 * points @ mesh.vertices.T
-        return self.touched(points, mesh.vertex_normals[squares.argmin(axis=1)], mesh)
+        _, nearest = nearest_vertices(mesh, points)
+        return self.touched(points, mesh.vertex_normals[nearest], mesh)
 
     def unmeasured(self, points: np.ndarray, mesh: HeadMesh) -> np.ndarray:
         """Return the points of the images that `measured` puts at points (n, 3), RAS mm."""

@@ -26,13 +26,13 @@ from rastrainer.head.mesh import HeadMesh
 from rastrainer.json_checks import number
 
 MAX_GRAY_LEVEL = 32768.0
-"""Of window and level: as far as the values of a volume go."""
+"""Limit of window and level: the largest value of a volume."""
 
 KEPT_MM = 6.0
-"""Around the head; what lies farther away may be noise, a frame, a text or a wrapped nose."""
+"""Margin kept around the head; noise, a frame, text or a wrapped nose may lie beyond it."""
 
 MIN_COVERED_SHARE = 0.5
-"""Share of the head's vertices that lie in the images: scans often lack the nose and the ears."""
+"""Least share of the head's vertices within the images: scans often lack the nose and the ears."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,8 @@ MAX_ORIGIN_MM = 2000.0
 
 SPACINGS_MM = (0.1, 10.0)
 MIN_AXIS_VOLUME = 0.1
-"""Of the box spanned by unit steps along the axes; smaller means almost coplanar axes."""
+"""Least volume of the box spanned by unit steps along the axes; a smaller box has almost coplanar
+axes."""
 
 _MAGIC = re.compile(r"NRRD000[1-5]")
 _MAX_HEADER_BYTES = 16_384

@@ -169,7 +169,7 @@ _T = TypeVar("_T", bound="_NumberedText")
 
 @dataclass(frozen=True)
 class _NumberedText:
-    """What a command and its answer have in common: the sender's 32-bit number and the name.
+    """The common part of a command and its answer: the sender's 32-bit number and the name.
 
     The name has at most 128 ASCII characters; bodies, arguments or results, are JSON objects.
     """

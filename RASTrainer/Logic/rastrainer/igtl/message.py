@@ -1,4 +1,4 @@
-"""Messages with header, extended header, content and metadata: to bytes, and from untrusted ones.
+"""Messages with header, extended header, content and metadata: to bytes, and from untrusted bytes.
 
 Only the types in `CONTENTS` can be sent. Slicer crashes on most types with an underscore in their
 name, so the type is never an argument: it follows from the class of the content.

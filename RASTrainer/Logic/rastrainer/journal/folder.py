@@ -2,7 +2,7 @@
 
 A simulator that records in a folder holds the lock of its lock file, which describes the simulator.
 The lock ends with the process and is not inherited: while it is held, that process is running.
-Beside the journals, the folder has the files of tutorials.
+The folder also has the files of tutorials.
 """
 
 from __future__ import annotations
@@ -108,7 +108,8 @@ def read_open_holder(descriptor: int) -> FolderHolder:
 
 SUFFIX = ".journal"
 TUTORIAL_SUFFIX = ".tutorial"
-"""Of the files of tutorials: each is one line that names the trainee, like a journal's first."""
+"""Ends the names of tutorials' files: each is one line that names the trainee, like a journal's
+first."""
 _ZEROS = bytes(1 << 20)
 
 
@@ -135,7 +136,7 @@ def erase_journals(
     """Overwrite and delete every journal and tutorial of a trainee, including damaged journals.
 
     A journal names the trainee in its first line, and its trial's UUID in the file's name. Return
-    the deleted paths, and those of files that name no trainee.
+    the deleted paths, and the paths of files that name no trainee.
     """
     if not folder.is_dir():
         raise InputError(f"There is no folder {folder} with journals.")
@@ -189,7 +190,7 @@ _NUMBER = re.compile(
 
 @dataclass(frozen=True, order=True)
 class JournalNumber:
-    """The number of a trial among those of its folder; the trials before it have smaller ones.
+    """The number of a trial within its folder; earlier trials have smaller numbers.
 
     Attributes:
         number: from 1; 0 if it is unknown.

@@ -1,9 +1,9 @@
 """A trial's journal: stamped and hashed lines, and whether a file is intact, cut short or altered.
 
-A line is a JSON object with its own hash and that of the previous line:
+A line is a JSON object with its own hash and the previous line's:
 `{"n":…,"previous":"…",…,"sha256":"…"}` and a newline. `n` counts from 1, `previous` is the `sha256`
-of the previous line (64 zeros in the first), and `sha256` is that of the line's bytes before its
-comma, closed by `}`. The times of an entry are simulated time, the monotonic clock and UTC.
+of the previous line (64 zeros in the first), and `sha256` is the hash of the line's bytes
+before its comma, closed by `}`. Between them are an entry and its times, see `entries`.
 """
 
 from __future__ import annotations
@@ -11,19 +11,23 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
-import time
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
-from datetime import datetime, timezone
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 from typing import Any, BinaryIO
 
 from rastrainer.errors import InputError
+from rastrainer.journal.entries import (
+    FORMAT,
+    FORMAT_VERSION,
+    LINES_PER_PAUSE,
+    JournalHeader,
+    Line,
+    read_lines,
+)
 from rastrainer.json_checks import MAX_DEPTH, decode_finite_json
 
-FORMAT = "rastrainer-trial-journal"
-FORMAT_VERSION = 1
 NO_LINE = "0" * 64
 """Hash before the first line."""
 MAX_LINE_BYTES = 1 << 20
@@ -31,27 +35,13 @@ MAX_LINE_DEPTH = MAX_DEPTH + 8
 """A line may contain a message of the maximum depth."""
 
 SEED_SUFFIX = ".seed"
-"""Of the file beside the journal of an open trial that holds the seed of the head's pose."""
+"""Ends the name of the file that holds the seed of the head's pose while a trial is open."""
 
 FIRST_BYTES = f'{{"n":1,"previous":"{NO_LINE}","kind":"header","format":"{FORMAT}",'.encode()
 """The start of every journal."""
 
 _SEAL = b',"sha256":"'
 _SEAL_LENGTH = len(_SEAL) + 64 + len(b'"}')
-
-
-def stamp(tick: int, sim_time: float) -> dict[str, Any]:
-    """Return the times that every entry of a journal carries, in s and as ISO 8601."""
-    return {
-        "tick": tick,
-        "simTimeS": sim_time,
-        "monotonicS": time.monotonic(),
-        "utc": iso(datetime.now(timezone.utc)),
-    }
-
-
-def iso(moment: datetime) -> str:
-    return moment.isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
 
 def file_stamp(utc: str) -> str:
@@ -102,8 +92,6 @@ def decode_line(line: bytes, n: int, previous: str) -> dict[str, Any]:
 
 ENDS = frozenset({"registered", "aborted", "stopped"})
 """Kinds of entries that complete a trial."""
-LINES_PER_PAUSE = 10
-"""They take about 0.1 ms."""
 _STEPS = frozenset({"header", "phase", "continued", *ENDS})
 
 
@@ -119,13 +107,12 @@ class Integrity(str, Enum):
 class JournalReading:
     """The content of a journal.
 
-    The header is completed by the `seed` of the head's pose, which is as secret as the pose while
-    the trial is open: its last entry reveals it, until then the file beside the journal holds it.
-
     Attributes:
-        entries: of the complete lines, up to the first altered one.
+        entries: JSON objects of the complete lines, up to the first altered one.
         end: number of bytes of these lines.
         sentence: the integrity in words.
+        seed: of the head's pose. It is as secret as the pose while the trial is open: its last
+            entry reveals it; until then a separate file holds it (`SEED_SUFFIX`).
     """
 
     path: Path
@@ -133,13 +120,21 @@ class JournalReading:
     entries: tuple[dict[str, Any], ...]
     end: int
     sentence: str
+    seed: int | None = None
+
+    def lines(self, pause: Callable[[], None] = lambda: None) -> Iterator[Line]:
+        """Yield the entries with their times, the header with the seed; `pause` as in
+        `read_journal`.
+        """
+        first = [{**entry, "seed": self.seed} for entry in self.entries[:1]]
+        yield from read_lines((*first, *self.entries[1:]), pause)
 
     @property
-    def header(self) -> dict[str, Any]:
-        """The first entry."""
-        if not self.entries:
+    def header(self) -> JournalHeader:
+        header = next(self.lines(), None)
+        if header is None or not isinstance(header.entry, JournalHeader):
             raise InputError(f"{self.path} has no complete line.")
-        return self.entries[0]
+        return header.entry
 
     def of_kind(self, *kinds: str) -> list[dict[str, Any]]:
         return [entry for entry in self.entries if entry["kind"] in kinds]
@@ -159,9 +154,7 @@ def read_journal(path: Path, pause: Callable[[], None] = lambda: None) -> Journa
     if seed is None:
         with contextlib.suppress(OSError, ValueError):
             seed = int(path.with_suffix(SEED_SUFFIX).read_text("ascii"))
-    if reading.entries and seed is not None:
-        reading.header["seed"] = seed
-    return reading
+    return replace(reading, seed=seed)
 
 
 def revealed_seed(entries: Iterable[Mapping[str, Any]]) -> int | None:

@@ -3,17 +3,33 @@
 from __future__ import annotations
 
 import contextlib
-import math
 from array import array
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, ClassVar, NamedTuple, TypeVar
+from typing import ClassVar, NamedTuple, TypeVar
 
 import numpy as np
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
+from rastrainer.journal.entries import (
+    AcceptedCheckpoint,
+    AcceptedTouch,
+    CameraChange,
+    Continued,
+    Entry,
+    JournalHeader,
+    Line,
+    PhaseChange,
+    ProximityChange,
+    Registered,
+    Rejected,
+    Sample,
+    Stroke,
+    TracePoint,
+    Undo,
+)
 from rastrainer.journal.folder import journals_of
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.motion.trajectory import Interval, Touch, Trajectory
@@ -27,18 +43,18 @@ class Recording:
     """Collects a journal's entries; `trajectory` is the result so far.
 
     The simulator adds entries while the trial runs, a reader adds them from the file: the numbers
-    are the same. Of a trial with a procedure only the touching counts: in the phases after it the
-    time stands still, as in a pause, and what the tool does in them is left out.
+    are the same. Only the touching counts, not the procedure after it: there the time stands still,
+    as in a pause, and the tool's movements are left out.
     """
 
-    STANDING_STILL: ClassVar = frozenset(phase.value for phase in (Phase.PAUSED, *PROCEDURE_PHASES))
+    STANDING_STILL: ClassVar = frozenset((Phase.PAUSED, *PROCEDURE_PHASES))
     """Phases in which the trajectory's time stands still."""
 
     def __init__(self) -> None:
-        self._start_s = self._tick_s = 0.0
+        self.start_s = self._tick_s = 0.0
         self._paused_s = 0.0
         self._paused_since: float | None = None
-        # One row per sample: time in s, tip, clearance and depth in mm (NaN if not recorded).
+        # One row per sample: time in s, tip, clearance and depth in mm.
         # Half an hour takes 4 MB.
         self._samples = array("d")
         self._touches: list[Touch] = []
@@ -53,61 +69,57 @@ class Recording:
         self._shortest_path: float | None = None
 
     @classmethod
-    def of(cls: type[_T], entries: Iterable[Mapping[str, Any]]) -> _T:
-        """Return the recording of entries."""
+    def of(cls: type[_T], lines: Iterable[Line]) -> _T:
         recording = cls()
-        try:
-            for entry in entries:
-                recording.add(entry)
-        except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
-            raise InputError(f"A journal entry is malformed ({error!r}).") from None
+        for line in lines:
+            recording.add(line)
         return recording
 
-    def add(self, entry: Mapping[str, Any]) -> None:
-        """Add one entry."""
-        kind = entry["kind"]
-        if kind == "sample":
-            self._add_sample(entry)
-        elif kind == "header":
-            self._tick_s = entry["tickS"]
-            self._start_s = entry["simTimeS"] - self._tick_s
-            # Absent where the scenario does not give it.
-            self._shortest_path = entry.get("shortestPathMm")
-        elif kind == "phase":
-            self._phase(entry)
-        elif kind == "continued":
-            # The time of an interruption is excluded.
-            if entry["phase"] == Phase.PAUSED.value and self._paused_since is None:
-                self._paused_since = entry["sinceS"]
-        elif kind == "proximity":
-            self._proximity(entry)
-        elif kind == "registered":
-            truth = entry["truth"]
-            head_to_world = np.array(truth["headToWorld"], dtype=float).reshape(4, 4)
-            self._fiducials = {
-                label: transforms.apply(head_to_world, np.array(position, dtype=float))
-                for label, position in truth["fiducialsRas"].items()
-            }
-        elif kind == "camera":
-            self._cameras += 1
-        else:
-            self._add_point(entry)
+    def add(self, line: Line) -> None:
+        entry, sim_time = line.entry, line.at.sim_time_s
+        match entry:
+            case Sample():
+                self._add_sample(entry, sim_time)
+            case JournalHeader():
+                self._tick_s = entry.tick_s
+                self.start_s = sim_time - self._tick_s
+                self._shortest_path = entry.shortest_path_mm
+            case PhaseChange() if entry.kind == PhaseChange.kind:
+                self._phase(entry, sim_time - self._tick_s)
+            case Continued():
+                # The time of an interruption is excluded.
+                if entry.phase is Phase.PAUSED and self._paused_since is None:
+                    self._paused_since = entry.since_s
+            case ProximityChange():
+                self._proximity(entry, sim_time)
+            case Registered():
+                pose = entry.truth.head_to_world
+                self._fiducials = {
+                    label: transforms.apply(pose, position)
+                    for label, position in entry.truth.fiducials_ras.items()
+                }
+            case CameraChange():
+                self._cameras += 1
+            case _:
+                self._add_point(entry, sim_time)
 
-    def _add_point(self, entry: Mapping[str, Any]) -> None:
-        kind = entry["kind"]
-        if kind == "touch":
-            self._press(entry)
-            self._touches.append(self._touch(entry["label"], entry, self._tick_s))
-        elif kind == "rejected" and "checkpoint" not in entry:
-            self._refused.append(self._touch(entry["label"], entry, self._tick_s))
-        elif kind == "undo":
-            self._undone += 1
-            del self._touches[entry["kept"] :]
-        elif kind == "trace":
-            # A point is left at the end of its tick, unlike a touch.
-            self._traced.append(self._touch("", entry))
-        elif kind == "stroke":
-            del self._traced[entry["kept"] :]
+    def _add_point(self, entry: Entry, sim_time: float) -> None:
+        # Commands are carried out a tick before their line.
+        before = sim_time - self._tick_s
+        match entry:
+            case AcceptedTouch():
+                self._press(entry.depth_mm)
+                self._touches.append(self._touch(entry.label, entry.position_mm, before))
+            case Rejected() if entry.label is not None:
+                self._refused.append(self._touch(entry.label, entry.position_mm, before))
+            case Undo():
+                self._undone += 1
+                del self._touches[entry.kept :]
+            case TracePoint():
+                # A point is left at the end of its tick, unlike a touch.
+                self._traced.append(self._touch("", entry.position_mm, sim_time))
+            case Stroke():
+                del self._traced[entry.kept :]
 
     def trajectory(self) -> Trajectory:
         """Return the movement so far; open intervals end with the last sample."""
@@ -135,64 +147,60 @@ class Recording:
             paused_s=self._paused_s,
             fiducials_mm=self._fiducials,
             shortest_path_mm=self._shortest_path,
-            depth_mm=None if np.isnan(depth).any() else depth,
+            depth_mm=depth,
         )
 
-    def _add_sample(self, entry: Mapping[str, Any]) -> None:
+    def _add_sample(self, sample: Sample, sim_time: float) -> None:
         """Keep a sample that is later than the last one."""
-        time = self._trial_time(entry["simTimeS"])
+        time = self._trial_time(sim_time)
         is_late = self._samples and time <= self._samples[-_COLUMNS]
         if self._paused_since is not None or is_late:
             return
-        x, y, z = entry["tipMm"]
-        depth = entry.get("depthMm", math.nan)
-        self._samples += array("d", (time, x, y, z, entry["clearanceMm"], depth))
-        self._press(entry)
+        self._samples += array("d", (time, *sample.tip_mm, sample.clearance_mm, sample.depth_mm))
+        self._press(sample.depth_mm)
 
     def _trial_time(self, sim_time: float) -> float:
         if self._paused_since is not None:
             sim_time = self._paused_since
-        return sim_time - self._start_s - self._paused_s
+        return sim_time - self.start_s - self._paused_s
 
-    def _touch(self, label: str, entry: Mapping[str, Any], before_s: float = 0.0) -> Touch:
-        x, y, z = (float(value) for value in entry["positionMm"])
-        return Touch(label, (x, y, z), self._trial_time(entry["simTimeS"] - before_s))
+    def _touch(self, label: str, place: tuple[float, float, float], sim_time: float) -> Touch:
+        return Touch(label, place, self._trial_time(sim_time))
 
-    def _phase(self, entry: Mapping[str, Any]) -> None:
-        now = entry["simTimeS"] - self._tick_s
-        if entry["phase"] in self.STANDING_STILL:
+    def _phase(self, entry: PhaseChange, now: float) -> None:
+        if entry.phase in self.STANDING_STILL:
             if self._paused_since is None:
                 self._paused_since = now
-                self._pauses += entry["phase"] == Phase.PAUSED.value
+                self._pauses += entry.phase is Phase.PAUSED
         elif self._paused_since is not None:
             self._paused_s += now - self._paused_since
             self._paused_since = None
-        # Points that could not be written are undone: those of a trace beyond these, and touches
+        # Points that could not be written are undone: points of a trace beyond these, and touches
         # back to this fiducial.
-        del self._traced[entry.get("traced", 0) :]
+        del self._traced[entry.traced or 0 :]
         labels = [touch.label for touch in self._touches]
-        if entry.get("nextPoint") in labels:
-            del self._touches[labels.index(entry["nextPoint"]) :]
+        if entry.next_point in labels:
+            del self._touches[labels.index(entry.next_point) :]
 
-    def _proximity(self, entry: Mapping[str, Any]) -> None:
+    def _proximity(self, entry: ProximityChange, sim_time: float) -> None:
         # This event is at the end of its tick, unlike those of commands.
-        now, state = self._trial_time(entry["simTimeS"]), Proximity(entry["to"])
-        # What begins and ends while the time stands still is left out.
+        now = self._trial_time(sim_time)
+        # An interval that begins and ends while the time stands still is left out.
         counts = self._paused_since is None
         if self._state is Proximity.FREE:
             self._near_since = now
-        if state is Proximity.FREE and (counts or self._near_since < now):
+        if entry.to is Proximity.FREE and (counts or self._near_since < now):
             self._near.append(Interval(self._near_since, now))
         if self._state is Proximity.CONTACT and (counts or self._contact_since < now):
-            self._press(entry)
+            self._press(entry.depth_mm or 0.0)
             self._contacts.append(self._contact_until(now))
-        if state is Proximity.CONTACT:
+        if entry.to is Proximity.CONTACT:
             self._contact_since, self._contact_depth = now, 0.0
-        self._state = state
+        self._state = entry.to
 
-    def _press(self, entry: Mapping[str, Any]) -> None:
+    def _press(self, depth_mm: float) -> None:
         if self._state is Proximity.CONTACT and self._paused_since is None:
-            self._contact_depth = max(self._contact_depth, entry["depthMm"])
+            self._contact_depth = max(self._contact_depth, depth_mm)
 
     def _contact_until(self, end_s: float) -> Interval:
         return Interval(self._contact_since, end_s, greatest_depth_mm=self._contact_depth)
@@ -201,7 +209,7 @@ class Recording:
 class WholeRecording(Recording):
     """Also keeps what the tool does in the phases of a procedure; only a pause takes no time."""
 
-    STANDING_STILL: ClassVar = frozenset({Phase.PAUSED.value})
+    STANDING_STILL: ClassVar = frozenset({Phase.PAUSED})
 
 
 def read_trajectory(
@@ -212,7 +220,7 @@ def read_trajectory(
     """
     for path in journals_of(folder, trial_id):
         with contextlib.suppress(InputError):
-            return Recording.of(read_journal(path, pause).entries).trajectory()
+            return Recording.of(read_journal(path, pause).lines(pause)).trajectory()
     return None
 
 
@@ -223,30 +231,26 @@ def _with_clearance(interval: Interval, times: np.ndarray, clearance: np.ndarray
     return replace(interval, least_clearance_mm=least)
 
 
-EVENTS = frozenset(
-    {
-        "phase",
-        "touch",
-        "undo",
-        "trace",
-        "stroke",
-        "rejected",
-        "checkpoint",
-        "proximity",
-        "camera",
-        "plan",
-        "registered",
-        "aborted",
-    }
+EVENTS = (
+    PhaseChange,
+    AcceptedTouch,
+    Undo,
+    TracePoint,
+    Stroke,
+    Rejected,
+    AcceptedCheckpoint,
+    ProximityChange,
+    CameraChange,
 )
-"""Kinds of entries that change the view besides the arm."""
+"""Entries that change the view besides the arm."""
 
 
 class RecordedEvent(NamedTuple):
-    """An entry whose kind is in `EVENTS`, and its trial time in s."""
+    """An entry of `EVENTS`, its trial time, and its simulated time, s."""
 
     time_s: float
-    entry: Mapping[str, Any]
+    sim_time_s: float
+    entry: Entry
 
 
 @dataclass(frozen=True, eq=False)
@@ -254,11 +258,13 @@ class ReplayTrack:
     """A recorded trial in trial time, which excludes pauses.
 
     Attributes:
+        start_s: simulated time of its start.
         q: (n, 7) float, joint angles in rad, one row per sample.
         feed_mm: (n,) float, how far drill or instrument was beyond the guide's tip; 0 without.
     """
 
-    header: Mapping[str, Any]
+    header: JournalHeader
+    start_s: float
     trajectory: Trajectory
     q: np.ndarray
     feed_mm: np.ndarray
@@ -287,12 +293,13 @@ def find_track(records: Path, trial_id: str) -> ReplayTrack:
 def read_track(path: Path, pause: Callable[[], None] = lambda: None) -> ReplayTrack:
     """Return the track of a journal, as far as it is intact; `pause` as in `read_journal`."""
     reading = read_journal(path, pause)
-    recording = _ReplayRecording.of(reading.entries)
-    trajectory, postures = recording.trajectory(), recording.postures
-    if len(postures) < 2 or any(len(posture) != 7 for posture in postures):
+    recording = _ReplayRecording.of(reading.lines(pause))
+    trajectory = recording.trajectory()
+    if len(recording.postures) < 2:
         raise InputError(f"{path} has no movement to replay.")
-    q, feeds = np.array(postures), np.array(recording.feeds)
-    return ReplayTrack(reading.header, trajectory, q, feeds, tuple(recording.events))
+    q, feeds = np.array(recording.postures), np.array(recording.feeds)
+    events = tuple(recording.events)
+    return ReplayTrack(reading.header, recording.start_s, trajectory, q, feeds, events)
 
 
 class _ReplayRecording(WholeRecording):
@@ -300,18 +307,20 @@ class _ReplayRecording(WholeRecording):
 
     def __init__(self) -> None:
         super().__init__()
-        self.postures: list[list[float]] = []
+        self.postures: list[tuple[float, ...]] = []
         self.feeds: list[float] = []
         self.events: list[RecordedEvent] = []
 
-    def add(self, entry: Mapping[str, Any]) -> None:
+    def add(self, line: Line) -> None:
         known = len(self._samples)
-        super().add(entry)
-        if len(self._samples) > known:
-            self.postures.append([float(value) for value in entry["q"]])
-            self.feeds.append(float(entry.get("feedMm", 0.0)))
-        if entry["kind"] in EVENTS:
-            seen_s = entry["simTimeS"] if self._paused_since is None else self._paused_since
+        super().add(line)
+        entry, sim_time = line.entry, line.at.sim_time_s
+        if isinstance(entry, Sample) and len(self._samples) > known:
+            self.postures.append(entry.q)
+            self.feeds.append(entry.feed_mm or 0.0)
+        if isinstance(entry, EVENTS):
+            seen_s = sim_time if self._paused_since is None else self._paused_since
             # Keep events in order, also in the tick in which a trial is paused.
             before_s = self.events[-1].time_s if self.events else 0.0
-            self.events.append(RecordedEvent(max(before_s, self._trial_time(seen_s)), entry))
+            time_s = max(before_s, self._trial_time(seen_s))
+            self.events.append(RecordedEvent(time_s, sim_time, entry))

@@ -109,7 +109,7 @@ def unintended_contact(trajectory: Trajectory) -> tuple[float, float]:
 
     Contact is unintended while the tip is farther than `INTENDED_MM` from both the next and the
     previous kept touch or traced point; without any, always. The tip is interpolated linearly
-    between samples. Between neighboring samples or touches the midpoint decides, for the part of
+    between samples. The midpoint between neighboring samples or touches decides, for the part of
     the time in contact. Repeated contact cannot lower the result.
     """
     contacts, samples_s = trajectory.contacts, trajectory.times_s

@@ -12,14 +12,13 @@ from typing import Annotated
 
 import numpy as np
 
-from rastrainer.head.mesh import HeadMesh, nearest_on_mesh
+from rastrainer.head.mesh import HeadMesh, mesh_crossings, nearest_on_mesh
 from rastrainer.json_checks import number, text
 from rastrainer.procedure.geometry import (
     BoneAhead,
     axis_distance_mm,
     bone_ahead,
     is_inside,
-    mesh_crossings,
     segment_distances_mm,
     skull_angle_deg,
 )
@@ -39,8 +38,8 @@ class LineMeasures:
         skull_angle_deg: to the skull's normal where the line meets it; None if it does not.
         no_go_mm: from the surface of the instrument to each no-go structure, by name; below 0 it
             overlaps the structure.
-        nearest_line_mm: between the surfaces of both instruments; None where there is no other.
-        is_held: whether the robot can hold the guide on the line; None where that was not tried.
+        nearest_line_mm: between the surfaces of both instruments; None if there is no other.
+        is_held: whether the robot can hold the guide on the line; None if that was not tried.
     """
 
     name: Annotated[str, text(60)]
@@ -81,15 +80,6 @@ def planned_bone(trajectory: ProcedureTrajectory, skull: HeadMesh) -> BoneAhead 
     return BoneAhead(bone.outer_mm - OUTSIDE_MM, inner)
 
 
-def planned_skull_angle_deg(trajectory: ProcedureTrajectory, skull: HeadMesh) -> float | None:
-    """Return the angle to the skull's normal where the line meets it; None if it does not."""
-    bone = planned_bone(trajectory, skull)
-    if bone is None:
-        return None
-    point = trajectory.entry_ras + bone.outer_mm * trajectory.direction
-    return skull_angle_deg(skull, point, trajectory.direction)
-
-
 def distances_to_no_go(
     trajectory: ProcedureTrajectory, meshes: ProcedureMeshes
 ) -> dict[str, float]:
@@ -118,11 +108,15 @@ def measure_lines(procedure: Procedure, meshes: ProcedureMeshes) -> list[LineMea
             if other is not trajectory
         }
         nearest = min(others, key=others.__getitem__, default="")
+        bone, direction, angle = planned_bone(trajectory, meshes.skull), trajectory.direction, None
+        if bone is not None:
+            point = trajectory.entry_ras + bone.outer_mm * direction
+            angle = skull_angle_deg(meshes.skull, point, direction)
         measured.append(
             LineMeasures(
                 name=trajectory.name,
                 length_mm=trajectory.length_mm,
-                skull_angle_deg=planned_skull_angle_deg(trajectory, meshes.skull),
+                skull_angle_deg=angle,
                 no_go_mm=distances_to_no_go(trajectory, meshes),
                 nearest_line=nearest,
                 nearest_line_mm=others.get(nearest),
@@ -132,14 +126,15 @@ def measure_lines(procedure: Procedure, meshes: ProcedureMeshes) -> list[LineMea
 
 
 ENTRY_OFF_SKIN_MM = 10.0
-"""Many plan the entry on the bone, below some 7 mm of scalp, or click a little beside the skin."""
+"""Many plan the entry on the bone, below some 7 mm of scalp, or click a little off the skin."""
 CHECKPOINT_OFF_SKIN_MM = 1.0
 MAX_LENGTH_MM = 150.0
-"""From entry to target; drill and instrument reach 250 mm beyond the guide."""
+"""Longest line from entry to target; drill and instrument reach 250 mm beyond the guide."""
 MAX_SKULL_ANGLE_DEG = 40.0
-"""To the skull's normal; a drill that meets bone at a flatter angle slips. Our own convention."""
+"""Largest angle to the skull's normal; a drill that meets bone at a flatter angle slips. Our own
+convention."""
 APART_MM = 1.0
-"""Between the surfaces of two instruments. Our own convention."""
+"""Least distance between the surfaces of two instruments. Our own convention."""
 
 
 def check_procedure(procedure: Procedure, head: HeadMesh, meshes: ProcedureMeshes) -> list[str]:
@@ -147,9 +142,10 @@ def check_procedure(procedure: Procedure, head: HeadMesh, meshes: ProcedureMeshe
     wrong = unusable_lines(procedure, head, meshes.skull)
     if wrong:
         return wrong
-    for trajectory in procedure.trajectories:
-        about = f"{procedure.title}: {trajectory.name}"
-        wrong += [f"{about} {what}" for what in _questionable(trajectory, meshes)]
+    lines = measure_lines(procedure, meshes)
+    for line, trajectory in zip(lines, procedure.trajectories, strict=True):
+        about = f"{procedure.title}: {line.name}"
+        wrong += [f"{about} {what}" for what in _questionable(line, trajectory.safety_mm)]
     for one, other in combinations(procedure.trajectories, 2):
         distance = line_distance_mm(one, other)
         if distance < APART_MM:
@@ -207,21 +203,20 @@ def _unusable(trajectory: ProcedureTrajectory, head: HeadMesh, skull: HeadMesh) 
     return None
 
 
-def _questionable(trajectory: ProcedureTrajectory, meshes: ProcedureMeshes) -> Iterator[str]:
-    length = trajectory.length_mm
-    if length > MAX_LENGTH_MM:
-        yield f"is {length:.0f} mm long; it may be {MAX_LENGTH_MM:g} mm."
-    angle = planned_skull_angle_deg(trajectory, meshes.skull)
+def _questionable(line: LineMeasures, safety_mm: float) -> Iterator[str]:
+    if line.length_mm > MAX_LENGTH_MM:
+        yield f"is {line.length_mm:.0f} mm long; it may be {MAX_LENGTH_MM:g} mm."
+    angle = line.skull_angle_deg
     assert angle is not None, "it is usable"
     if angle > MAX_SKULL_ANGLE_DEG:
         yield (
             f"meets the skull at {angle:.0f}° to its normal; it may be {MAX_SKULL_ANGLE_DEG:g}°."
         )
-    for name, distance in distances_to_no_go(trajectory, meshes).items():
+    for name, distance in line.no_go_mm.items():
         if distance <= 0.0:
             yield f"goes through {name}."
-        elif distance < trajectory.safety_mm:
+        elif distance < safety_mm:
             yield (
                 f"comes within {distance:.1f} mm of {name}; its safety distance is "
-                f"{trajectory.safety_mm:g} mm."
+                f"{safety_mm:g} mm."
             )

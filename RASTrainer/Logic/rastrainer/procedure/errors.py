@@ -13,8 +13,9 @@ the line (`PlacedInstrument.self_aligned`), the second part is the robot's, but 
 
 Terms, as in reviews of the accuracy of stereotactic placement (Vakharia et al. 2017,
 10.1111/epi.13713): the entry point error is the distance of the planned entry from the axis of the
-instrument; the target point error that of the planned target from the instrument's tip, which has
-a part along the planned line (depth error, positive where the tip is too deep) and one across it
+instrument; the target point error is the distance of the planned target from the instrument's tip,
+which has a part along the planned line (depth error, positive where the tip is too deep) and one
+across it
 (radial error); the angular deviation is the angle between the planned and the actual direction.
 """
 
@@ -49,8 +50,9 @@ SAME_MM = 1e-3
 PLANNED_COLOR = (0x8F / 255, 0xF0 / 255, 0xD0 / 255)
 REGISTERED_COLOR = (1.0, 0xE0 / 255, 0.0)
 PLACED_COLOR = (0x3F / 255, 0x8F / 255, 0xE0 / 255)
-"""Colors (sRGB) of the planned lines, of those that the registration showed and of what was placed,
-and of the errors by registration and hand: the same in every picture. People who are blind to red
+"""Colors (sRGB) of the planned lines, the lines shown by the registration and the placed
+instruments, and of the errors by registration and hand: the same in every picture. People who are
+blind to red
 or green can distinguish green, yellow and blue, too."""
 
 
@@ -90,7 +92,7 @@ class SplitError:
 class TrajectoryErrors:
     """The errors of one instrument against the truth.
 
-    Depths are above 0 where the tip is too deep. An angle is at most the sum of its parts: angles
+    Depths are above 0 if the tip is too deep. An angle is at most the sum of its parts: angles
     are no vectors.
 
     Attributes:
@@ -98,8 +100,8 @@ class TrajectoryErrors:
         radial_error: the target point error, across the planned line.
         angular_deviation_by_registration_deg: by how much the registration turned the shown line.
         angular_deviation_by_hand_deg: between the shown line and the instrument.
-        outer_table_mm: where the axis truly goes through the skull, from the guide's tip; None
-            where it misses it. Of the inner table likewise.
+        outer_table_mm: where the axis truly goes through the skull, from the guide's tip; None if
+            it misses it. The same holds for the inner table.
         plunge_mm: how deep the drill was past the inner table; None if the axis misses it.
         kept_mm: distances from the surface of the instrument (or of the drill, where it went
             deeper; taken as thick) to each no-go structure, by name; 0 or less is a hit.
@@ -261,7 +263,7 @@ def _across(part: np.ndarray, direction: np.ndarray) -> np.ndarray:
 class TrueLine(NamedTuple):
     """The line of one instrument in the head, from outside to inside: (2, 3) float each, RAS mm.
 
-    `shown` is where the plan, as it was shown, truly lay; `placed` begins at the guide's tip.
+    `shown` is the true place of the plan as it was shown; `placed` begins at the guide's tip.
     """
 
     trajectory: str

@@ -53,7 +53,7 @@ class ProcedureKind(str, Enum):
 
 
 def named_once(minimum: int, maximum: int) -> SizeCheck:
-    """Accept a list of objects, each with a name of its own."""
+    """Accept a list of objects with different names."""
     check_size = list_of(minimum, maximum, "objects")
 
     def check(value: Any) -> Any:
@@ -155,7 +155,7 @@ class Procedure:
 def read_procedure(path: Path) -> Procedure:
     """Return the procedure as a separate file, written as in a scenario's list.
 
-    Meshes are only named, not read; they are in the folder `no-go` beside the file.
+    Meshes are only named, not read; they are in the folder `no-go` next to the file.
     """
     return located(read_record(Procedure, path), path, "")
 
@@ -182,7 +182,7 @@ POINT_DECIMALS = {"entryRas": 4, "targetRas": 4, "positionRas": 4}
 
 
 def procedure_json(procedure: Procedure) -> dict[str, Any]:
-    """Return the JSON entry of a procedure, with its meshes in the folder `no-go` beside it."""
+    """Return the JSON entry of a procedure, with its meshes in the folder `no-go` next to it."""
     no_go = [
         {"name": each.name, "file": f"{NO_GO_FOLDER}/{each.file.name}"} for each in procedure.no_go
     ]
@@ -197,7 +197,7 @@ MAX_NO_GO_TRIANGLES = 200_000
 class ProcedureMeshes:
     """The obstacles of a procedure's instruments, closed surfaces in RAS mm.
 
-    Those of the no-go structures are by name, in the procedure's order.
+    The no-go structures are by name, in the procedure's order.
     """
 
     skull: HeadMesh

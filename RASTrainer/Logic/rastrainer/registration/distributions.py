@@ -1,4 +1,7 @@
-"""Probabilities for tests and intervals, on numpy alone."""
+"""Probabilities for tests and intervals.
+
+scipy is imported where it is used: opening the module in Slicer should not wait for it.
+"""
 
 from __future__ import annotations
 
@@ -8,61 +11,43 @@ from functools import lru_cache
 
 import numpy as np
 
-TERMS = 200
-"""Terms of the continued fraction."""
 DIRECTIONS = 12
 """Nodes of a quadrature over an octant, in each direction."""
 
 
 def f_tail(value: float, numerator: float, denominator: float) -> float:
     """Return the probability that an F variable exceeds `value`."""
-    if math.isinf(value):
-        return 0.0
-    x = denominator / (denominator + numerator * value)
-    return incomplete_beta(denominator / 2, numerator / 2, x)
+    from scipy import special
 
-
-def incomplete_beta(a: float, b: float, x: float) -> float:
-    """Return the regularized incomplete beta function I_x(a, b), a and b > 0, x from 0 to 1."""
-    if x <= 0.0:
-        return 0.0
-    if x >= 1.0:
-        return 1.0
-    # The continued fraction converges fast only below the mean; beyond it, use the symmetry.
-    if x > (a + 1.0) / (a + b + 2.0):
-        return 1.0 - incomplete_beta(b, a, 1.0 - x)
-    log_front = (
-        math.lgamma(a + b) - math.lgamma(a) - math.lgamma(b) + a * math.log(x) + b * math.log1p(-x)
-    )
-    return math.exp(log_front) / (a * _continued_fraction(a, b, x))
-
-
-def _continued_fraction(a: float, b: float, x: float) -> float:
-    """Return 1 + d₁/(1 + d₂/(1 + …)) of DLMF 8.17.22, evaluated from its last term backward."""
-    value = 1.0
-    for n in range(TERMS, 0, -1):
-        m = n // 2
-        if n % 2:
-            d = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1))
-        else:
-            d = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m))
-        value = 1.0 + d / value
-    return value
+    return float(special.fdtrc(numerator, denominator, value))
 
 
 def ratio_quantile(probability: float, weights: np.ndarray, dof: float) -> float:
     """Return the quantile of Σ wₖ zₖ² / (χ²/dof), zₖ standard normal, all independent.
 
-    With equal weights it is a multiple of the F distribution; with unequal ones it is the squared
-    length of a vector of anisotropic variance whose size was estimated from `dof` residuals.
+    Equal weights give a multiple of the F distribution. Unequal weights describe the squared length
+    of a vector of anisotropic variance whose size was estimated from `dof` residuals.
+
+    P(Σ wₖ zₖ² − value·χ²/dof ≤ 0) follows from Imhof's inversion formula (1961). The integral runs
+    over u = exp(s), where the trapezoidal rule converges exponentially.
 
     Args:
         probability: Between 0 and 1.
         weights: (k,) float, above 0.
         dof: Degrees of freedom of the χ² variable.
     """
-    scale = float(np.sum(weights))
-    probability_up_to = _ratio_distribution(np.asarray(weights) / scale, dof)
+    scale, step = float(np.sum(weights)), 0.025
+    u = np.exp(np.arange(-30.0, 30.0, step))
+    terms = np.asarray(weights)[:, None] / scale * u
+    angles = 0.5 * np.arctan(terms).sum(axis=0)
+    log_sizes = 0.25 * np.log1p(terms**2).sum(axis=0)
+
+    def probability_up_to(value: float) -> float:
+        term = value / dof * u
+        angle = angles - 0.5 * dof * np.arctan(term)
+        log_size = log_sizes + 0.25 * dof * np.log1p(term**2)
+        return 0.5 - step * float(np.sum(np.sin(angle) * np.exp(-log_size))) / math.pi
+
     return scale * _quantile(probability_up_to, probability, 1.0, 1e-8)
 
 
@@ -78,20 +63,16 @@ def widened_quantile(probability: float, weights: np.ndarray, dof: float, added:
         probability: Between 0 and 1.
         weights: (3,) float, not below 0.
         dof: Degrees of freedom of the χ² variable; infinite where the size is known.
-        added: The known variance a coordinate, above 0 where the weights are not.
+        added: The known variance of each coordinate, above 0 if the weights are 0.
     """
-    probability_up_to = _widened_distribution(weights, dof, added)
+    probability_up_to = widened_distribution(weights, dof, added)
     return _quantile(probability_up_to, probability, float(np.sum(weights)) + 3.0 * added, 1e-7)
 
 
-def widened_probability(value: float, weights: np.ndarray, dof: float, added: float) -> float:
-    """Return the probability that the sum of `widened_quantile` is not above a value."""
-    return _widened_distribution(weights, dof, added)(value)
+def widened_distribution(weights: np.ndarray, dof: float, added: float) -> Callable[[float], float]:
+    """Return the probability up to a value of the sum of `widened_quantile`, as a function."""
+    from scipy import special
 
-
-def _widened_distribution(
-    weights: np.ndarray, dof: float, added: float
-) -> Callable[[float], float]:
     scales, shares = _inverse_chi_square(dof)
     squares, areas = _octant()
     # One row a direction, one column a size.
@@ -99,8 +80,9 @@ def _widened_distribution(
     of_nodes = areas[:, None] * shares
 
     def probability_up_to(value: float) -> float:
-        # The distribution function of χ² with 3 degrees of freedom, to 10⁻⁷.
-        up_to = np.interp(np.sqrt(value / variances), *_chi_square_3_table())
+        # The distribution function of χ² with 3 degrees of freedom.
+        root = np.sqrt(value / (2.0 * variances))
+        up_to = special.erf(root) - 2.0 / math.sqrt(math.pi) * root * np.exp(-(root**2))
         return float(np.sum(of_nodes * up_to))
 
     return probability_up_to
@@ -150,31 +132,3 @@ def _octant() -> tuple[np.ndarray, np.ndarray]:
     squares.append(np.broadcast_to(height[:, None] ** 2, squares[0].shape))
     areas = np.repeat(root_weights / (2 * DIRECTIONS), DIRECTIONS)
     return np.stack(squares, axis=-1).reshape(-1, 3), areas
-
-
-@lru_cache(maxsize=1)
-def _chi_square_3_table() -> tuple[np.ndarray, np.ndarray]:
-    root = np.linspace(0.0, 8.0, 8001)
-    erf = np.array([math.erf(one / math.sqrt(2)) for one in root])
-    return root, erf - math.sqrt(2 / math.pi) * root * np.exp(-(root**2) / 2)
-
-
-def _ratio_distribution(weights: np.ndarray, dof: float) -> Callable[[float], float]:
-    """Return P(Σ wₖ zₖ² − value·χ²/dof ≤ 0) as a function of the value.
-
-    It is Imhof's inversion formula (1961). The integral runs over u = exp(s), where the
-    trapezoidal rule converges exponentially.
-    """
-    step = 0.025
-    u = np.exp(np.arange(-30.0, 30.0, step))
-    terms = weights[:, None] * u
-    angles = 0.5 * np.arctan(terms).sum(axis=0)
-    log_sizes = 0.25 * np.log1p(terms**2).sum(axis=0)
-
-    def probability_up_to(value: float) -> float:
-        term = value / dof * u
-        angle = angles - 0.5 * dof * np.arctan(term)
-        log_size = log_sizes + 0.25 * dof * np.log1p(term**2)
-        return 0.5 - step * float(np.sum(np.sin(angle) * np.exp(-log_size))) / math.pi
-
-    return probability_up_to

@@ -49,8 +49,8 @@ def motions(kind: str, points: np.ndarray) -> np.ndarray:
     """Return how points move with the parameters of a fit of a kind, (n, 3, parameters) float.
 
     `points` (n, 3) float are taken from the fiducials' centroid, mm. The parameters are, to first
-    order, a translation, a rotation, and the scale of a similarity; those of an affine fit are a
-    translation and nine coefficients.
+    order, a translation, a rotation, and the scale of a similarity; an affine fit has a translation
+    and nine coefficients.
     """
     translation = np.broadcast_to(np.eye(3), (len(points), 3, 3))
     if kind == AFFINE:
@@ -68,13 +68,13 @@ def rigid_sums_of_squares(
 ) -> np.ndarray:
     """Return the residual Σ|T(m) − f|² of the best rigid fit, for many fits at once.
 
-    With the singular values s₁ ≥ s₂ ≥ s₃ of the cross-covariance H it is
-    Σ|a|² + Σ|b|² − 2(s₁ + s₂ + sign(det H)·s₃); no transform need be built.
+    It is Σ|a|² + Σ|b|² − 2(s₁ + s₂ + sign(det H)·s₃), with the singular values s₁ ≥ s₂ ≥ s₃ of the
+    cross-covariance H; no transform need be built.
 
     Args:
         moving: (..., n, 3) float.
         fixed: (..., n, 3) float.
-        weights: (..., n) float, 1 for a point that counts and 0 for one that does not.
+        weights: (..., n) float, 1 for points that count, 0 for all others.
         handedness: 1 for rotations, −1 for rotations with a reflection.
 
     Returns:

@@ -1,7 +1,7 @@
 """The fiducial localization error (FLE) that explains the residuals of a registration.
 
-By default it is isotropic. Where the tip is stopped by the skin, the error across the skin may
-differ from that along it; with known surface normals both are estimated from the residuals. This
+It is isotropic by default. The skin stops the tip, so the error across the skin may differ from the
+error along it; with known surface normals both are estimated from the residuals. This
 matters: for fiducials on one side of a head, the errors across the skin determine its tilt.
 """
 
@@ -51,8 +51,8 @@ def isotropic_error(registration: Registration) -> LocalizationError:
     """Return the error that is the same in all directions and explains the FRE.
 
     From E[FRE²] = (1 − p/3N) E[FLE²] with p parameters: 1 − 2/N rigid (Sibson 1979),
-    1 − 7/(3N) similarity, 1 − 4/N affine. Of a weighted fit the variance of each point is taken as
-    inverse to its weight, s²/wᵢ a coordinate, where E[Σ wᵢ|rᵢ|²] = (3N − p)·s².
+    1 − 7/(3N) similarity, 1 − 4/N affine. A weighted fit takes the variance of each point as
+    inverse to its weight, s²/wᵢ per coordinate, with E[Σ wᵢ|rᵢ|²] = (3N − p)·s².
     """
     dof = degrees_of_freedom(registration)
     count = len(registration.labels)
@@ -87,14 +87,13 @@ def expected_fre(registration: Registration, localization: LocalizationError) ->
 def misfit_probability(registration: Registration, fle_mm: np.ndarray) -> float:
     """Return the probability of residuals this large or larger where the stated errors are true.
 
-    Σ 3|rᵢ|²/FLEᵢ² of a fit weighted by 1/FLE² is χ² with 3N − p degrees of freedom; its tail is
-    taken by the cube-root approximation (Wilson and Hilferty 1931). `fle_mm` is as stated, (n,).
+    Σ 3|rᵢ|²/FLEᵢ² of a fit weighted by 1/FLE² is χ² with 3N − p degrees of freedom. `fle_mm` is as
+    stated, (n,).
     """
-    dof = degrees_of_freedom(registration)
+    from scipy import special
+
     value = float(np.sum(3.0 * registration.residuals_mm**2 / np.asarray(fle_mm) ** 2))
-    spread = 2.0 / (9.0 * dof)
-    z = ((value / dof) ** (1.0 / 3.0) - (1.0 - spread)) / math.sqrt(spread)
-    return 0.5 * math.erfc(z / math.sqrt(2.0))
+    return float(special.chdtrc(degrees_of_freedom(registration), value))
 
 
 def error_along_surface(registration: Registration, normals: np.ndarray) -> LocalizationError:
@@ -102,10 +101,10 @@ def error_along_surface(registration: Registration, normals: np.ndarray) -> Loca
 
     With M what the fit leaves of the errors, B the projection of each error onto its part, and e
     the residuals, E[eᵀBe] = Σ σ² tr(M B M B') over both parts: two equations for two variances
-    (method of moments; a negative one counts as zero). The degrees of freedom are those of the χ²
-    with the mean and variance of eᵀe (Satterthwaite 1946). It is for fits without weights.
+    (method of moments; a negative one counts as zero). The degrees of freedom belong to the χ² with
+    the mean and variance of eᵀe (Satterthwaite 1946). It is for fits without weights.
 
-    The unit normals (n, 3) are those of the surface at the fixed points.
+    `normals` are the surface's unit normals (n, 3) at the fixed points.
     """
     count = len(registration.labels)
     degrees_of_freedom(registration)
@@ -131,7 +130,7 @@ def error_along_surface(registration: Registration, normals: np.ndarray) -> Loca
 def fit_of_errors(registration: Registration) -> np.ndarray:
     """Return what the errors of the fiducials do to the fit, (parameters, n, 3) float.
 
-    Of a weighted fit, (Σ wᵢ JᵢᵀJᵢ)⁻¹ wᵢJᵢᵀ with Jᵢ the motions of point i.
+    A weighted fit has (Σ wᵢ JᵢᵀJᵢ)⁻¹ wᵢJᵢᵀ with Jᵢ the motions of point i.
     """
     _, fit = _normal_equations(registration)
     return fit.reshape(len(fit), -1, 3)

@@ -15,7 +15,7 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.files.point_list import COORDINATE_LIMIT_MM
+from rastrainer.files.point_list import PointList, points_of
 from rastrainer.registration.fits import (
     AFFINE,
     KINDS,
@@ -41,7 +41,7 @@ class Registration:
         residual_vectors_mm: (n, 3) float, T(m) − f.
         residuals_mm: (n,) float, their lengths.
         warnings: What looks wrong with the points, judged as if all were localized equally well.
-        weights: (n,) float, of the points in the fit; None where all count alike.
+        weights: (n,) float, of the points in the fit; None if all count alike.
     """
 
     kind: str
@@ -61,7 +61,7 @@ class Registration:
         return float(np.sqrt(np.average(self.residuals_mm**2, weights=self.weights)))
 
     def without(self, *labels: str) -> Registration:
-        """Return the registration of the same points without those of the given labels."""
+        """Return the registration without the points of the given labels."""
         for label in labels:
             if label not in self.labels:
                 raise InputError(
@@ -120,7 +120,7 @@ def register(
     matrix = fit(moving, fixed, kind, weights)
     residual_vectors = transforms.apply(matrix, moving) - fixed
     residuals = np.linalg.norm(residual_vectors, axis=1)
-    for values in (moving, fixed, matrix, residual_vectors, residuals):
+    for values in (matrix, residual_vectors, residuals):
         values.flags.writeable = False
     return Registration(
         kind=kind,
@@ -142,9 +142,9 @@ def register_all_kinds(
     labels: Sequence[str] | None = None,
     weights: np.ndarray | None = None,
 ) -> dict[str, Registration]:
-    """Return the fits by kind: the rigid one, and the similarity and affine ones that are possible.
+    """Return the fits by kind: rigid, and similarity and affine if they are possible.
 
-    Only the rigid one has weights.
+    Only the rigid fit has weights.
     """
     fits = {RIGID: register(moving, fixed, RIGID, labels, weights)}
     for kind in (SIMILARITY, AFFINE):
@@ -158,7 +158,7 @@ POINT_LIMIT = 1000
 WEIGHT_SPAN = 1e12
 """The largest weight against the smallest: localization errors from 1 µm to 1 m."""
 FLAT = 1e-3
-"""A set is taken for a line (a plane) when its extent across is this small against that along."""
+"""A set counts as a line (a plane) if the ratio of its extents across and along is this small."""
 
 
 def check_points(
@@ -170,7 +170,10 @@ def check_points(
             f"The registration type {json.dumps(str(kind)[:40])} is unknown; "
             f"it must be one of {', '.join(KINDS)}."
         )
-    sets = {"moving": _as_points(moving, "moving"), "fixed": _as_points(fixed, "fixed")}
+    sets = {
+        which: points_of(points, f"The {which} points cannot be used")
+        for which, points in (("moving", moving), ("fixed", fixed))
+    }
     count = len(sets["moving"])
     if count != len(sets["fixed"]):
         raise InputError(
@@ -184,9 +187,9 @@ def check_points(
         )
     if count > POINT_LIMIT:
         raise InputError(f"There are {count} pairs of points; at most {POINT_LIMIT} are accepted.")
-    names = _checked_labels(labels, count)
+    names = tuple(str(i + 1) for i in range(count)) if labels is None else tuple(map(str, labels))
+    PointList(names, sets["moving"])
     for which, points in sets.items():
-        _check_numbers(points, which, names)
         _check_extent(points, which, kind, names)
     return sets["moving"], sets["fixed"], names
 
@@ -215,43 +218,6 @@ def check_weights(
         )
     array.flags.writeable = False
     return array
-
-
-def _as_points(points: object, which: str) -> np.ndarray:
-    try:
-        array = np.array(points, dtype=float)
-    except (TypeError, ValueError, OverflowError):
-        raise InputError(
-            f"The {which} points must be numbers, three for each point (x, y, z in mm)."
-        ) from None
-    if array.size == 0:
-        raise InputError(f"There are no {which} points.")
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise InputError(f"Each of the {which} points must have three coordinates (x, y, z in mm).")
-    return array
-
-
-def _checked_labels(labels: Sequence[str] | None, count: int) -> tuple[str, ...]:
-    names = tuple(str(i + 1) for i in range(count)) if labels is None else tuple(map(str, labels))
-    if len(names) != count:
-        raise InputError(f"There are {len(names)} labels for {count} pairs of points.")
-    for i, name in enumerate(names):
-        if name in names[:i]:
-            raise InputError(f"The label {json.dumps(name)} is given to two points.")
-    return names
-
-
-def _check_numbers(points: np.ndarray, which: str, labels: tuple[str, ...]) -> None:
-    for label, point in zip(labels, points, strict=True):
-        if not np.isfinite(point).all():
-            raise InputError(
-                f"Point {label} of the {which} points has a coordinate that is not a finite number."
-            )
-        if np.abs(point).max() > COORDINATE_LIMIT_MM:
-            raise InputError(
-                f"Point {label} of the {which} points has a coordinate beyond "
-                f"±{COORDINATE_LIMIT_MM:.0f} mm."
-            )
 
 
 def _check_extent(points: np.ndarray, which: str, kind: str, labels: tuple[str, ...]) -> None:

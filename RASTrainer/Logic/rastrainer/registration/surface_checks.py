@@ -8,7 +8,7 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.files.point_list import COORDINATE_LIMIT_MM
+from rastrainer.files.point_list import points_of
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.registration.fits import RIGID, extents, motions
 from rastrainer.registration.warnings import RegistrationWarning
@@ -37,7 +37,7 @@ class MatchMeasures:
         best_starts: How many of the starts ended in the best minimum.
         spread_mm: Largest distance at the head's center between the best and where another start
             ended.
-        rivals: Number of minima elsewhere whose cost is at most twice that of the best one.
+        rivals: Number of minima elsewhere whose cost is at most twice the best minimum's.
         slide: The direction in which the trace determines the head least.
     """
 
@@ -53,24 +53,11 @@ class MatchMeasures:
 
 def check_trace(trace_mm: object) -> np.ndarray:
     """Return a copy of a trace, (n, 3) float, that cannot be written to."""
-    try:
-        trace = np.array(trace_mm, dtype=float)
-    except (TypeError, ValueError, OverflowError):
-        raise InputError("A trace must be numbers, three for each point (x, y, z in mm).") from None
-    if trace.size == 0:
-        trace = trace.reshape(0, 3)
-    if trace.ndim != 2 or trace.shape[1] != 3:
-        raise InputError("Each point of a trace must have three coordinates (x, y, z in mm).")
+    trace = points_of(trace_mm, "The trace cannot be used")
     if not LEAST_POINTS <= len(trace) <= MOST_POINTS:
         raise InputError(
             f"A surface match needs {LEAST_POINTS} to {MOST_POINTS} points, one for each "
             f"millimeter drawn over the skin; the trace has {len(trace)}."
-        )
-    bad = np.flatnonzero(~(np.abs(trace) <= COORDINATE_LIMIT_MM).all(axis=1))
-    if len(bad):
-        raise InputError(
-            f"Point {bad[0] + 1} of the trace has a coordinate that is not a number within "
-            f"±{COORDINATE_LIMIT_MM:.0f} mm."
         )
     along = extents(trace)[0]
     if along < LEAST_EXTENT_MM:
@@ -78,7 +65,6 @@ def check_trace(trace_mm: object) -> np.ndarray:
             f"The trace stays in one place (RMS extent {along:.1f} mm); draw it over forehead, "
             "nose, cheeks and temples."
         )
-    trace.flags.writeable = False
     return trace
 
 
@@ -186,7 +172,7 @@ LEAST_NOISE_MM, ALIKE_MM = 1.0, 20.0
 """Standard deviation of what all points within a cube of so many mm are off alike, as skin is
 pressed and drawn along. Residuals do not show it, and more points in one place do not reduce it."""
 TARGETS_ASIDE_MM = 30.0
-"""Of the places in the brain where a slide is measured, from the head's middle along each axis."""
+"""Distance of the places where a slide is measured from the head's middle, along each axis."""
 NORMAL_95 = 1.96
 _LOOSEST_MM = 100.0
 _DIRECTIONS = ("left or right", "forward or back", "up or down")

@@ -1,8 +1,8 @@
 """The target error to expect of a surface match, and where on the skin more points would help most.
 
 The curvature of the cost at its minimum is H = Σ JᵢᵀJᵢ with Jᵢ = (nᵢ, (pᵢ − c) × nᵢ): what each
-point reveals about the pose. With the variance σ² of the points across the skin, σ²H⁻¹ is the
-covariance of the pose. Both are to first order, and for errors that are independent: a shift of the
+point reveals about the pose. σ²H⁻¹ is the covariance of the pose, with the variance σ² of the
+points across the skin. Both are to first order, and for errors that are independent: a shift of the
 skin is not. It guides a trainee who traces the skin.
 """
 
@@ -87,10 +87,10 @@ def surface_target_error(
 ) -> TargetError:
     """Return the error to expect at a target (3,), RAS mm, with its interval.
 
-    An offset that all points share, such as that of the tip's calibration, moves the whole head and
-    adds 3σ² of its standard deviation on each axis, as with fiducials. The interval is that of
-    fiducials, too (`rastrainer.registration.target_error.target_error`), and has the same blind
-    spots: errors that neighboring points share. It holds less often for drawn traces; see
+    An offset that all points share, such as a wrong calibration of the tip, moves the whole head
+    and adds 3σ² of its standard deviation on each axis, as with fiducials. The interval also
+    follows `rastrainer.registration.target_error.target_error`, and has the same blind spots:
+    errors that neighboring points share. It holds less often for drawn traces; see
     Testing/error_rates/tables.md.
     """
     return error_of_covariance(
@@ -162,7 +162,7 @@ way, and at nostrils."""
 LEAST_FLATNESS = 0.95
 """Least length of the mean of unit normals around a place: lids, lips and folds bend more."""
 BEHIND_MM = 30.0
-"""A place that is so much farther from the eye than others beside it is hidden by them."""
+"""Places this much nearer to the eye hide a place next to them."""
 _ROUNDS = 4
 _BESIDE_MM = 6.0
 _AROUND_TARGET_MM = 30.0
@@ -207,7 +207,7 @@ def nearest_traced_mm(
     `known_mm` has the distances to the points before these, (v,) float; infinite without any.
     """
     found = np.full(len(vertices), np.inf) if known_mm is None else known_mm
-    # From a middle, so that little is lost where squares are subtracted.
+    # Relative to the middle, so that subtracting squares loses few digits.
     middle = vertices.mean(axis=0)
     from_middle, places = vertices - middle, places - middle
     squares = np.einsum("ij,ij->i", from_middle, from_middle)
@@ -223,8 +223,11 @@ def nearest_traced_mm(
 class TraceGuide:
     """Follows a trace, and finds where its next points would help most.
 
-    A place stays until a centimeter has been drawn within `COVERED_MM` of it, or until a stroke
-    that was drawn elsewhere has ended: one that jumped about could not be followed.
+    A place stays until a centimeter has been drawn within `COVERED_MM` of it, or a stroke elsewhere
+    has ended: nobody could follow a place that jumps about.
+
+    Attributes:
+        away_mm: (v,) float, from each vertex of the head to the trace; infinite without points.
     """
 
     def __init__(self, mesh: HeadMesh, target: np.ndarray, eye: np.ndarray) -> None:
@@ -234,12 +237,12 @@ class TraceGuide:
         self._vertices = guided_vertices(mesh, eye)
         self._places = np.zeros((0, 3))
         self._rows = np.zeros(0, dtype=int)
-        self._away = np.full(len(self._vertices), np.inf)
+        self.away_mm = np.full(len(mesh.vertices), np.inf)
         self._told: NextPlace | None = None
         self._told_at = -1
 
     def next_place(self, places: np.ndarray, is_drawing: bool) -> NextPlace | None:
-        """Return where to draw next; None where the trace is full or covers all that is reached.
+        """Return where to draw next; None if the trace is full or covers every place within reach.
 
         The places (n, 3), RAS mm, are all points so far by the pose that is known.
         """
@@ -253,10 +256,10 @@ class TraceGuide:
         known = len(self._places)
         if len(places) < known or not np.array_equal(places[:known], self._places):
             known, self._told_at = 0, -1
-            self._rows, self._away = self._rows[:0], np.full(len(self._vertices), np.inf)
+            self._rows, self.away_mm = self._rows[:0], np.full_like(self.away_mm, np.inf)
         new = places[known:]
         self._rows = np.concatenate([self._rows, nearest_vertices(self._mesh, new)[1]])
-        self._away = nearest_traced_mm(self._mesh.vertices[self._vertices], new, self._away)
+        self.away_mm = nearest_traced_mm(self._mesh.vertices, new, self.away_mm)
         self._places = places
 
     def _is_kept(self, is_drawing: bool) -> bool:
@@ -269,7 +272,7 @@ class TraceGuide:
         return int(np.sum(np.linalg.norm(drawn, axis=1) <= COVERED_MM)) < DAB
 
     def _best(self) -> NextPlace | None:
-        open_ = self._vertices[self._away > COVERED_MM]
+        open_ = self._vertices[self.away_mm[self._vertices] > COVERED_MM]
         if len(self._places) >= MAX_TRACE_POINTS or not len(open_):
             return None
         allowed = np.zeros(len(self._mesh.vertices), dtype=bool)

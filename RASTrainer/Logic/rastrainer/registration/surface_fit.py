@@ -1,7 +1,7 @@
 """The fit of points to a surface from several starts, by the true nearest points, trimmed.
 
 The sum of the squared distances to the nearest points on the triangles is minimized by the method
-of Gauss and Newton. A distance grows along the line to its nearest point, so each step is that of
+of Gauss and Newton. A distance grows along the line to its nearest point, so each step is a step of
 point-to-plane ICP (Chen and Medioni 1992), with that line as the plane's normal. Near the end, the
 curvature is exact: a nearest point on an edge or a corner differs from one within a triangle. Where
 a step leads up, since other triangles are nearest there, it is shortened to the minimum of the
@@ -67,8 +67,8 @@ def plane_normals(
 ) -> np.ndarray:
     """Return the unit directions (…, 3) in which the distances grow.
 
-    It is the line from the nearest point; for a point on the surface, the triangle's normal. The
-    offsets (…, 3), mm, are those of points from the nearest ones, which lie on the triangles (…)
+    It is the line from the nearest point; for a point on the surface, the triangle's normal.
+    `offsets` (…, 3), mm, lead to the points from their nearest points, which lie on `triangles` (…)
     int.
     """
     normals = offsets / np.where(distances > 0.0, distances, 1.0)[..., None]
@@ -78,42 +78,19 @@ def plane_normals(
     return normals
 
 
-@dataclass(frozen=True)
-class WholeStep:
-    """The whole steps of s starts.
+def take_step(
+    points: np.ndarray,
+    mesh: HeadMesh,
+    here: SurfaceFit,
+    gate: np.ndarray,
+    is_near: np.ndarray,
+    share: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Take a share (s,) of the steps of Gauss and Newton; near their ends (s,) bool, of Newton.
 
-    Attributes:
-        shifts: (s, 3) float, mm, of the trace's center.
-        turns: (s, 3) float, rad, about it.
-        centers: (s, 3) float, RAS mm.
-        slope: (s,) float, mm², by how much the cost changes along the step, to first order.
+    Return matrices, the points' places, the longest move (s,), mm, and by how much the cost changes
+    along the whole step, to first order, (s,), mm².
     """
-
-    shifts: np.ndarray
-    turns: np.ndarray
-    centers: np.ndarray
-    slope: np.ndarray
-
-    def taken_by(
-        self, share: np.ndarray, here: SurfaceFit, points: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return matrices, the points' places, and the longest move after a share (s,) of it."""
-        turn = transforms.rotations(share[:, None] * self.turns)
-        moved = np.zeros_like(here.matrices)
-        moved[:, :3, :3] = turn @ here.matrices[:, :3, :3]
-        from_center = here.matrices[:, :3, 3] - self.centers
-        moved[:, :3, 3] = (turn @ from_center[..., None])[..., 0] + self.centers
-        moved[:, :3, 3] += share[:, None] * self.shifts
-        moved[:, 3, 3] = 1.0
-        places = transforms.apply_each(moved, points)
-        moves = places - transforms.apply_each(here.matrices, points)
-        return moved, places, np.sqrt(np.einsum("sni,sni->sn", moves, moves).max(axis=1))
-
-
-def whole_step(
-    points: np.ndarray, mesh: HeadMesh, here: SurfaceFit, gate: np.ndarray, is_near: np.ndarray
-) -> WholeStep:
-    """Return the steps of Gauss and Newton; of starts (s,) bool near their ends, of Newton."""
     places = transforms.apply_each(here.matrices, points)
     center = places.mean(axis=1)
     arms = places - center[:, None]
@@ -131,11 +108,21 @@ def whole_step(
         _add_bends(hessian, mesh, here, normals, arms, extent, gate)
     gradient = np.einsum("sni,sn->si", weighted, here.distances_mm)
     scale = np.trace(hessian, axis1=1, axis2=2) * _DAMPING + 1e-12
-    step = -np.linalg.solve(hessian + scale[:, None, None] * np.eye(6), gradient[..., None])[..., 0]
-    reach = np.linalg.norm(step[:, :3], axis=1) + np.linalg.norm(step[:, 3:], axis=1)
-    step *= np.minimum(1.0, STEP_MM / np.maximum(reach, 1e-12))[:, None]
-    slope = 2.0 * np.einsum("si,si->s", gradient, step)
-    return WholeStep(step[:, :3], step[:, 3:] / extent[:, None], center, slope)
+    whole = -np.linalg.solve(hessian + scale[:, None, None] * np.eye(6), gradient[..., None])
+    whole = whole[..., 0]
+    reach = np.linalg.norm(whole[:, :3], axis=1) + np.linalg.norm(whole[:, 3:], axis=1)
+    whole *= np.minimum(1.0, STEP_MM / np.maximum(reach, 1e-12))[:, None]
+    slope = 2.0 * np.einsum("si,si->s", gradient, whole)
+    turn = transforms.rotations(share[:, None] * (whole[:, 3:] / extent[:, None]))
+    moved = np.zeros_like(here.matrices)
+    moved[:, :3, :3] = turn @ here.matrices[:, :3, :3]
+    from_center = here.matrices[:, :3, 3] - center
+    moved[:, :3, 3] = (turn @ from_center[..., None])[..., 0] + center
+    moved[:, :3, 3] += share[:, None] * whole[:, :3]
+    moved[:, 3, 3] = 1.0
+    there = transforms.apply_each(moved, points)
+    moves = there - places
+    return moved, there, np.sqrt(np.einsum("sni,sni->sn", moves, moves).max(axis=1)), slope
 
 
 def _add_bends(
@@ -176,12 +163,13 @@ def _add_bends(
 
 MAX_ITERATIONS = 60
 FOLLOWED_MM = 1.0
-"""After a step that moves no point farther, the triangles nearby are kept for the next ones."""
+"""After a step that moves no point farther, the triangles nearby are kept for the next steps."""
 BENT_MM = 0.5
-"""After a step that moves no point farther, edges and corners count as what they are: before, they
-would keep points from sliding past them, after, the steps would not end."""
+"""After a step that moves no point farther, edges and corners bend the cost: earlier, they would
+keep points from sliding past; without them, the steps would not end."""
 AROUND, AROUND_MM = 1.1, 0.05
-"""Of how far starts lie from their middle, and more: as far, the triangles about it are kept."""
+"""Factor and margin on the starts' distance from their middle: triangles within that reach are
+kept."""
 GATE = 3.5
 """A point counts up to this many standard deviations, estimated from the median distance."""
 LEAST_GATE_MM = 1.0
@@ -192,7 +180,7 @@ _NORMAL_PER_MEDIAN = 1.4826
 _LEAST_SHARE = 1e-4
 """A step is shortened no further: the nearest points change on the spot."""
 _SHORTENED = 0.1, 0.6
-"""To which share of the last step, at least and at most."""
+"""Least and largest share of the last step."""
 NEARBY = 24
 """Starts; of the heads that were compared, the lowest minimum draws one in ten or more."""
 NEARBY_SD = 0.25, 1.0
@@ -247,8 +235,8 @@ def fit_to_surface(
             widest = np.inf if number < GATE_STEPS else limit[active]
             limit[active] = np.minimum(gates(here.distances_mm), widest)
         gate = limit[active]
-        step = whole_step(points, mesh, here, gate, last[active] < BENT_MM)
-        moved, places, longest = step.taken_by(share[active], here, points)
+        near = last[active] < BENT_MM
+        moved, places, longest, slope = take_step(points, mesh, here, gate, near, share[active])
         # After a small step, all that follow are hardly longer together; after a long one, far more
         # triangles would have to be kept than are found anew.
         slack = np.where(longest < FOLLOWED_MM, longest, 0.0)
@@ -257,10 +245,11 @@ def fit_to_surface(
         last[active] = longest
         before, after = costs(here.distances_mm, gate), costs(next_.distances_mm, gate)
         better = after <= before
-        # `longest` is that of a share of the whole step.
+        # `longest` belongs to a share of the whole step.
         done = (longest < tolerance_mm * share[active]) | (share[active] < _LEAST_SHARE)
-        share[active] = _next_share(share[active], before, after, step.slope * share[active])
-        _replace(now, active[better], next_.taken(np.flatnonzero(better)))
+        share[active] = _next_share(share[active], before, after, slope * share[active])
+        for name in ("matrices", "distances_mm", "nearest_mm", "triangles"):
+            getattr(now, name)[active[better]] = getattr(next_, name)[better]
         converged[active[done]] = True
         active = active[~done]
         if not len(active):
@@ -297,13 +286,6 @@ def _placed(matrices: np.ndarray, nearest: NearestPoints) -> SurfaceFit:
         np.zeros(size, dtype=bool),
         np.zeros(size, dtype=int),
     )
-
-
-def _replace(now: SurfaceFit, rows: np.ndarray, other: SurfaceFit) -> None:
-    now.matrices[rows] = other.matrices
-    now.distances_mm[rows] = other.distances_mm
-    now.nearest_mm[rows] = other.nearest_mm
-    now.triangles[rows] = other.triangles
 
 
 def _next_share(
@@ -347,7 +329,7 @@ def lowest_nearby(
 def _moved(
     points: np.ndarray, mesh: HeadMesh, fit: SurfaceFit, gate_mm: float, seed: int
 ) -> np.ndarray:
-    """Return matrices (NEARBY, 4, 4) about that of a fit, by the covariance of its pose."""
+    """Return matrices (NEARBY, 4, 4) about a fit's matrix, drawn by the covariance of its pose."""
     counts = fit.distances_mm[0] <= gate_mm
     places = transforms.apply_each(fit.matrices, points)[0]
     center = places.mean(axis=0)

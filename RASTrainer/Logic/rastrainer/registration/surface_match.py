@@ -30,7 +30,8 @@ from rastrainer.registration.warnings import RegistrationWarning
 
 STARTS = 8
 START_SD_MM, START_SD_DEG = 5.0, 5.0
-"""Of the starts about the given one, on each axis: what three landmarks leave open."""
+"""Spread of the starts about the given start, on each axis: the uncertainty that three landmarks
+leave."""
 WIDER_STARTS, WIDER, NEAR_SKIN_MM = 16, 3.0, 1.0
 """More starts, several times as far off, if none brings half of the points near the skin."""
 COARSE_POINTS, COARSE_ITERATIONS, MIDDLE_ITERATIONS = 40, 12, 30
@@ -90,8 +91,8 @@ def match_surface(
         mesh: The head's closed surface, RAS.
         start: (4, 4) float, rigid, World→RAS, as from three landmarks: within about 10 mm and 10°.
         seed: Of the further starts about it.
-        starts: Number of starts, the given one included; if there is only one, lower minima next
-            to its own are not looked for either.
+        starts: Number of starts with the given one; a single start also skips the search for lower
+            minima nearby.
         trimmed: Whether points far off are left out of the fit.
     """
     trace = check_trace(trace_mm)
@@ -128,7 +129,7 @@ def _starts_about(
 def _coarse(
     points: np.ndarray, mesh: HeadMesh, start: np.ndarray, count: int, gate: float | None, seed: int
 ) -> SurfaceFit:
-    """Return fits of some of the points from all starts, and from wider ones where none fits."""
+    """Return fits of some of the points from all starts, and from wider starts if none fits."""
     few = thinned(points, COARSE_POINTS)
 
     def fitted(starts: np.ndarray) -> SurfaceFit:
@@ -145,7 +146,7 @@ def _coarse(
 def _fit(
     points: np.ndarray, mesh: HeadMesh, start: np.ndarray, starts: int, trimmed: bool, seed: int
 ) -> tuple[SurfaceFit, np.ndarray, np.ndarray, float]:
-    """Return the fits, best first; the matrices of hopeless ones; how many starts ended in each.
+    """Return the fits, best first; the matrices of hopeless fits; how many starts ended in each.
 
     The last is up to which distance points count. All starts are first followed with some of the
     points; those that meet continue as one, and the best of them also from many places next to it.
@@ -167,7 +168,7 @@ def _fit(
     lowest, again = _minima(middle, mesh, points, gate)
     fine = _refined(points, mesh, middle.taken(lowest), gate, seed if starts > 1 else None)
     kept, finally_ = _minima(fine, mesh, points, gate)
-    # The hopeless ones stay after the others, in their order.
+    # Hopeless fits stay after the others, in their order.
     number = np.concatenate([finally_[again], len(kept) + np.arange(len(first) - len(hopeful))])
     others = coarse.matrices[first[len(hopeful) :]]
     return fine.taken(kept), others, np.bincount(number[which], minlength=len(kept)), gate

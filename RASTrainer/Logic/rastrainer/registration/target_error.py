@@ -26,7 +26,7 @@ from rastrainer.errors import InputError
 from rastrainer.registration.distributions import (
     f_tail,
     ratio_quantile,
-    widened_probability,
+    widened_distribution,
     widened_quantile,
 )
 from rastrainer.registration.fits import motions
@@ -41,7 +41,7 @@ CONFIDENCE = 0.95
 COMMON_BIAS_SD_MM = 0.25
 """Standard deviation on each axis of an offset that all touches share; 0.43 mm RMS in space. Our
 own assumption, not measured: pivoting located the tip of an optically tracked tool with a mean
-precision of 0.25 mm (Yaniv 2015, "Which pivot calibration?", SPIE Medical Imaging). Aiming beside
+precision of 0.25 mm (Yaniv 2015, "Which pivot calibration?", SPIE Medical Imaging). Aiming off
 every point, or hovering above it, is a larger offset."""
 INTERVAL_NOTE = (
     "The 95 % interval of the expected TRE holds only where the errors of the points are "
@@ -60,9 +60,8 @@ class TargetError:
         expected_mm: RMS length of the error at the target, √E[TRE²]: the part below and the
             common offset, added in squares.
         independent_mm: The part of it that the errors of single points cause.
-        interval_mm: Where the length of the error lies with at least the given confidence, both
-            ends in mm, whatever the standard deviation of the common offset is, up to the assumed
-            one.
+        interval_mm: Holds the length of the error with at least the given confidence, both ends in
+            mm, for any common offset up to the assumed standard deviation.
         confidence: Least probability of the interval.
         common_bias_sd_mm: The assumed standard deviation of the common offset on each axis.
     """
@@ -86,8 +85,8 @@ def expected_tre(
 
     For a rigid registration with isotropic FLE, alike at all points, and without a common offset
     this is Fitzpatrick's equation 46 (1998), E[TRE²] = E[FLE²]/N · (1 + ⅓ Σₖ dₖ²/fₖ²). An offset of
-    standard deviation σ on each axis adds 3σ². By default, the FLE is the isotropic one that
-    explains the residuals.
+    standard deviation σ on each axis adds 3σ². The default FLE is isotropic and explains the
+    residuals.
     """
     localization = localization or isotropic_error(registration)
     covariances = _propagated(registration, targets, localization.covariances)
@@ -104,15 +103,16 @@ def target_error(
     """Return the error to expect at a target, with an interval for it.
 
     The interval accounts for the direction dependence of the error and for the uncertainty of the
-    estimated FLE; it is wide for few points. TRE grows with the common offset, so the lower end is
-    that of the distribution without an offset. The upper end is where, with the assumed offset, the
-    error lies between both with the given confidence. With a smaller one it does so more often: the
+    estimated FLE; it is wide for few points. TRE grows with the common offset, so the lower end
+    comes from the distribution without an offset. The upper end is where, with the assumed offset,
+    the
+    error lies between both with the given confidence. A smaller offset makes that more likely: the
     probability between two ends has a single maximum over the size of the error. An FRE of zero
     leaves the common offset alone.
 
     Args:
         target: (3,) float, in the fixed space, in mm.
-        localization: The FLE; by default the isotropic one that explains the residuals.
+        localization: The FLE; the default is isotropic and explains the residuals.
         confidence: Least probability that the error lies in the interval.
         common_bias_sd_mm: Standard deviation on each axis of an offset that all points share; 0
             for none, and both sides outside of the interval are equally likely then.
@@ -149,7 +149,10 @@ def error_of_covariance(
     variances = np.linalg.eigvalsh(covariance).clip(min=0.0)
     independent = float(variances.sum())
     added, dof = common_bias_sd_mm**2, degrees_of_freedom
-    lowest = _quantile((1 - confidence) / 2, variances, dof, 0.0)
+    below = (1 - confidence) / 2
+    lowest = _quantile(below, variances, dof, 0.0)
+    if added > 0.0:
+        below = widened_distribution(variances, dof, added)(lowest)
     x, y, z = (float(value) for value in target)
     return TargetError(
         target_mm=(x, y, z),
@@ -158,7 +161,7 @@ def error_of_covariance(
         independent_mm=math.sqrt(independent),
         interval_mm=(
             math.sqrt(lowest),
-            math.sqrt(_highest(lowest, confidence, variances, dof, added)),
+            math.sqrt(_quantile(below + confidence, variances, dof, added)),
         ),
         confidence=confidence,
         common_bias_sd_mm=common_bias_sd_mm,
@@ -184,22 +187,12 @@ def _quantile(probability: float, variances: np.ndarray, dof: float, added: floa
     return widened_quantile(probability, variances, dof, added)
 
 
-def _highest(
-    lowest: float, confidence: float, variances: np.ndarray, dof: float, added: float
-) -> float:
-    """Return the TRE², mm², that is not exceeded, from the lowest one, with this confidence."""
-    if added == 0.0:
-        return _quantile((1 + confidence) / 2, variances, dof, 0.0)
-    below = widened_probability(lowest, variances, dof, added)
-    return _quantile(below + confidence, variances, dof, added)
-
-
 def _propagated(
     registration: Registration, targets: np.ndarray, covariances: np.ndarray
 ) -> np.ndarray:
     """Return the covariance (m, 3, 3) of TRE that FLE of covariances (n, 3, 3) causes.
 
-    To first order: the errors change the fit's parameters, and these move the target.
+    The errors change the fit's parameters, and these move the target, to first order.
     """
     fit = fit_of_errors(registration)
     of_parameters = np.einsum("pni,nij,qnj->pq", fit, covariances, fit)
@@ -275,8 +268,8 @@ def common_bias(errors_mm: np.ndarray, normals: np.ndarray) -> CommonBias:
 def bias_of_errors(normals: np.ndarray) -> np.ndarray:
     """Return the linear map from the errors of touches to their common bias, (3, n, 3) float.
 
-    It is that of least squares, b = (Σ Pᵢ)⁻¹ Σ Pᵢ eᵢ with Pᵢ = I − nᵢnᵢᵀ: what leads into the skin
-    or off it moves no touch. The unit normals nᵢ of the skin are (n, 3) float.
+    It solves the least squares, b = (Σ Pᵢ)⁻¹ Σ Pᵢ eᵢ with Pᵢ = I − nᵢnᵢᵀ: a bias into the skin or
+    off it moves no touch. The unit normals nᵢ of the skin are (n, 3) float.
     """
     along = _along_skin(normals)
     shares, axes = _axes(along)

@@ -1,1 +1,1 @@
-"""What is trained on: a scenario, its points, its set-up, its folder and the library."""
+"""A scenario to train on: its points, its set-up, its folder and the library."""

@@ -1,6 +1,6 @@
 """The available scenarios, of RASTrainer and in the user's folder: listed, packed and unpacked.
 
-A package is a zip file; one that is unpacked is untrusted.
+A package is a zip file, and untrusted when it is unpacked.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from rastrainer.work_progress import Progress, no_progress
 
 MAX_SCENARIOS = 200
 MAX_PICTURE_BYTES, MAX_PICTURE_PIXELS = 4_000_000, 2048
-"""Of a picture in a list, along each side: what views decode at once, wherever it comes from."""
+"""Limits of a picture in a list, pixels along each side: every view can decode it at once."""
 
 _PNG_START = struct.Struct(">8s4x4sII")
 
@@ -65,8 +65,8 @@ def list_scenarios(
 ) -> list[ListedScenario]:
     """Return the scenarios in the subfolders of these folders, by title.
 
-    Unusable ones are listed with their problem. Of two with the same name, the first folder's is
-    listed. `list_one` lists the scenario of a folder; by default `list_folder`.
+    Unusable scenarios are listed with their problem. The first folder's is listed if two have the
+    same name. `list_one` lists the scenario of a folder; by default `list_folder`.
     """
     listed: dict[str, ListedScenario] = {}
     for library in libraries:
@@ -77,7 +77,6 @@ def list_scenarios(
 
 
 def list_folder(folder: Path) -> ListedScenario:
-    """Return the entry of a folder, with its problem if unusable."""
     try:
         scenario = load_scenario(folder)
     except InputError as error:
@@ -126,8 +125,8 @@ def pack(folder: Path, package: Path) -> Path:
     scenario, package = checked_scenario(folder), Path(package)
     if package.exists():
         raise InputError(f"{package} already exists; name a new file.")
-    head = read_head_mesh(scenario.head_mesh)
-    skull = read_head_mesh(scenario.skull_mesh) if scenario.skull_mesh else None
+    head = read_head_mesh(scenario.head)
+    skull = read_head_mesh(scenario.skull.file) if scenario.skull else None
     volume = read_head_volume(scenario.volume) if scenario.volume else None
     no_go = read_all_no_go(scenario.procedures)
     partial = package.parent / f".{uuid.uuid4().hex}.partial"
@@ -180,17 +179,18 @@ def unpack(package: Path, library: Path, progress: Progress = no_progress) -> Pa
 def checked_scenario(folder: Path) -> Scenario:
     """Load a scenario and check its meshes, its volume and the lines of its procedures."""
     scenario = load_scenario(folder)
-    for path in filter(None, (scenario.head_mesh, scenario.skull_mesh)):
+    paths = [scenario.head, *([scenario.skull.file] if scenario.skull else [])]
+    for path in paths:
         mesh = read_head_mesh(path)
         if len(mesh.triangles) > MAX_TRIANGLES:
             raise InputError(
                 f"The mesh {path} has {len(mesh.triangles)} triangles; a scenario's may have "
                 f"{MAX_TRIANGLES}."
             )
-        if path == scenario.head_mesh and not mesh.is_closed:
+        if path == scenario.head and not mesh.is_closed:
             raise InputError(f"The head mesh {path} is not closed: it has a hole.")
     if scenario.volume is not None:
-        volume, head = read_head_volume(scenario.volume), read_head_mesh(scenario.head_mesh)
+        volume, head = read_head_volume(scenario.volume), read_head_mesh(scenario.head)
         check_place(volume, head, scenario.volume.file)
     require_usable_lines(scenario)
     return scenario
@@ -198,12 +198,12 @@ def checked_scenario(folder: Path) -> Scenario:
 
 def require_usable_lines(scenario: Scenario) -> None:
     """Check that instruments can be placed along all trajectories of a scenario's procedures."""
-    if scenario.skull_mesh is None or not scenario.procedures:
+    if scenario.skull is None or not scenario.procedures:
         return
-    head = read_head_mesh(scenario.head_mesh)
+    head = read_head_mesh(scenario.head)
     wrong = []
     for procedure in scenario.procedures:
-        meshes = read_procedure_meshes(procedure, scenario.skull_mesh)
+        meshes = read_procedure_meshes(procedure, scenario.skull.file)
         wrong += unusable_lines(procedure, head, meshes.skull)
     if wrong:
         raise InputError(" ".join(wrong))
@@ -236,8 +236,8 @@ def _read_archive(package: Path, folder: Path, progress: Progress) -> None:
 def _members(package: Path, archive: zipfile.ZipFile) -> dict[str, zipfile.ZipInfo]:
     """Return the files of a scenario in a package, by their paths in the scenario's folder.
 
-    The folder may lie in others. Whoever packs it by hand also packs notes, and what the system
-    keeps in it: files with other names than ours are left where they are.
+    The folder may be inside other folders. People who pack it by hand also pack notes and system
+    files: files with other names than ours are left out.
     """
     infos = [info for info in archive.infolist() if not info.is_dir()]
     # Some programs for Windows part folders by backslashes.

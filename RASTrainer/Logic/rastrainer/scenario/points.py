@@ -1,14 +1,13 @@
 """The points of a scenario: tasks of fifteen fiducials, targets, a trajectory, landmarks.
 
-Of landmarks it is checked whether they can be used: how many, on the skin, on the right side,
-spread.
+Landmarks are checked for their number, their distance to the skin, their side and their spread.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import combinations
 from pathlib import Path
 from typing import Annotated
@@ -17,8 +16,10 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.files.point_files import read_markups
+from rastrainer.files.reading import relative_path
 from rastrainer.head.mesh import RAS_LIMIT_MM, HeadMesh, nearest_on_mesh
-from rastrainer.json_checks import point, text
+from rastrainer.json_checks import identifier, number, point, text
+from rastrainer.json_records import NOT_IN_JSON
 from rastrainer.protocol import COARSE_LANDMARKS, FIDUCIAL_COUNT
 
 LABELS = tuple(str(number) for number in range(1, FIDUCIAL_COUNT + 1))
@@ -26,42 +27,44 @@ LABELS = tuple(str(number) for number in range(1, FIDUCIAL_COUNT + 1))
 
 @dataclass(frozen=True)
 class Task:
-    """A task for trainees.
+    """A task for trainees, as in `scenario.json`, and its fiducials from a separate file.
 
     Attributes:
         name: such as "trial-run" or "task-1", for commands and records.
         title: for people.
-        labels: "1" to "15", in touch order.
-        fiducials: (15, 3) float, RAS mm, in touch order.
         complexity: index from `rastrainer_simulator.authoring.touch_order`.
         shortest_path_mm: from `rastrainer_simulator.authoring.touch_order`, or None.
+        labels: "1" to "15", in touch order.
+        fiducials: (15, 3) float, RAS mm, in touch order.
     """
 
-    name: str
-    title: str
-    labels: tuple[str, ...]
-    fiducials: np.ndarray
-    complexity: float
-    shortest_path_mm: float | None = None
+    name: Annotated[str, identifier]
+    title: Annotated[str, text(60)]
+    file: Annotated[Path, relative_path]
+    complexity: Annotated[float, number(0, 1000)]
+    shortest_path_mm: Annotated[float | None, number(1, 1e5)] = None
+    labels: tuple[str, ...] = field(default=LABELS, metadata=NOT_IN_JSON)
+    fiducials: np.ndarray = field(default_factory=lambda: np.empty((0, 3)), metadata=NOT_IN_JSON)
 
 
-def read_task(
-    path: Path, name: str, title: str, complexity: float, shortest_path_mm: float | None = None
-) -> Task:
-    """Read a task's fiducials from a `.mrk.json` file."""
+def task_file(name: str) -> Path:
+    """Return the place of a task's fiducials in the folder of its scenario."""
+    return Path(f"tasks/{name}.mrk.json")
+
+
+def read_fiducials(path: Path) -> np.ndarray:
+    """Return a task's fiducials, (15, 3) float, RAS mm, read-only, from a `.mrk.json` file."""
     points = read_markups(path)
     if tuple(points.labels) != LABELS:
         raise InputError(
             f'{path} must hold {FIDUCIAL_COUNT} points labeled "1" to "{FIDUCIAL_COUNT}", in the '
             "order to touch."
         )
-    fiducials = np.array(points.points, dtype=float)
-    if not np.all(np.abs(fiducials) <= RAS_LIMIT_MM):
+    if not np.all(np.abs(points.points) <= RAS_LIMIT_MM):
         raise InputError(f"{path} has a point that is not within ±{RAS_LIMIT_MM:g} mm.")
-    if len(np.unique(fiducials, axis=0)) != FIDUCIAL_COUNT:
+    if len(np.unique(points.points, axis=0)) != FIDUCIAL_COUNT:
         raise InputError(f"{path} has two points at the same place.")
-    fiducials.setflags(write=False)
-    return Task(name, title, LABELS, fiducials, complexity, shortest_path_mm)
+    return points.points
 
 
 _NUMBER = re.compile(r"(\d{1,6})\s*$")
@@ -128,7 +131,7 @@ FACE_LANDMARKS = (
     "Left tragus",
     NOSE_TIP,
 )
-"""The usual ones; right and left are the patient's."""
+"""The usual landmarks; right and left are the patient's."""
 SNAP_MM = 5.0
 """A landmark nearer to the skin than this is moved onto it; one farther off is wrong."""
 APART_MM = 10.0
@@ -196,7 +199,7 @@ def _area(three: Sequence[Landmark]) -> float:
 
 
 def _on_other_side(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> list[str]:
-    """Return the landmarks on the opposite side to the one they are named for; +R is right."""
+    """Return a sentence for each landmark on the wrong side by its name; +R is right."""
     places = {landmark.name: landmark.position_ras for landmark in landmarks}
     middle = float((mesh.vertices[:, 0].max() + mesh.vertices[:, 0].min()) / 2.0)
     swapped, wrong = [], []

@@ -3,14 +3,14 @@
 A scenario is a folder with `scenario.json`, the head's mesh, one `.mrk.json` file per task and,
 optionally, the images of the head.
 
-A trial that is registered without fiducials belongs to a task all the same: to its number in the
-study, and to what is compared with it.
+A trial that is registered without fiducials also belongs to a task: to its number in the study, and
+to the trials it is compared with.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from pathlib import Path
 from typing import Annotated, Any
@@ -22,6 +22,7 @@ from rastrainer.files.reading import format_version, path_beside, read_record, r
 from rastrainer.head.trial_head import UNMOVED, Perturbation, SkinShift, perturbed_pose
 from rastrainer.head.volume import VolumeFile
 from rastrainer.json_checks import identifier, list_of, number, numbers, point, text
+from rastrainer.json_records import NOT_IN_JSON
 from rastrainer.procedure.plan import (
     MAX_NO_GO_FILES,
     MAX_PROCEDURES,
@@ -44,7 +45,7 @@ from rastrainer.scenario.points import (
     PlannedTarget,
     PlannedTrajectory,
     Task,
-    read_task,
+    read_fiducials,
 )
 from rastrainer.transforms import is_rigid
 
@@ -124,14 +125,6 @@ class Stand:
 
 
 @dataclass(frozen=True)
-class Furniture:
-    """Table and stand, which carry the robot and the head."""
-
-    table: OperatingTable
-    stand: Stand
-
-
-@dataclass(frozen=True)
 class Provenance:
     """The origin of the head.
 
@@ -155,19 +148,23 @@ class SkullFile:
 
 
 @dataclass(frozen=True)
-class TaskFile:
-    """A task of a scenario's file; see `Task`. The file holds its fiducials."""
+class Scenario:
+    """Everything that a trial needs, as `scenario.json` has it; see the module's description.
 
-    name: Annotated[str, identifier]
-    title: Annotated[str, text(60)]
-    file: Annotated[Path, relative_path]
-    complexity: Annotated[float, number(0, 1000)]
-    shortest_path_mm: Annotated[float | None, number(1, 1e5)] = None
+    Paths are relative to the scenario's folder in the file, and whole when it was loaded.
 
-
-@dataclass(frozen=True)
-class ScenarioFile:
-    """The content of `scenario.json`; see `Scenario`. Paths are relative to its folder."""
+    Attributes:
+        name: short, for records; `title` is for people.
+        head: path of the head's mesh, for `rastrainer.head.mesh.read_head_mesh`.
+        target: the point at which the target error is reported, such as the head's center.
+        head_to_world: (4, 4) float, rigid, mm: the nominal pose.
+        perturbation: how far a trial's pose may be from it.
+        tasks: in order of difficulty.
+        cameras: by name, "close-up" (the default view) and "far".
+        landmarks: by which a trial may be registered without fiducials, in order of touching.
+        skin: how the skin lies in trials that do not set it otherwise; each has its own seed.
+        procedures: planned; a trial may carry one of them out.
+    """
 
     format_version: Annotated[int, format_version(FORMAT_VERSION)]
     name: Annotated[str, identifier]
@@ -176,7 +173,7 @@ class ScenarioFile:
     target: PlannedTarget
     head_to_world: Annotated[np.ndarray, _rigid]
     perturbation: Perturbation
-    tasks: Annotated[tuple[TaskFile, ...], named_once(1, MAX_TASKS)]
+    tasks: Annotated[tuple[Task, ...], named_once(1, MAX_TASKS)]
     cameras: Annotated[Mapping[str, Camera], _all_cameras]
     table: OperatingTable
     stand: Stand
@@ -188,56 +185,19 @@ class ScenarioFile:
     landmarks: Annotated[tuple[Landmark, ...], named_once(0, MAX_LANDMARKS)] = ()
     skin: Annotated[SkinShift, _amounts_of_skin] = UNMOVED
     procedures: Annotated[tuple[Procedure, ...], named_once(0, MAX_PROCEDURES)] = ()
-
-
-@dataclass(frozen=True)
-class Scenario:
-    """Everything that a trial needs; see the module's description.
-
-    Attributes:
-        name: short, for records; `title` is for people.
-        head_mesh: path of the head's mesh, for `rastrainer.head.mesh.read_head_mesh`.
-        target_name: of the point at which the target error is reported, such as the head's center.
-        target_position: (3,) float, RAS mm.
-        head_to_world: (4, 4) float, rigid, mm: the nominal pose.
-        perturbation: how far a trial's pose may be from it.
-        tasks: in order of difficulty.
-        cameras: by name, "close-up" (the default view) and "far".
-        is_skull_approximate: whether the skull is only estimated from the skin, as from MRI.
-        procedures: planned; a trial may carry one of them out.
-        landmarks: by which a trial may be registered without fiducials, in order of touching.
-        skin: how the skin lies in trials that do not set it otherwise; each has its own seed.
-    """
-
-    folder: Path
-    name: str
-    title: str
-    head_mesh: Path
-    target_name: str
-    target_position: np.ndarray
-    head_to_world: np.ndarray
-    perturbation: Perturbation
-    tasks: tuple[Task, ...]
-    cameras: Mapping[str, Camera]
-    furniture: Furniture
-    provenance: Provenance
-    skull_mesh: Path | None = None
-    is_skull_approximate: bool = False
-    targets: tuple[PlannedTarget, ...] = ()
-    trajectory: PlannedTrajectory | None = None
-    volume: VolumeFile | None = None
-    procedures: tuple[Procedure, ...] = ()
-    landmarks: tuple[Landmark, ...] = ()
-    skin: SkinShift = UNMOVED
+    folder: Path = field(default=Path(), metadata=NOT_IN_JSON)
 
     @property
     def preview(self) -> Path | None:
-        """The picture for lists, or None."""
         path = self.folder / PREVIEW_NAME
         return path if path.is_file() and not path.is_symlink() else None
 
+    @property
+    def skull_path(self) -> Path:
+        assert self.skull is not None, "a scenario with procedures has a skull"
+        return self.skull.file
+
     def task(self, name: str) -> Task:
-        """Return the task of this name."""
         for task in self.tasks:
             if task.name == name:
                 return task
@@ -245,7 +205,6 @@ class Scenario:
         raise InputError(f"The scenario {self.name} has no such task; it has {names}.")
 
     def procedure(self, name: str) -> Procedure:
-        """Return the procedure of this name."""
         for procedure in self.procedures:
             if procedure.name == name:
                 return procedure
@@ -257,11 +216,10 @@ class Scenario:
 
         The head is rotated about its target, then moved.
         """
-        return perturbed_pose(self.head_to_world, self.target_position, self.perturbation, seed)
+        return perturbed_pose(self.head_to_world, self.target.position_ras, self.perturbation, seed)
 
 
 def load_scenario(folder: Path | str) -> Scenario:
-    """Read a scenario's folder."""
     try:
         return _load(Path(folder))
     except OSError as error:
@@ -272,60 +230,44 @@ def _load(folder: Path) -> Scenario:
     if not folder.is_dir():
         raise InputError(f"The scenario's folder {folder} does not exist.")
     path = folder / FILE_NAME
-    file = read_record(ScenarioFile, path)
-    _check_fields(file, path)
-    skull = file.skull
-    return Scenario(
+    read = read_record(Scenario, path)
+    _check_fields(read, path)
+    tasks = (
+        replace(
+            each, fiducials=read_fiducials(path_beside(path, each.file, f"tasks[{index}].file"))
+        )
+        for index, each in enumerate(read.tasks)
+    )
+    procedures = (
+        located(procedure, path, f"procedures[{index}].")
+        for index, procedure in enumerate(read.procedures)
+    )
+    skull, volume = read.skull, read.volume
+    return replace(
+        read,
         folder=folder,
-        name=file.name,
-        title=file.title,
-        head_mesh=path_beside(path, file.head, "head"),
-        target_name=file.target.name,
-        target_position=file.target.position_ras,
-        head_to_world=file.head_to_world,
-        perturbation=file.perturbation,
-        tasks=tuple(
-            read_task(
-                path_beside(path, task.file, f"tasks[{index}].file"),
-                task.name,
-                task.title,
-                task.complexity,
-                task.shortest_path_mm,
-            )
-            for index, task in enumerate(file.tasks)
-        ),
-        cameras=file.cameras,
-        furniture=Furniture(file.table, file.stand),
-        provenance=file.provenance,
-        skull_mesh=path_beside(path, skull.file, "skull.file") if skull else None,
-        is_skull_approximate=skull is not None and skull.kind is SkullKind.APPROXIMATION,
-        targets=file.targets,
-        trajectory=file.trajectory,
-        volume=file.volume and file.volume.located(path),
-        procedures=tuple(
-            located(procedure, path, f"procedures[{index}].")
-            for index, procedure in enumerate(file.procedures)
-        ),
-        landmarks=file.landmarks,
-        skin=file.skin,
+        head=path_beside(path, read.head, "head"),
+        tasks=tuple(tasks),
+        skull=skull and replace(skull, file=path_beside(path, skull.file, "skull.file")),
+        volume=volume and volume.located(path),
+        procedures=tuple(procedures),
     )
 
 
-def _check_fields(file: ScenarioFile, path: Path) -> None:
-    """Raise `InputError` if fields do not fit each other."""
+def _check_fields(scenario: Scenario, path: Path) -> None:
     wrong = ""
-    for name, camera in file.cameras.items():
+    for name, camera in scenario.cameras.items():
         sight = camera.focal_point_mm - camera.position_mm
         if np.linalg.norm(np.cross(sight, camera.view_up)) < 1e-6:
             wrong = f"cameras.{name}.viewUp must be a direction across the line of sight"
-    line = file.trajectory
+    line = scenario.trajectory
     if line and np.linalg.norm(line.target_ras - line.entry_ras) < MIN_TRAJECTORY_MM:
         wrong = f"trajectory.entryRas must be at least {MIN_TRAJECTORY_MM:g} mm from targetRas"
-    if file.procedures and file.skull is None:
+    if scenario.procedures and scenario.skull is None:
         wrong = (
             "skull must be given, because the scenario has procedures, and drilling needs a skull"
         )
-    no_go = {each.file for procedure in file.procedures for each in procedure.no_go}
+    no_go = {each.file for procedure in scenario.procedures for each in procedure.no_go}
     if len(no_go) > MAX_NO_GO_FILES:
         wrong = f"procedures must be with at most {MAX_NO_GO_FILES} files of no-go meshes"
     if wrong:

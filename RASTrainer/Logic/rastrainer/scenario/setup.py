@@ -14,7 +14,7 @@ from rastrainer.head.trial_head import Perturbation
 from rastrainer.json_checks import number, numbers
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import WORLD_LIMIT_MM
-from rastrainer.scenario.scenario import Camera, Furniture, OperatingTable, Stand
+from rastrainer.scenario.scenario import Camera, OperatingTable, Stand
 
 FAR_EYE_MM, FAR_FOCUS_MM = (240.0, -2050.0, 1050.0), (240.0, 0.0, 430.0)
 CLOSE_UP_FROM_HEAD_MM, FOCUS_FROM_HEAD_MM = (0.0, -600.0, 220.0), (0.0, 0.0, 5.0)
@@ -69,10 +69,9 @@ class SetUp:
             "far": Camera(far[0] - self._base, far[1] - self._base, up, 32.0),
         }
 
-    def furniture(self) -> Furniture:
-        """Return table and stand, World mm."""
+    def table_in_world(self) -> OperatingTable:
         x, y = np.array(self.table.center_mm) - self.robot_base_mm
-        return Furniture(replace(self.table, center_mm=(x, y)), self.stand)
+        return replace(self.table, center_mm=(x, y))
 
     def check_height(self, lowest_ras: float, middle_ras: np.ndarray) -> None:
         """Check that the head's base is above the table."""

@@ -10,7 +10,7 @@ import contextlib
 import shutil
 import uuid
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
@@ -24,15 +24,12 @@ from rastrainer.head.volume import HeadVolume, VolumeFile, read_head_volume, wri
 from rastrainer.json_checks import identifier_of, text
 from rastrainer.json_records import record_to_json
 from rastrainer.procedure.plan import NO_GO_FOLDER, POINT_DECIMALS, procedure_json
-from rastrainer.scenario.points import PlannedTarget, Task
+from rastrainer.scenario.points import task_file
 from rastrainer.scenario.scenario import (
     FILE_NAME,
-    FORMAT_VERSION,
     Scenario,
-    ScenarioFile,
     SkullFile,
     SkullKind,
-    TaskFile,
 )
 
 HEAD_NAME, SKULL_NAME = Path("head.ply"), Path("skull.ply")
@@ -40,7 +37,6 @@ VOLUME_NAME = Path("volume.nrrd")
 
 
 def require_new(folder: Path) -> None:
-    """Check that a folder can be made."""
     if folder.is_symlink() or folder.is_file() or (folder.is_dir() and any(folder.iterdir())):
         raise InputError(f"{folder} already exists; name a new or empty folder.")
 
@@ -92,14 +88,25 @@ def write_scenario(
         write_head_mesh(folder / SKULL_NAME, skull)
     if volume is not None:
         write_nrrd(folder / VOLUME_NAME, volume.values, volume.ijk_to_ras)
-    for task in scenario.tasks:
-        write_markups(folder / _file(task), PointList(task.labels, task.fiducials))
+    tasks = tuple(replace(task, file=task_file(task.name)) for task in scenario.tasks)
+    for task in tasks:
+        write_markups(folder / task.file, PointList(task.labels, task.fiducials))
     for name, mesh in (no_go or {}).items():
         (folder / NO_GO_FOLDER).mkdir(exist_ok=True)
         write_head_mesh(folder / NO_GO_FOLDER / name, mesh)
-    content = record_to_json(_scenario_file(scenario, skull is not None, volume))
-    procedures = {"procedures": list(map(procedure_json, scenario.procedures))} if skull else {}
-    write_json(folder / FILE_NAME, rounded({**content, **procedures}, _DECIMALS))
+    kind = scenario.skull.kind if scenario.skull else SkullKind.BONE
+    written = replace(
+        scenario,
+        head=HEAD_NAME,
+        tasks=tasks,
+        skull=SkullFile(SKULL_NAME, kind) if skull else None,
+        volume=_volume_file(volume),
+        procedures=(),
+    )
+    content = record_to_json(written)
+    if skull:
+        content["procedures"] = list(map(procedure_json, scenario.procedures))
+    write_json(folder / FILE_NAME, rounded(content, _DECIMALS))
 
 
 _DECIMALS = {
@@ -115,40 +122,8 @@ _DECIMALS = {
 }
 
 
-def _scenario_file(scenario: Scenario, has_skull: bool, volume: HeadVolume | None) -> ScenarioFile:
-    """Return the content of `scenario.json`, without procedures."""
-    kind = SkullKind.APPROXIMATION if scenario.is_skull_approximate else SkullKind.BONE
-    return ScenarioFile(
-        format_version=FORMAT_VERSION,
-        name=scenario.name,
-        title=scenario.title,
-        head=HEAD_NAME,
-        target=PlannedTarget(scenario.target_name, scenario.target_position),
-        head_to_world=scenario.head_to_world.ravel(),
-        perturbation=scenario.perturbation,
-        tasks=tuple(
-            TaskFile(task.name, task.title, _file(task), task.complexity, task.shortest_path_mm)
-            for task in scenario.tasks
-        ),
-        cameras=scenario.cameras,
-        table=scenario.furniture.table,
-        stand=scenario.furniture.stand,
-        provenance=scenario.provenance,
-        skull=SkullFile(SKULL_NAME, kind) if has_skull else None,
-        volume=_volume_file(volume),
-        targets=scenario.targets,
-        trajectory=scenario.trajectory,
-        landmarks=scenario.landmarks,
-        skin=scenario.skin,
-    )
-
-
 def _volume_file(volume: HeadVolume | None) -> VolumeFile | None:
     return VolumeFile(VOLUME_NAME, volume.window, volume.level) if volume else None
-
-
-def _file(task: Task) -> Path:
-    return Path(f"tasks/{task.name}.mrk.json")
 
 
 DRAFT_NAME = "draft.json"
@@ -170,31 +145,27 @@ class HeadDraft:
     Attributes:
         head: closed, with a flat base, RAS mm.
         method: how it was made, for the provenance.
-        is_skull_approximate: whether the skull is only the skin moved inward.
     """
 
     head: HeadMesh
     method: str
     skull: HeadMesh | None = None
-    is_skull_approximate: bool = False
+    skull_kind: SkullKind = SkullKind.BONE
     volume: HeadVolume | None = None
 
 
 def write_draft(folder: Path, draft: HeadDraft) -> None:
-    """Write a draft into an existing folder."""
-    kind = SkullKind.APPROXIMATION if draft.is_skull_approximate else SkullKind.BONE
     volume = draft.volume
     write_head_mesh(folder / HEAD_NAME, draft.head)
     if draft.skull is not None:
         write_head_mesh(folder / SKULL_NAME, draft.skull)
     if volume is not None:
         write_nrrd(folder / VOLUME_NAME, volume.values, volume.ijk_to_ras)
-    file = DraftFile(draft.method, kind if draft.skull else None, _volume_file(volume))
+    file = DraftFile(draft.method, draft.skull_kind if draft.skull else None, _volume_file(volume))
     write_json(folder / DRAFT_NAME, record_to_json(file))
 
 
 def read_draft(folder: Path) -> HeadDraft:
-    """Read a draft."""
     path = folder / DRAFT_NAME
     file = read_record(DraftFile, path)
     volume = file.volume
@@ -202,6 +173,6 @@ def read_draft(folder: Path) -> HeadDraft:
         read_head_mesh(folder / HEAD_NAME),
         file.method,
         read_head_mesh(folder / SKULL_NAME) if file.skull else None,
-        file.skull is SkullKind.APPROXIMATION,
+        file.skull or SkullKind.BONE,
         read_head_volume(volume.located(path)) if volume else None,
     )

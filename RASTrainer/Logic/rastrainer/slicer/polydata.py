@@ -6,13 +6,14 @@ from typing import Any
 
 import numpy as np
 import vtk
-from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
 from rastrainer.head.mesh import HeadMesh
 
 
 def vtkArray(values: np.ndarray, name: str = "") -> Any:
     """Return a copy of numbers (n,) or (n, k) as an array of VTK's."""
+    from vtk.util.numpy_support import numpy_to_vtk
+
     array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
     array.SetName(name)
     return array
@@ -50,6 +51,8 @@ def _pointsAlone(places: np.ndarray) -> vtk.vtkPolyData:
 
 def _cells(corners: np.ndarray) -> vtk.vtkCellArray:
     """Return cells of equal size, (n, k) int."""
+    from vtk.util.numpy_support import numpy_to_vtkIdTypeArray
+
     cells = vtk.vtkCellArray()
     rows = np.ascontiguousarray(corners, dtype=np.int64).ravel()
     cells.SetData(corners.shape[1], numpy_to_vtkIdTypeArray(rows, deep=True))

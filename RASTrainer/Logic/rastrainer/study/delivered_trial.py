@@ -59,9 +59,8 @@ def store_delivered(
         is_being_scored: whether its registration or score is being sent to the simulator.
     """
     record = record_from_json(TrialRecord, value)
-    trial_id = record.trial_id
-    if study.has("trials", trial_id) and (is_being_scored or study.is_revealed(trial_id)):
-        study.add_trial(record)
+    is_new = study.check_trial(record)
+    if not is_new and (is_being_scored or study.is_revealed(record.trial_id)):
         return DeliveredTrial(record)
     try:
         analysis = analyze(record)

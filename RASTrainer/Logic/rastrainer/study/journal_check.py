@@ -9,20 +9,30 @@ nobody knows whose hands moved the sticks.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.journal.folder import JournalNumber
+from rastrainer.journal.entries import (
+    AcceptedTouch,
+    Acknowledged,
+    FinalRegistration,
+    JournalHeader,
+    Line,
+    Registered,
+    Rejected,
+    Scored,
+    TracePoint,
+    read_line,
+)
 from rastrainer.journal.journal_file import NO_LINE, DamagedLineError, decode_line
 from rastrainer.journal.recording import Recording, WholeRecording
 from rastrainer.json_records import record_from_json
 from rastrainer.motion.trajectory import Touch, Trajectory
 from rastrainer.motion.trial_motion import trial_motion
-from rastrainer.scenario.scenario import Scenario, method_of
+from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.record import TrialRecord
 
@@ -30,8 +40,6 @@ SAME = 1e-6
 """Numbers that were computed again may differ by this, in mm and s, or relatively."""
 SAMPLES_APART_S, TIP_APART_MM = 0.1, 50.0
 """A touch is on the tip's path: so near, in time and place, to a recorded posture."""
-_AFTER_THE_TRIAL = frozenset({"registration", "scored", "acknowledged"})
-Entry = Mapping[str, Any]
 
 
 def check_journal(
@@ -39,11 +47,13 @@ def check_journal(
 ) -> None:
     """Check a trial, and the truth that was revealed, by its journal."""
     try:
-        entries = _entries(journal, record.journal_sha256)
-        registered = next(e for e in entries if e["sha256"] == record.journal_sha256)
-        _check_record(record, entries[0], registered)
-        _check_touches(record, [e for e in entries if e["n"] < registered["n"]])
-        again = trial_motion(Recording.of(entries).trajectory())
+        lines, place = _lines(journal, record.journal_sha256)
+        header, registered = lines[0], lines[place].entry
+        if not isinstance(header.entry, JournalHeader) or not isinstance(registered, Registered):
+            raise InputError("Its journal holds no trial that was registered.")
+        _check_record(record, header.entry, header.at.utc, registered)
+        _check_touches(record, lines[:place])
+        again = trial_motion(Recording.of(lines).trajectory())
         _require(
             again.keys() == record.motion.keys()
             and all(
@@ -52,8 +62,8 @@ def check_journal(
             ),
             "the motion",
         )
-        written = np.reshape(registered["truth"]["headToWorld"], (4, 4))
-        of_seed = scenario.perturbed_head_to_world(registered["seed"])
+        written = registered.truth.head_to_world
+        of_seed = scenario.perturbed_head_to_world(registered.seed or 0)
         _require(
             np.allclose(written, truth.matrix, rtol=0.0, atol=SAME)
             and np.allclose(written, of_seed, rtol=0.0, atol=SAME),
@@ -65,52 +75,55 @@ def check_journal(
         raise InputError(f"Its journal holds an entry that is not one ({error!r}).") from None
 
 
-def _entries(journal: bytes, sealed: str) -> list[Entry]:
-    """Return the entries of a trial, without later entries; they hold the sealed line."""
-    entries: list[Entry] = []
-    previous = NO_LINE
+def _lines(journal: bytes, sealed: str) -> tuple[list[Line], int]:
+    """Return the lines of a trial, up to what came after it, and the place of the sealed one."""
+    lines: list[Line] = []
+    previous, place = NO_LINE, None
     for number, line in enumerate(journal.splitlines(), start=1):
         try:
-            entry = decode_line(line, number, previous)
+            values = decode_line(line, number, previous)
         except DamagedLineError as error:
             raise InputError(f"Line {number} of its journal was altered: {error}.") from None
-        if entry["kind"] in _AFTER_THE_TRIAL:
+        found, previous = read_line(values), values["sha256"]
+        if isinstance(found.entry, FinalRegistration | Scored | Acknowledged):
             break
-        entries.append(entry)
-        previous = entry["sha256"]
-    if not sealed or sealed not in {entry["sha256"] for entry in entries}:
+        if previous == sealed:
+            place = len(lines)
+        lines.append(found)
+    if place is None:
         raise InputError("Its journal is not the one that was announced with it.")
-    return entries
+    return lines, place
 
 
-def _check_record(record: TrialRecord, header: Entry, registered: Entry) -> None:
-    written = record_from_json(TrialRecord, registered["record"])
+def _check_record(
+    record: TrialRecord, header: JournalHeader, started_utc: str, registered: Registered
+) -> None:
+    written = record_from_json(TrialRecord, registered.record)
     _require(written == replace(record, journal_sha256=""), "the record")
-    number = record_from_json(JournalNumber, header)
-    method = method_of(header["method"]["name"] if "method" in header else None)
-    told = (header["trialId"], header["trainee"], header["task"], header["mode"], header["utc"])
+    told = (header.trial_id, header.trainee, header.task, header.mode, started_utc)
     _require(
         told == (record.trial_id, record.trainee, record.task, record.mode, record.started_utc)
-        and header["scenario"]["name"] == record.scenario
-        and (number.number, number.series) == (record.number, record.series)
-        and method is record.method,
+        and header.scenario.name == record.scenario
+        and (header.number, header.series) == (record.number, record.series)
+        and header.registration_method is record.method,
         "who played what",
     )
 
 
-def _check_touches(record: TrialRecord, entries: Sequence[Entry]) -> None:
+def _check_touches(record: TrialRecord, lines: Sequence[Line]) -> None:
     """Check the points that registered the trial, their times, and that the tip was there."""
-    tick_s = entries[0]["tickS"]
-    kept = _Measured.of(entries).trajectory()
-    last = {entry["label"]: entry for entry in entries if entry["kind"] == "touch"}
+    header = lines[0].entry
+    assert isinstance(header, JournalHeader)
+    kept = _Measured.of(lines).trajectory()
+    last = {line.entry.label: line.at for line in lines if isinstance(line.entry, AcceptedTouch)}
     found = [
-        (touch.label, touch.position_mm, last[touch.label]["simTimeS"] - tick_s, last[touch.label])
+        (touch, last[touch.label].sim_time_s - header.tick_s, last[touch.label].utc)
         for touch in kept.touches
     ]
     _require(len(found) == len(record.points), "the touches")
-    for (label, place, time_s, entry), point in zip(found, record.points, strict=True):
-        is_same = (label, entry["utc"]) == (point.label, point.utc)
-        is_there = np.allclose(place, point.position_mm, rtol=0.0, atol=SAME)
+    for (touch, time_s, utc), point in zip(found, record.points, strict=True):
+        is_same = (touch.label, utc) == (point.label, point.utc)
+        is_there = np.allclose(touch.position_mm, point.position_mm, rtol=0.0, atol=SAME)
         is_then = math.isclose(time_s, point.sim_time_s, abs_tol=SAME)
         _require(is_same and is_there and is_then, f"the touch of {point.label}")
     traced = [(*touch.position_mm,) for touch in kept.traced]
@@ -122,7 +135,7 @@ def _check_touches(record: TrialRecord, entries: Sequence[Entry]) -> None:
     _require(counts == (record.rejected_touches, record.undone_touches), "the refused touches")
     completed_s = (kept.traced or kept.touches)[-1].time_s
     _require(math.isclose(completed_s, record.completion_time_s, abs_tol=SAME), "the time")
-    tips = WholeRecording.of(entries).trajectory()
+    tips = WholeRecording.of(lines).trajectory()
     _require(all(_is_on_path(touch, tips) for touch in tips.touches), "the tip's path")
 
 
@@ -132,9 +145,11 @@ class _Measured(WholeRecording):
     The time of a trial that was registered again includes the checkpoints before.
     """
 
-    def add(self, entry: Entry) -> None:
-        measured = entry.get("measuredMm")
-        super().add(entry if measured is None else {**entry, "positionMm": measured})
+    def add(self, line: Line) -> None:
+        entry = line.entry
+        if isinstance(entry, AcceptedTouch | Rejected | TracePoint):
+            entry = replace(entry, position_mm=entry.measured_mm or entry.position_mm)
+        super().add(Line(line.at, entry))
 
 
 def _is_on_path(touch: Touch, path: Trajectory) -> bool:

@@ -41,7 +41,6 @@ class Outcome:
 
     @property
     def heading(self) -> str:
-        """Title with unit."""
         return f"{self.title}, {self.unit}" if self.unit else self.title
 
     def text(self, value: float) -> str:

@@ -49,12 +49,10 @@ class RatingForm:
 
     @property
     def lowest_total(self) -> int:
-        """The total of the worst marks."""
         return LOWEST * len(self.domains)
 
     @property
     def highest_total(self) -> int:
-        """The total of the best marks."""
         return HIGHEST * len(self.domains)
 
 

@@ -161,21 +161,20 @@ def _from_database(place: StudyPlace) -> StudyData:
     with Study.open_for_reading(place) as study:
         progress = StudyProgress(study)
         protocol = progress.protocol()
-        everyone = (*study.trainees(), *study.trainees(archived=True))
+        everyone = study.trainees(archived=None)
         consenting = {trainee.pseudonym for trainee in everyone if trainee.consent}
-        enrolled = [name for name in progress.enrolled() if name in consenting]
-        asked = {name: set(progress.played(name).counted_trials) for name in enrolled}
+        played = {name: progress.played(name) for name in progress.enrolled() if name in consenting}
         trials, versions, beside, objections = [], defaultdict(set), 0, []
         rateable: set[str] = set()
         for pseudonym in sorted(consenting):
             history = [t for t in study.history(pseudonym) if t.record.task != TRIAL_RUN]
             rateable |= {trial.record.trial_id for trial in history}
-            if pseudonym in asked:
-                others = [t for t in history if t.record.trial_id not in asked[pseudonym]]
-                history = [t for t in history if t.record.trial_id in asked[pseudonym]]
+            own = played.get(pseudonym)
+            if own is not None:
+                others = [t for t in history if t.record.trial_id not in own.counted_trials]
+                history = [t for t in history if t.record.trial_id in own.counted_trials]
                 beside += len(others)
-                steps = progress.progress(pseudonym).steps
-                objections += [entry for t in others if (entry := _objected(t.record, steps))]
+                objections += [entry for t in others if (entry := _objected(t.record, own.steps))]
             trials += trial_rows(history)
             for stored in history:
                 for name, version in stored.record.versions.items():
@@ -187,8 +186,8 @@ def _from_database(place: StudyPlace) -> StudyData:
             answers=tuple(a for a in progress.answers() if a.trainee in consenting),
             skipped=tuple(
                 (name, entry.step, str(entry.details.get("reason", "")))
-                for name in enrolled
-                for entry in progress.progress(name).skipped
+                for name, own in played.items()
+                for entry in own.skipped
             ),
             outside_protocol=beside,
             objections=tuple(objections),

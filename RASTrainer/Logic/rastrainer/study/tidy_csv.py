@@ -71,7 +71,7 @@ def write_histories(study: Study, path: Path | str) -> tuple[int, int]:
 
     Return the number of trials, and of trainees without consent, who are left out.
     """
-    everyone = (*study.trainees(), *study.trainees(archived=True))
+    everyone = study.trainees(archived=None)
     consenting = sorted(trainee.pseudonym for trainee in everyone if trainee.consent)
     left_out = len(everyone) - len(consenting)
     if not consenting:

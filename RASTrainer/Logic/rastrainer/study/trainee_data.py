@@ -51,7 +51,7 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
 
 @dataclass(frozen=True)
 class Erasure:
-    """Numbers of deleted trials and journals, unfinished trials included, and what may remain.
+    """Numbers of deleted trials and journals, unfinished trials included, and possible remains.
 
     Missing are UUIDs of deleted trials whose journals were not found; unreadable journals name no
     trainee.

@@ -63,7 +63,6 @@ class CalibrationPoint:
 
     @property
     def is_inside(self) -> bool:
-        """Whether the interval contains the true error."""
         return self.interval_mm[0] <= self.true_mm <= self.interval_mm[1]
 
 

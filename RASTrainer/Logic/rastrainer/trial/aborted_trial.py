@@ -31,7 +31,7 @@ class AbortedTrial(AnyTrial):
         elapsed_s: simulated time from the start to the end, or to the last touch where all were
             made; without pauses.
         phase: in which it was aborted: `running`, `paused`, or `complete` after all touches.
-        reason: an `AbortReason`, or that of a later version.
+        reason: an `AbortReason`, or a later version's reason.
     """
 
     aborted_utc: Utc

@@ -59,7 +59,6 @@ class TouchFinding:
 
     @property
     def sentence(self) -> Sentence:
-        """The finding in words, for the trainee."""
         where: Sentence | str = ""
         if self.depth_mm is not None and Reason.DEPTH in self.reasons:
             side = "touch above" if self.depth_mm > 0 else "touch below"
@@ -83,7 +82,7 @@ def touch_findings(
 ) -> tuple[TouchFinding, ...]:
     """Return a finding for each touch of a registration, in its order.
 
-    The outward unit normals (n, 3) are those of the skin at the fixed points, RAS. Touches are
+    `normals` are the skin's outward unit normals (n, 3) at the fixed points, RAS. Touches are
     found in the trajectory by label.
     """
     squares = registration.residuals_mm**2

@@ -14,10 +14,8 @@ from rastrainer.json_checks import number, numbers
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.fits import RIGID
-from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import (
     CommonBias,
-    TargetError,
     common_bias,
     true_touch_errors,
 )
@@ -71,13 +69,12 @@ class PublishedScore:
     reference: ctps.CohortReference
 
 
-@dataclass(frozen=True)
-class TrialAnalysis:
+@dataclass(frozen=True, kw_only=True)
+class TrialAnalysis(TouchRegistration):
     """The results of one trial.
 
     Attributes:
         target_name: of the scenario's target, at which target errors are computed.
-        fits: possible registrations by kind; rigid is always included.
         published_score: CTPS of the rigid registration; None without a cohort.
         feedback: on this trial alone.
         procedure: errors and score of the procedure; None without the truth, or of touches alone.
@@ -85,17 +82,11 @@ class TrialAnalysis:
 
     record: TrialRecord
     target_name: str
-    fits: Mapping[str, Registration]
-    target_errors: Mapping[str, TargetError]
     truth: RevealedTruth | None
     score: TrialScore | None
     published_score: PublishedScore | None
     feedback: TrialFeedback
     procedure: ProcedureOutcome | None = None
-
-    @property
-    def rigid(self) -> Registration:
-        return self.fits[RIGID]
 
     def scored(
         self,
@@ -107,8 +98,8 @@ class TrialAnalysis:
         """Return the analysis with the truth and its score.
 
         The score uses the true error of the rigid registration and, of a trial by fiducials, the
-        common bias of its touches. A landmark has no exact place, and a trace no bias. The
-        arguments are those of `analyze_trial`.
+        common bias of its touches. A landmark has no exact place, and a trace no bias.
+        `analyze_trial` describes the arguments.
         """
         record = self.record
         tre_mm = region_of(scenario).tre_mm(self.rigid.matrix, truth.matrix)
@@ -151,9 +142,9 @@ class TrialAnalysis:
     def _common_bias(self, scenario: Scenario, truth: RevealedTruth) -> CommonBias | None:
         """Return the common bias of touched fiducials; None of a trial by another method."""
         rigid, record = self.rigid, self.record
-        errors = true_touch_errors(rigid.moving_mm, truth.matrix, rigid.fixed_mm)
         if record.method is not RegistrationMethod.FIDUCIALS:
             return None
+        errors = true_touch_errors(rigid.moving_mm, truth.matrix, rigid.fixed_mm)
         normals = normals_at(scenario, record.task, rigid.labels, record.method)
         return common_bias(errors, normals)
 
@@ -170,9 +161,9 @@ def analyze_trial(
     """Register a trial by its method, its touches paired by label; score it by its truth.
 
     Args:
-        cohort: trials that CTPS compares with; those of the trial's own mode count.
-        references: of the score, by task, as a study's protocol sets them; those of the scenario
-            for tasks that it leaves out.
+        cohort: trials that CTPS compares with, if they have the trial's mode.
+        references: of the score, by task, as a study's protocol sets them; other tasks have the
+            scenario's.
         trajectory: of the trial, from its journal; it explains why a touch was off.
         truth: what the simulator has revealed; without it there is no score.
         pause: called between the steps, every 10 ms or so; a worker may wait in it.
@@ -181,10 +172,9 @@ def analyze_trial(
     rigid = registered.rigid
     normals = normals_at(scenario, record.task, rigid.labels, record.method)
     analysis = TrialAnalysis(
+        **vars(registered),
         record=record,
-        target_name=scenario.target_name,
-        fits=registered.fits,
-        target_errors=registered.target_errors,
+        target_name=scenario.target.name,
         truth=None,
         score=None,
         published_score=(
@@ -209,21 +199,11 @@ def published_score(
     return PublishedScore(published, published / 2, reference)
 
 
-def registration_arguments(analysis: TrialAnalysis) -> dict[str, Any]:
-    """Return the arguments of SubmitRegistration, ready for JSON.
-
-    Slicer sends them over OpenIGTLink; a simulator that no Slicer is connected to gives them to
-    itself.
-    """
-    registered = TouchRegistration(analysis.fits, analysis.target_errors)
-    return registered.arguments(analysis.record.trial_id)
-
-
 def score_arguments(analysis: TrialAnalysis) -> dict[str, Any]:
     """Return the arguments of TrialScored for a trial with truth and score, ready for JSON."""
     score, progress = analysis.score, analysis.feedback.progress
     procedure = {} if analysis.procedure is None else {"procedure": analysis.procedure.summary()}
-    # What was analyzed with its truth has a score.
+    # An analysis with the truth has a score.
     assert score is not None
     published, measures = analysis.published_score, score.measures
     # A trial run has no progress, and no mark; null is a study's without a mark for this method.

@@ -4,7 +4,7 @@ Equations 1 and 2: CT score = CT / mean CT and RMSE penalty = (RMSE − best RMS
 and best taken over all trials of a mode. The paper's Tables I and II hold 100·(CT score − RMSE
 penalty); its equation 3 divides that by 2. Both forms are here under these names.
 
-The trials of a published study are read from a CSV file, and notes on it from a file beside that.
+The trials of a published study are read from a CSV file, and notes on it from a second file.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ class CohortReference:
 
     @classmethod
     def of(cls, trials: Sequence[Trial], mean_ct_s: float | None = None) -> CohortReference:
-        """Return the reference of a cohort, with a printed mean CT instead of its own if given."""
+        """Return the reference of a cohort; a printed mean CT replaces the computed mean."""
         if not trials:
             raise InputError("CTPS needs at least one trial.")
         if mean_ct_s is None:
@@ -235,5 +235,4 @@ class StudyNotes:
 
 
 def read_notes(path: Path) -> StudyNotes | None:
-    """Read a file of notes; None where there is none."""
     return read_record(StudyNotes, path) if path.exists() else None

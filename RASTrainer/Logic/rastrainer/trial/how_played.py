@@ -10,9 +10,18 @@ from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Annotated, Any
+from typing import Annotated
 
 from rastrainer.commands import CommandName
+from rastrainer.journal.entries import (
+    CommandDone,
+    Continued,
+    DisplayReport,
+    JournalHeader,
+    Line,
+    PhaseChange,
+    Sample,
+)
 from rastrainer.json_checks import number, object_of, text, whole_number
 from rastrainer.protocol import Mode, Phase
 
@@ -43,7 +52,7 @@ class MovedBy(str, Enum):
 
 
 class Allowance(str, Enum):
-    """Exceptions that a protocol may allow; without them, such a trial counts for no step."""
+    """Exceptions that a protocol may allow; otherwise, no step of a study accepts such a trial."""
 
     COMMANDS = "commands"
     CHOSEN_SEED = "chosen seed"
@@ -88,7 +97,7 @@ class HowPlayed:
         return self.way_mm.get(MovedBy.COMMANDS.value, 0.0) / way if way else 0.0
 
     def objections(self, mode: str, allows: Collection[str]) -> tuple[str, ...]:
-        """Return why the trial does not count for a step of a study, in words."""
+        """Return the reasons why a step of a study does not accept the trial, in words."""
         return tuple(why for what, why in self._objections(mode) if what.value not in allows)
 
     def _objections(self, mode: str) -> Iterator[tuple[Allowance, str]]:
@@ -127,41 +136,37 @@ class PlayRecording:
         self._simulated_s = self._clock_s = 0.0
         self._since_complete = (0.0, 0.0)
         self._times: tuple[float, float] | None = None
-        self._phase = Phase.RUNNING.value
+        self._phase = Phase.RUNNING
         self._way_mm: dict[str, float] = defaultdict(float)
         self._feed_commands = 0
         self._view_s: Counter[str] = Counter()
         self._tip: tuple[float, ...] | None = None
 
-    def add(self, entry: Mapping[str, Any]) -> None:
-        """Add the next entry."""
-        self._add_time(entry)
-        kind = entry["kind"]
-        if kind in ("header", "continued"):
-            session = entry["session"]
-            speed = session["speed"] or 0.0
-            self._speed = max(self._speed, speed, key=lambda each: abs(each - 1.0))
-            if session["isSeeded"] and self._seed_source is SeedSource.DRAWN:
-                self._seed_source = SeedSource.SESSION
-        elif kind == "command" and entry["name"] == CommandName.START_TASK:
-            self._started_by = entry["sender"]
-            if entry["arguments"].get("seed") is not None:
-                self._seed_source = SeedSource.CLIENT
-        elif kind == "command" and entry["name"] == CommandName.FEED:
-            self._feed_commands += 1
-        elif kind == "phase":
-            self._pauses += entry["phase"] == Phase.PAUSED.value
-        elif kind == "sample":
-            tip = tuple(entry["tipMm"])
-            if self._tip is not None and entry["movedBy"]:
-                self._way_mm[entry["movedBy"]] += math.dist(tip, self._tip)
-            self._tip = tip
-        elif kind == "display":
-            # Views report once a second.
-            self._view_s[entry["view"]] += 1
+    def add(self, line: Line) -> None:
+        self._add_time(line)
+        match line.entry:
+            case JournalHeader(session=session) | Continued(session=session):
+                speed = session.speed or 0.0
+                self._speed = max(self._speed, speed, key=lambda each: abs(each - 1.0))
+                if session.is_seeded and self._seed_source is SeedSource.DRAWN:
+                    self._seed_source = SeedSource.SESSION
+            case CommandDone(name=CommandName.START_TASK, arguments=arguments, sender=sender):
+                self._started_by = sender
+                if arguments.get("seed") is not None:
+                    self._seed_source = SeedSource.CLIENT
+            case CommandDone(name=CommandName.FEED):
+                self._feed_commands += 1
+            case PhaseChange(phase=Phase.PAUSED):
+                self._pauses += 1
+            case Sample(tip_mm=tip, moved_by=moved_by):
+                if self._tip is not None and moved_by:
+                    self._way_mm[moved_by] += math.dist(tip, self._tip)
+                self._tip = tip
+            case DisplayReport(view=view):
+                # Views report once a second.
+                self._view_s[view] += 1
 
     def played(self) -> HowPlayed:
-        """Return how the trial was played so far."""
         return HowPlayed(
             started_by=self._started_by,
             seed_source=self._seed_source,
@@ -173,23 +178,24 @@ class PlayRecording:
             view_s=dict(self._view_s),
         )
 
-    def _add_time(self, entry: Mapping[str, Any]) -> None:
+    def _add_time(self, line: Line) -> None:
         """Add what has passed since the last entry, except in a pause and after the last point."""
-        kind, times = entry["kind"], (entry["simTimeS"], entry["monotonicS"])
-        is_paused = self._phase == Phase.PAUSED.value
-        if self._times is not None and kind != "continued" and not is_paused:
+        entry, times = line.entry, (line.at.sim_time_s, line.at.monotonic_s)
+        is_after_interruption = isinstance(entry, Continued)
+        if self._times is not None and not (is_after_interruption or self._phase is Phase.PAUSED):
             passed = times[0] - self._times[0], times[1] - self._times[1]
-            if self._phase == Phase.COMPLETE.value:
+            if self._phase is Phase.COMPLETE:
                 # It only counts if more points follow: after an undo, or of a trace.
                 waited = self._since_complete
                 self._since_complete = waited[0] + passed[0], waited[1] + passed[1]
             else:
                 self._count(passed)
         self._times = times
-        if kind in ("phase", "continued"):
-            self._phase = entry["phase"]
-            if self._phase not in (Phase.PAUSED.value, Phase.COMPLETE.value):
-                if self._phase == Phase.RUNNING.value:
+        if is_after_interruption or entry.kind == PhaseChange.kind:
+            assert isinstance(entry, Continued | PhaseChange)
+            self._phase = entry.phase
+            if self._phase not in (Phase.PAUSED, Phase.COMPLETE):
+                if self._phase is Phase.RUNNING:
                     self._count(self._since_complete)
                 self._since_complete = (0.0, 0.0)
 

@@ -37,7 +37,6 @@ class LcCusum:
 
 
 def lc_cusum(failures: Sequence[bool], adequate: float, inadequate: float, limit: float) -> LcCusum:
-    """Return the chart of a trainee's failures."""
     success, failure = log_likelihood_ratios(adequate, inadequate)
     if not limit > 0:
         raise InputError("The limit of an LC-CUSUM must be above 0.")

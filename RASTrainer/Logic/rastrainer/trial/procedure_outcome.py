@@ -1,9 +1,9 @@
 """The outcome of a trial's procedure: its true errors, and a score of 0 to 100.
 
-Errors, drilling, distances kept and time have strictly decreasing desirabilities, as those of
-`rastrainer.trial.scoring`, and the score is 100 times the geometric mean of all. Beyond a limit,
-and where a no-go structure is hit or bone is missed, the procedure is not acceptable and its score
-falls below that of every acceptable one: neither speed nor anything else makes up for it.
+Errors, drilling, distances kept and time have strictly decreasing desirabilities, as in
+`rastrainer.trial.scoring`, and the score is 100 times the geometric mean of all. Beyond a limit, or
+if it hits a no-go structure or misses bone, a procedure is not acceptable and scores below every
+acceptable procedure: speed cannot make up for it.
 Checkpoints, FRE and expected TRE play no part: none of them sees an offset common to all touches.
 
 The values of half and limit are our own convention, near published figures: clinical target point
@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Annotated, Any
 
 import numpy as np
@@ -32,6 +32,7 @@ from rastrainer.trial.scoring import (
     TIME_FLOOR,
     Desirability,
     ScoreReference,
+    check_measures,
     falling,
     of_time,
 )
@@ -56,12 +57,12 @@ STAND_OFF_MM, INSERTION_MM_S = 30.0, 8.0
 
 @dataclass(frozen=True)
 class ProcedureMeasures:
-    """The measures of a procedure that count for its score.
+    """The measures of a procedure that its score is computed from.
 
     Attributes:
         duration_s: from the start of the trial to the last release, without pauses; above 0.
-        target_mm, entry_mm, angle_deg: root mean squares of the true errors; beside each, the
-            largest of them.
+        target_mm, entry_mm, angle_deg: root mean squares of the true errors; each with the largest
+            error.
         plunge_mm: the deepest that the drill was past an inner table.
         intrusion_mm: how far an instrument is within its safety distance to a no-go structure.
         hits: how many times an instrument and a no-go structure meet.
@@ -102,16 +103,6 @@ class ProcedureMeasures:
             missed_bone=len(analysis.missed_bone),
         )
 
-    def check(self) -> None:
-        """Raise `InputError` unless all are numbers of a procedure."""
-        for field in fields(self):
-            if not 0 <= getattr(self, field.name) <= MAX_MEASURE:
-                raise InputError(
-                    f"The procedure's {field.name} must be a number from 0 to {MAX_MEASURE:g}."
-                )
-        if self.duration_s <= 0:
-            raise InputError("The procedure's duration must be a number of seconds above 0.")
-
     @property
     def is_accurate(self) -> bool:
         """Whether every error is within its limit, and every instrument in the skull."""
@@ -147,7 +138,6 @@ class ProcedureScore:
 
     @property
     def acceptable(self) -> bool:
-        """Whether the procedure is within all limits."""
         return self.is_accurate and self.is_safe
 
 
@@ -166,8 +156,9 @@ def reference_duration_s(touching_s: float, procedure: Procedure, self_aligned: 
 
 
 def score_procedure(measures: ProcedureMeasures, reference_s: float) -> ProcedureScore:
-    """Return the score of a procedure."""
-    measures.check()
+    check_measures(measures, "The procedure's measures")
+    if measures.duration_s == 0:
+        raise InputError("The procedure's duration must be above 0 s.")
     desirabilities = {
         "time": of_time(measures.duration_s, reference_s),
         **_accuracy(measures.target_mm, measures.entry_mm, measures.angle_deg),
@@ -253,8 +244,7 @@ def procedure_outcome(
     if done is None:
         return None
     procedure = scenario.procedure(done.procedure)
-    skull = scenario.skull_mesh
-    assert skull is not None, "a scenario with procedures has a skull"
+    skull = scenario.skull_path
     meshes = read_procedure_meshes(procedure, skull)
     if done.sha256 != procedure.sha256(skull):
         raise InputError(

@@ -78,6 +78,9 @@ def _text_or_number(value: Any) -> str | float:
 
 
 Count = Annotated[int, json_checks.whole_number(0, TOUCH_LIMIT)]
+PlayedMethod = Annotated[
+    RegistrationMethod, json_checks.one_of(*(each.value for each in PLAYED_METHODS))
+]
 Utc = Annotated[str, utc_time]
 """The wall clock may jump, so no duration is taken from it."""
 
@@ -97,13 +100,13 @@ class AnyTrial:
     """Fields that the records of finished and of aborted trials share.
 
     Attributes:
-        task: name, such as `task-1`; also that of the trial run.
+        task: name, such as `task-1` or `trial-run`.
         points: the kept touches, of all fifteen fiducials or of landmarks, in their order; their
             labels differ and their times do not fall.
         rejected_touches: number of touches that were refused (too far off, wrong fiducial).
         versions: name and version of each program and format that made the record.
         method: how the trial is registered, or would have been; a `PLAYED_METHODS`.
-        number: of the trial among those of its simulator's folder; 0 if unknown.
+        number: of the trial in its simulator's folder; 0 if unknown.
         series: UUID of that numbering.
     """
 
@@ -120,9 +123,7 @@ class AnyTrial:
     touch_rule: Annotated[str, json_checks.one_of(*(rule.value for rule in TouchRule))] = (
         TouchRule.WITHIN_RADIUS.value
     )
-    method: Annotated[
-        RegistrationMethod, json_checks.one_of(*(each.value for each in PLAYED_METHODS))
-    ] = RegistrationMethod.FIDUCIALS
+    method: PlayedMethod = RegistrationMethod.FIDUCIALS
     number: Annotated[int, json_checks.whole_number(0, NUMBER_LIMIT)] = 0
     series: Annotated[str, json_checks.text(36, 0)] = ""
 
@@ -141,7 +142,7 @@ class AnyTrial:
 
 @dataclass(frozen=True, kw_only=True)
 class TrialRecord(AnyTrial):
-    """A finished trial, as it was played; a `TrialAnalysis` has what is known of it.
+    """A finished trial, as it was played; a `TrialAnalysis` has its results.
 
     Attributes:
         completion_time_s: simulated time from the start to the last kept touch, or the last point
@@ -150,8 +151,8 @@ class TrialRecord(AnyTrial):
         display: what the trainee looked at: `kind`, `device`, `refreshHz`, `shownFrames` and
             `droppedFrames`, the `guidance` to the next point, and the `ghost` that was shown (a
             `GhostRule`); empty if no view reported it.
-        procedure: what was done after the touches; None in a trial of touches alone. The points
-            are those of the accepted registration.
+        procedure: done after the touches; None in a trial of touches alone. The points belong to
+            the accepted registration.
         trace: the points that were traced over the skin, in order of time; empty if the method
             has no trace.
         skin: its shift, without the seed: that is revealed with the truth.

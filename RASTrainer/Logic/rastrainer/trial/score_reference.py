@@ -1,7 +1,7 @@
 """The region in which a registration has to be right, and the reference values of a task's score.
 
 Neither fiducials nor one target show how far a guided instrument would miss: a registration may be
-right at one point by chance and wrong beside it. So the true error is taken over the scenario's
+right at one point by chance and wrong next to it. So the true error is taken over the scenario's
 targets and over a grid of the brain's volume, half and half. The brain is not segmented: the grid
 is made of the points of a 10 mm grid that lie at least 15 mm under the skin (scalp, skull and
 cerebrospinal fluid) and at most 120 mm below the vertex.
@@ -54,16 +54,30 @@ def computed_once(
 
     The cache is valid while the mesh's file is unchanged.
     """
-    mesh = scenario.head_mesh
-    changed = mesh.stat().st_mtime_ns if mesh.is_file() else 0
-    return _computed(mesh, changed, compute, arguments)
+    return _computed(*_head_file(scenario), compute, arguments)
+
+
+def head_of(scenario: Scenario) -> HeadMesh:
+    """Return the scenario's head, which is read once while its file is unchanged."""
+    return _read_head(*_head_file(scenario))
+
+
+def _head_file(scenario: Scenario) -> tuple[Path, int]:
+    """Return the file of a scenario's head, and when it was changed."""
+    path = scenario.head
+    return path, path.stat().st_mtime_ns if path.is_file() else 0
+
+
+@lru_cache(maxsize=1)
+def _read_head(path: Path, _changed: int) -> HeadMesh:
+    return read_head_mesh(path)
 
 
 @lru_cache(maxsize=MAX_RESULTS)
 def _computed(
-    mesh: Path, _changed: int, compute: Callable[..., np.ndarray], arguments: tuple[Points, ...]
+    path: Path, changed: int, compute: Callable[..., np.ndarray], arguments: tuple[Points, ...]
 ) -> np.ndarray:
-    result = compute(read_head_mesh(mesh), *arguments)
+    result = compute(_read_head(path, changed), *arguments)
     result.setflags(write=False)
     return result
 
@@ -96,8 +110,9 @@ class Region:
         """Return the expected RMS TRE of a rigid registration of touches on the skin.
 
         The touching errors are independent, with an FLE of 1 mm, and isotropic along the skin:
-        Cov(eᵢ) = ½ (I − nᵢnᵢᵀ). To first order they move the fit by Σ (Σ JᵀJ)⁻¹ Jᵢᵀ eᵢ, and a point
-        r by J(r) times that, with J the motions of a point. The fiducials (n, 3), RAS mm, are not
+        Cov(eᵢ) = ½ (I − nᵢnᵢᵀ). They move the fit by Σ (Σ JᵀJ)⁻¹ Jᵢᵀ eᵢ, and a point r by J(r)
+        times that, to first order, with J the motions of a point. The fiducials (n, 3), RAS mm, are
+        not
         collinear, and the unit normals (n, 3) of the skin there are in RAS.
         """
         center = fiducials.mean(axis=0)
@@ -113,7 +128,7 @@ class Region:
 
 
 def region_of(scenario: Scenario) -> Region:
-    targets = [scenario.target_position, *(target.position_ras for target in scenario.targets)]
+    targets = [scenario.target.position_ras, *(target.position_ras for target in scenario.targets)]
     return Region(np.array(targets, dtype=float), computed_once(scenario, brain_grid))
 
 
@@ -142,7 +157,7 @@ def brain_grid(head: HeadMesh) -> np.ndarray:
 LIFT_MM = 35.0
 """Height of the tip above the skin between two fiducials."""
 TOUCH_S, SPEED_MM_S = 5.2, 26.0
-"""Time per fiducial, and speed of the tip between two. The ratio is that of the virtual trainee on
+"""Time per fiducial, and speed of the tip between two. The ratio comes from the virtual trainee on
 the six tasks of Colin27; the scale gives Tasks 1 to 5 the mean of 127 s of the published study,
 pooled over both modes."""
 PUBLISHED_RMSE_MM = 1.4
@@ -163,9 +178,9 @@ def score_reference(
 ) -> ScoreReference:
     """Return the reference of a task.
 
-    Whatever the method is, the error is measured against that of the task's fiducials: what an
-    operation needs does not depend on how its head was registered. The reference time is that of
-    the points which the method has touched, and of a trace of `REFERENCE_TRACE_MM`. References of a
+    Every method's error is compared with the error by the task's fiducials: the needs of an
+    operation do not depend on how its head was registered. The reference time includes the points
+    that the method has touched, and a trace of `REFERENCE_TRACE_MM`. References of a
     protocol, by task, take precedence for fiducials.
     """
     is_by_fiducials = method is RegistrationMethod.FIDUCIALS

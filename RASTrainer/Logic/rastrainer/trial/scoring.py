@@ -70,7 +70,7 @@ class ScoreReference:
 
 @dataclass(frozen=True)
 class ScoreMeasures:
-    """The measures of a trial that count for its score.
+    """The measures of a trial that its score is computed from.
 
     Attributes:
         tre_mm: RMS true TRE over the region.
@@ -103,21 +103,6 @@ class ScoreMeasures:
                 "cannot be scored."
             ) from None
         return cls(completion_time_s, tre_mm, time_s, path_mm, depth_mm, common_bias_mm)
-
-    def check(self, has_bias: bool) -> None:
-        """Raise `InputError` unless all are numbers of a trial, with a common bias or without."""
-        bias_mm = self.common_bias_mm if has_bias else 0.0
-        if not 0 < self.completion_time_s <= MAX_MEASURE:
-            raise InputError("The completion time must be a number of seconds above 0.")
-        for value, what in (
-            (self.tre_mm, "true target error must be a number of mm"),
-            (self.contact_time_s, "time of unintended contact must be a number of seconds"),
-            (self.contact_path_mm, "path of unintended contact must be a number of mm"),
-            (self.pressing_depth_mm, "pressing depth must be a number of mm"),
-            (bias_mm, "common bias of the touches must be a number of mm"),
-        ):
-            if value is None or not 0 <= value <= MAX_MEASURE:
-                raise InputError(f"The {what}, 0 or above.")
 
 
 SAFETY_METRICS = ("unintended_contact_time_s", "unintended_contact_path_mm", "pressing_depth_mm")
@@ -152,7 +137,6 @@ class TrialScore:
 
     @property
     def acceptable(self) -> bool:
-        """Whether the trial is within all limits."""
         return self.is_accurate and self.is_unbiased is not False and self.is_safe
 
     @property
@@ -165,8 +149,14 @@ class TrialScore:
         return {**parts, "safety": self.safety_desirability}
 
 
+def check_measures(measures: object, what: str) -> None:
+    """Check that all fields of a dataclass are measures; `what` starts the error."""
+    for name, value in vars(measures).items():
+        if value is not None and not 0 <= value <= MAX_MEASURE:
+            raise InputError(f"{what}: {name} must be a number from 0 to {MAX_MEASURE:g}.")
+
+
 def passes(score: float, acceptable: bool, pass_mark: float) -> bool:
-    """Return whether a trial reaches the mark and is within all limits."""
     return acceptable and score >= pass_mark
 
 
@@ -177,11 +167,15 @@ def score_trial(
 ) -> TrialScore:
     """Return the score of a trial.
 
-    Methods have references of their own and, but for fiducials, no common bias: their scores are
-    compared with those of the same method alone.
+    Each method has its own references, and only fiducials have a common bias: scores are compared
+        within one method.
     """
-    measures.check(has_bias=method is RegistrationMethod.FIDUCIALS)
+    check_measures(measures, "The trial's measures")
     bias_mm = measures.common_bias_mm
+    if measures.completion_time_s == 0:
+        raise InputError("The trial's completion time must be above 0 s.")
+    if bias_mm is None and method is RegistrationMethod.FIDUCIALS:
+        raise InputError("The common bias of a trial by fiducials must be a number of mm.")
     time = of_time(measures.completion_time_s, reference.time_s)
     accuracy = _accuracy(measures.tre_mm, bias_mm, reference)
     safety = _safety(measures.contact_time_s, measures.contact_path_mm, measures.pressing_depth_mm)

@@ -1,29 +1,27 @@
 """The registration of a trial, open or finished, by its touches and its trace: one for all methods.
 
-A trace is matched to the surface of the scenario's head, from where the landmarks put it. What
-counts of such a registration is its matrix: its residuals are those of the landmarks, which it does
-not make least, and its FRE is the root mean square of the trace's inliers to the surface.
+A trace is matched to the surface of the scenario's head, from where the landmarks put it. Such a
+registration is used for its matrix: its residuals belong to the landmarks, which the fit does not
+minimize, and its FRE is the root mean square distance of the trace's inliers to the surface.
 
-Where the skin lay otherwise than in the images, the points are also put back and registered again:
-that shows what the shift did.
+If the skin had shifted from its place in the images, the points are also put back and registered
+again, which shows the effect of the shift.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
-from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, pair
-from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.head.mesh import HeadMesh
 from rastrainer.head.trial_head import SkinShift
-from rastrainer.json_checks import accepted
+from rastrainer.json_checks import list_of
 from rastrainer.json_records import record_from_json
 from rastrainer.procedure.record import RegisteredTouch
 from rastrainer.protocol import (
@@ -39,14 +37,13 @@ from rastrainer.registration.registration import Registration, register, registe
 from rastrainer.registration.surface_error import (
     TraceGuide,
     knowledge_of,
-    nearest_traced_mm,
     surface_target_error,
 )
 from rastrainer.registration.surface_match import SurfaceMatch, match_surface
 from rastrainer.registration.target_error import TargetError, target_error, true_errors
-from rastrainer.scenario.scenario import Scenario, method_of, task_by_method
-from rastrainer.trial.record import TracePoint, TrialRecord, trace_points
-from rastrainer.trial.score_reference import point_normals
+from rastrainer.scenario.scenario import Scenario, task_by_method
+from rastrainer.trial.record import PlayedMethod, TracePoint, TrialRecord, trace_points
+from rastrainer.trial.score_reference import head_of, point_normals
 from rastrainer.trial.wording import Sentence, say
 
 
@@ -75,30 +72,33 @@ class GivenPoints:
     ) -> GivenPoints:
         """Return the points in an answer to GetTrial about an open trial.
 
-        Of a trace, `least_traced` points are needed: as many as register it, or fewer to show it.
+        A trace needs `least_traced` points: enough to register it, or fewer to show it.
         """
-        method, given = method_of(answer.get("method")), answer.get("touches")
-        is_by_fiducials = method is RegistrationMethod.FIDUCIALS
-        least = FIDUCIAL_COUNT if is_by_fiducials else COARSE_LANDMARKS
-        if not isinstance(given, list) or not least <= len(given) <= FIDUCIAL_COUNT:
-            wanted = FIDUCIAL_COUNT if is_by_fiducials else "landmarks"
-            raise InputError(f"The trial must hold touches, a list of {wanted}.")
-        points = [
-            record_from_json(RegisteredTouch, touch, "Each touch of the trial") for touch in given
-        ]
-        places = np.array([point.position_mm for point in points])
-        touches = PointList(tuple(point.label for point in points), places)
-        trace: tuple[TracePoint, ...] = ()
-        if method in TRACED_METHODS:
-            what = "The trace of the trial"
-            trace = accepted(trace_points, answer.get("trace"), what)
-            if len(trace) < least_traced:
-                raise InputError(
-                    f"The trial must hold a trace of {least_traced} points or more, not "
-                    f"{len(trace)}."
-                )
-        traced = np.array(trace, dtype=float).reshape(-1, 4)[:, :3]
-        return cls(str(answer.get("task", "")), touches, method, traced)
+        what = "The trial"
+        given = record_from_json(_TrialAnswer, answer, what)
+        is_by_fiducials = given.method is RegistrationMethod.FIDUCIALS
+        if is_by_fiducials and len(given.touches) < FIDUCIAL_COUNT:
+            raise InputError(f"{what}: touches must be a list of {FIDUCIAL_COUNT} touches.")
+        trace = given.trace if given.method in TRACED_METHODS else ()
+        if given.method in TRACED_METHODS and len(trace) < least_traced:
+            raise InputError(
+                f"{what}: trace must be a list of {least_traced} points or more, not {len(trace)}."
+            )
+        places = np.array([point.position_mm for point in given.touches])
+        touches = PointList(tuple(point.label for point in given.touches), places)
+        return cls(given.task, touches, given.method, np.reshape(trace, (-1, 4))[:, :3])
+
+
+@dataclass(frozen=True)
+class _TrialAnswer:
+    """What an answer to GetTrial holds of the points of an open trial."""
+
+    task: str
+    touches: Annotated[
+        tuple[RegisteredTouch, ...], list_of(COARSE_LANDMARKS, FIDUCIAL_COUNT, "touches")
+    ]
+    method: PlayedMethod = RegistrationMethod.FIDUCIALS
+    trace: Annotated[tuple[TracePoint, ...], trace_points] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,8 +107,7 @@ class FollowedTrace:
 
     Attributes:
         places: (n, 3) float, RAS mm.
-        away_mm: (v,) float, from each vertex of the head to the nearest of them; infinite before
-            the first.
+        away_mm: as in `TraceGuide`.
         next_place: (3,) float, RAS mm, where the next points would help most; None without one.
     """
 
@@ -117,39 +116,24 @@ class FollowedTrace:
     next_place: np.ndarray | None
 
 
-class TraceFollower:
-    """Follows the trace of one trial; only what is new is computed.
+def follow_trace(
+    guide: TraceGuide, scenario: Scenario, given: GivenPoints, is_drawing: bool
+) -> FollowedTrace:
+    """Return the trace so far; `is_drawing` says whether a stroke is being drawn.
 
     The true pose of the head stays unknown: the landmarks that were touched stand for it.
     """
-
-    def __init__(self, scenario: Scenario) -> None:
-        self._scenario = scenario
-        self._mesh = read_head_mesh(scenario.head_mesh)
-        self._guide = trace_guide(scenario, self._mesh)
-        self._traced = np.zeros((0, 3))
-        self._matrix = np.eye(4)
-        self._away = np.full(len(self._mesh.vertices), np.inf)
-
-    def follow(self, given: GivenPoints, is_drawing: bool) -> FollowedTrace:
-        """Return the trace so far; `is_drawing` says whether a stroke is being drawn."""
-        task = task_by_method(self._scenario, given.task, given.method)
-        labels, moving, fixed = pair(given.touches, PointList(task.labels, task.fiducials))
-        matrix, known = register(moving, fixed, RIGID, labels).matrix, len(self._traced)
-        is_longer = np.array_equal(given.trace_mm[:known], self._traced)
-        if not is_longer or not np.array_equal(matrix, self._matrix):
-            known, self._away = 0, np.full(len(self._mesh.vertices), np.inf)
-        places = transforms.apply(matrix, given.trace_mm)
-        self._away = nearest_traced_mm(self._mesh.vertices, places[known:], self._away)
-        self._traced, self._matrix = given.trace_mm, matrix
-        found = self._guide.next_place(places, is_drawing)
-        return FollowedTrace(places, self._away, None if found is None else found.position)
+    task = task_by_method(scenario, given.task, given.method)
+    labels, moving, fixed = pair(given.touches, PointList(task.labels, task.fiducials))
+    places = transforms.apply(register(moving, fixed, RIGID, labels).matrix, given.trace_mm)
+    found = guide.next_place(places, is_drawing)
+    return FollowedTrace(places, guide.away_mm, None if found is None else found.position)
 
 
 def trace_guide(scenario: Scenario, mesh: HeadMesh) -> TraceGuide:
     to_head = transforms.inverse(scenario.head_to_world)
     eye = transforms.apply(to_head, scenario.cameras["close-up"].position_mm)
-    return TraceGuide(mesh, scenario.target_position, eye)
+    return TraceGuide(mesh, scenario.target.position_ras, eye)
 
 
 LEAST_ALONG_SURFACE = 6
@@ -187,7 +171,7 @@ class TouchRegistration:
 def register_trial(
     given: GivenPoints, scenario: Scenario, pause: Callable[[], None] = lambda: None
 ) -> TouchRegistration:
-    """Register what was touched and traced in a trial, by the trial's method.
+    """Register the touches and the trace of a trial by its method.
 
     The touches are paired by label with the fiducials of the task, or the landmarks. `pause` is
     called between the steps, every 10 ms or so; a worker may wait in it.
@@ -201,7 +185,7 @@ def register_trial(
         coarse = fits[RIGID]
         match = match_surface(given.trace_mm, head_of(scenario), coarse.matrix)
         pause()
-        error = surface_target_error(knowledge_of(match), scenario.target_position)
+        error = surface_target_error(knowledge_of(match), scenario.target.position_ras)
         vectors = transforms.apply(match.matrix, coarse.moving_mm) - coarse.fixed_mm
         matched = replace(
             coarse,
@@ -219,20 +203,9 @@ def register_trial(
         is_along = len(labels) >= LEAST_ALONG_SURFACE
         localization = error_along_surface(fit, normals) if is_along else isotropic_error(fit)
         pause()
-        errors[kind] = target_error(fit, scenario.target_position, localization)
+        errors[kind] = target_error(fit, scenario.target.position_ras, localization)
     pause()
     return TouchRegistration(fits, errors)
-
-
-def head_of(scenario: Scenario) -> HeadMesh:
-    """Return the scenario's head, which is read once while its file is unchanged."""
-    path = scenario.head_mesh
-    return _read_head(path, path.stat().st_mtime_ns if path.is_file() else 0)
-
-
-@lru_cache(maxsize=1)
-def _read_head(path: Path, _changed: int) -> HeadMesh:
-    return read_head_mesh(path)
 
 
 def normals_at(
@@ -240,7 +213,7 @@ def normals_at(
 ) -> np.ndarray:
     """Return the outward normals of the skin at points of a task by a method, (n, 3) float, RAS.
 
-    `labels` are those of the n points.
+    `labels` name the n points.
     """
     task = task_by_method(scenario, task_name, method)
     rows = [task.labels.index(label) for label in labels]
@@ -253,7 +226,7 @@ def unshifted_tre_mm(
     """Return the true TRE that a trial would have had with the skin as in the images, mm.
 
     Its touches and its trace are put back to where they would have been measured, and registered
-    again. None if the skin lay as in the images, or where the points cannot be registered so.
+    again. None if the skin was not shifted, or if the points cannot be registered then.
     """
     if skin.is_none:
         return None
@@ -270,13 +243,13 @@ def unshifted_tre_mm(
         matrix = register_trial(unshifted, scenario).rigid.matrix
     except InputError:
         return None
-    return float(np.linalg.norm(true_errors(matrix, head_to_world, scenario.target_position)))
+    return float(np.linalg.norm(true_errors(matrix, head_to_world, scenario.target.position_ras)))
 
 
 def skin_sentences(
     skin: SkinShift, true_tre_mm: float, unshifted_mm: float | None
 ) -> tuple[Sentence, ...]:
-    """Return what the trainee reads after a trial; none if the skin lay as in the images."""
+    """Return the sentences for the trainee after a trial; none if the skin was not shifted."""
     if skin.is_none:
         return ()
     amounts = {"shift": skin.shift_mm, "indentation": skin.indentation_mm, "tre": true_tre_mm}

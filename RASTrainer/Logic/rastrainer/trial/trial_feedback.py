@@ -1,4 +1,4 @@
-"""Feedback on one trial, alone and among the trainee's earlier ones: as data and as sentences."""
+"""Feedback on one trial, alone and among the trainee's earlier trials: as data and as sentences."""
 
 from __future__ import annotations
 
@@ -44,8 +44,8 @@ class PastTrial:
         score: The latest, above 0 up to 100; 0 of an aborted trial.
         is_aborted: Whether it was aborted after a touch, or can have no score: not passed, without
             time or score.
-        method: By which it was registered, or would have been; trials are compared with those of
-            the same method.
+        method: By which it was registered, or would have been; only trials by the same method are
+            compared.
         parts: Desirability of each part of the score, 0 to 1.
         procedure: That it continued with; "" for touches alone, and for aborted trials, which do
             not say which.
@@ -105,8 +105,8 @@ class TraineeProgress:
         scores: Of the trials of this task in this mode, in order; like competence, of the trial's
             method of registration alone.
         pass_mark: Score that passes; None without one for this method.
-        competence: LC-CUSUM over the trainee's trials of all tasks in this mode; aborted ones count
-            as not passed. None without a pass mark.
+        competence: LC-CUSUM over the trainee's trials of all tasks in this mode; aborted trials are
+            not passed. None without a pass mark.
     """
 
     scores: tuple[float, ...]
@@ -120,8 +120,8 @@ def progress_of(
 ) -> TraineeProgress:
     """Return the progress at a trial.
 
-    The past are all scored trials of the trainee without trial runs, and aborted ones that count as
-    not passed, in order; later ones are ignored.
+    `past` has all scored trials of the trainee without trial runs, and aborted trials that are not
+    passed, in order; later trials are ignored.
     """
     ids = ["" if other.is_aborted else other.trial_id for other in past]
     if trial_id not in ids:
@@ -183,12 +183,12 @@ def _about_competence(chart: LcCusum, trials: int) -> Sentence:
 
 
 MAX_SHORT = 4
-"""Sentences that are read at a glance beside the figures of a result."""
+"""Sentences that are read at a glance next to the figures of a result."""
 
 
 @dataclass(frozen=True)
 class TrialFeedback:
-    """What a trainee is shown after a trial.
+    """The feedback shown to a trainee after a trial.
 
     Attributes:
         score: With its parts; None if the trial has none.
@@ -207,7 +207,6 @@ class TrialFeedback:
 
     @property
     def score_sentences(self) -> tuple[str, ...]:
-        """The score and its parts, as far as known."""
         score, sentences = self.score, []
         if score is not None:
             beyond = "." if score.acceptable else ": not acceptable."
@@ -235,7 +234,6 @@ class TrialFeedback:
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """All sentences in display order."""
         progress = () if self.progress is None else self.progress.sentences
         improve = tuple(f"{i}. {a.sentence}" for i, a in enumerate(self.advice, start=1))
         scored = (*self.score_sentences, *self.skin)
@@ -243,7 +241,7 @@ class TrialFeedback:
 
     @property
     def short_sentences(self) -> list[Sentence]:
-        """What helps a trainee at the next trial: the worst touch, the first advice, the trend.
+        """The help for the next trial: the worst touch, the first advice, the trend.
 
         Whether the trial is passed is said above them, and competence is for instructors.
         """
@@ -260,10 +258,10 @@ def trial_feedback(
     trajectory: Trajectory | None = None,
     bias: CommonBias | None = None,
 ) -> TrialFeedback:
-    """Return the feedback on a trial; what is not known is left out.
+    """Return the feedback on a trial; unknown parts are left out.
 
-    The outward unit normals (n, 3) are those of the skin at the fiducials, RAS. With the metric
-    `path_efficiency`, detours are advised on too.
+    `normals` are the skin's outward unit normals (n, 3) at the fiducials, RAS. The metric
+    `path_efficiency` adds advice on detours.
     """
     findings = touch_findings(registration, normals, trajectory)
     return TrialFeedback(

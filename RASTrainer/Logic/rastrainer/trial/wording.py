@@ -98,7 +98,6 @@ class Sentence(str):
 
 
 def say(key: str, **values: Any) -> Sentence:
-    """Return a sentence with its values filled in."""
     rounded = {
         name: value * _ROUND_UP if isinstance(value, float) else value
         for name, value in values.items()

@@ -104,7 +104,7 @@ class TracePlaces:
         """Return the next place; called in the thread."""
         try:
             if self._guide is None or self._guide[0] is not setup:
-                mesh = read_head_mesh(setup.scenario.head_mesh)
+                mesh = read_head_mesh(setup.scenario.head)
                 self._guide = setup, trace_guide(setup.scenario, mesh)
             guide = self._guide[1]
         except (RASTrainerError, OSError):

@@ -17,6 +17,7 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import make_folder, write_text
+from rastrainer.journal.entries import iso
 from rastrainer.journal.folder import TUTORIAL_SUFFIX, journals_of
 from rastrainer.journal.journal_file import (
     MAX_LINE_BYTES,
@@ -24,7 +25,6 @@ from rastrainer.journal.journal_file import (
     DamagedLineError,
     decode_line,
     file_stamp,
-    iso,
 )
 from rastrainer.json_checks import is_number
 from rastrainer.json_records import record_from_json, record_to_json

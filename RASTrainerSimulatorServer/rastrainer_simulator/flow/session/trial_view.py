@@ -26,7 +26,7 @@ from rastrainer_simulator.vectors import (
     unit,
     vector,
 )
-from rastrainer_simulator.viewpoint.best_view import BestView
+from rastrainer_simulator.viewpoint.best_view import BestView, BestViews
 from rastrainer_simulator.viewpoint.view_control import (
     UP,
     CameraPose,
@@ -36,7 +36,6 @@ from rastrainer_simulator.viewpoint.view_control import (
     heading_deg,
     orbit_to,
 )
-from rastrainer_simulator.viewpoint.view_search import BestViews
 
 
 class TrialView:

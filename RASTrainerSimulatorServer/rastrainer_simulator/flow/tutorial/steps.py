@@ -7,10 +7,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 
+from rastrainer.journal.entries import GUIDED_TOUCHES
 from rastrainer.protocol import Mode
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
-from rastrainer_simulator.record.trial_context import GUIDED_TOUCHES
 from rastrainer_simulator.state import TouchStage
 from rastrainer_simulator.teleoperation.steering import Axes
 from rastrainer_simulator.vectors import Vector, distance, dot, subtract

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from rastrainer.commands import CommandName
 from rastrainer.head.trial_head import Perturbation
+from rastrainer.journal.entries import GUIDED_TOUCHES
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import SimulationSetup
@@ -22,7 +23,7 @@ from rastrainer_simulator.flow.tutorial.steps import (
     steps_for,
 )
 from rastrainer_simulator.input.inputs import SourceKind
-from rastrainer_simulator.record.trial_context import GUIDED_TOUCHES, TutorialOutcome
+from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.state import OperatorCommand, SimulationState, TouchStage
 from rastrainer_simulator.training.rules import TouchMoment, touch_stage
 from rastrainer_simulator.training.training import Training, TrainingReply

@@ -10,8 +10,6 @@ from rastrainer.igtl.message import Message, pack
 
 BUFFER_BYTES = 64 * 1024
 """Passed to the operating system ahead of a client that reads slowly."""
-WAITING_MESSAGES, WAITING_BYTES = 4096, 4 * 2**20
-"""That may wait for a client; one more drops it."""
 
 
 class Outgoing:
@@ -45,24 +43,20 @@ class OutgoingQueue:
 
     def __init__(self) -> None:
         self._lasting: deque[bytes] = deque()
-        self._bytes = 0
+        self.bytes = 0
         self._latest: dict[tuple[str, str], bytes] = {}
 
     def __len__(self) -> int:
         return len(self._lasting) + len(self._latest)
 
-    def is_overfull(self) -> bool:
-        """Return whether more is waiting than one client may cost."""
-        return len(self) > WAITING_MESSAGES or self._bytes > WAITING_BYTES
-
     def put(self, data: bytes) -> None:
         """Append what must not be lost."""
         self._lasting.append(data)
-        self._bytes += len(data)
+        self.bytes += len(data)
 
     def put_latest(self, key: tuple[str, str], data: bytes) -> None:
         """Replace what waits under the same key."""
-        self._bytes += len(data) - len(self._latest.get(key, b""))
+        self.bytes += len(data) - len(self._latest.get(key, b""))
         self._latest[key] = data
 
     def take(self, about: int) -> bytes:
@@ -74,5 +68,5 @@ class OutgoingQueue:
         while size < about and self._latest:
             taken.append(self._latest.pop(next(iter(self._latest))))
             size += len(taken[-1])
-        self._bytes -= size
+        self.bytes -= size
         return b"".join(taken)

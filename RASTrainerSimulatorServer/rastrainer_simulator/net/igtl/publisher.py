@@ -14,6 +14,7 @@ import numpy as np
 
 from rastrainer.igtl.content import Point, Points, String, Transform
 from rastrainer.igtl.message import Message
+from rastrainer.json_records import record_to_json
 from rastrainer.protocol import DeviceName, Rate
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.loop.timing import Pacer
@@ -21,7 +22,7 @@ from rastrainer_simulator.net.igtl.outgoing import Outgoing
 from rastrainer_simulator.net.igtl.server import ClientConnection
 from rastrainer_simulator.state import SimulationState, TrainingState
 from rastrainer_simulator.texts.texts import LocalizedText, Texts
-from rastrainer_simulator.training.tracing import stroke_data
+from rastrainer_simulator.training.tracing import stroke_entry
 from rastrainer_simulator.trial_state import ProcedureState, Tool
 
 _WITHOUT_DISTANCE: Mapping[str, tuple[str, tuple[str, ...]]] = {
@@ -47,7 +48,7 @@ _SAME = {"much too far": "too far"}
 def told(sentence: str) -> str:
     """Return a trial's sentence in English, without the distances that the trainee reads.
 
-    With the exact pose of the tip, they would give the secret pose of the head
+    They would give the secret pose of the head together with the exact pose of the tip
     (`Testing/security/pose_leak.py`).
     """
     if not isinstance(sentence, LocalizedText):
@@ -112,7 +113,7 @@ def what_changes(state: SimulationState, is_guided: bool = False) -> dict[str, A
         "q": [_rounded(angle, 6) for angle in state.q],
         "operator": state.operator,
         "method": training.method.value,
-        "trace": trace and {**stroke_data(trace), "isGuided": is_guided},
+        "trace": trace and {**record_to_json(stroke_entry(trace)), "isGuided": is_guided},
         "procedure": None if training.procedure is None else _procedure(state, training.procedure),
     }
 

@@ -32,6 +32,8 @@ SILENT_PEER_S = 20.0
 READING_SHARE = 0.3
 """Share of one core for reading; the connections divide it evenly."""
 _PIECE_BYTES = 16 * 1024
+WAITING_MESSAGES, WAITING_BYTES = 4096, 4 * 2**20
+"""May wait for a client; another message drops it."""
 RECONNECT_S = 1.0
 """Time between two attempts to reach a listening Slicer."""
 _CONNECT_TIMEOUT_S = 5.0
@@ -187,7 +189,7 @@ class ClientConnection(asyncio.BufferedProtocol):
             self._owner.opened(self)
 
     def _flush_soon(self) -> None:
-        if self._queue.is_overfull():
+        if len(self._queue) > WAITING_MESSAGES or self._queue.bytes > WAITING_BYTES:
             self.drop("Too much waits for it: it does not read.")
         elif not self._flush_is_due and not self._is_paused:
             self._flush_is_due = True

@@ -8,7 +8,7 @@ import pytest
 
 from rastrainer.commands import COMMANDS
 from rastrainer.igtl.client import Client
-from rastrainer.igtl.content import Command, CommandReply
+from rastrainer.igtl.content import Command
 from rastrainer.igtl.message import Message, crc64, pack
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer_simulator.state import Answer
@@ -207,13 +207,6 @@ def test_simulation_that_fails_is_reported_and_the_link_continues(client, link_s
     link_server.link._submit_command = fail
     assert "could not carry the command out" in client.send_command("Capture").error
     assert client.send_command("Hello", HELLO).ok
-
-
-def test_answer_carries_number_and_name_of_its_command(link_server):
-    command = pack(Message("command", Command(258, "ListTasks")))
-    reply = answer_to(link_server.port, command)
-    assert reply.metadata == {"Status": "SUCCESS"}
-    assert reply.content == CommandReply(258, "ListTasks", '{"did": "ListTasks"}')
 
 
 def test_client_of_header_version_1_reads_the_reason_in_the_body(link_server):

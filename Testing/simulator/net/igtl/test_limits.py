@@ -1,4 +1,4 @@
-"""What a client may cost: memory, time, connections; and peers that are no clients."""
+"""Limits of what a client costs: memory, time, connections; and peers that are no clients."""
 
 import contextlib
 import itertools
@@ -19,7 +19,7 @@ from Testing.simulator.net.igtl.servers import HOST, LinkServer, PlainServer
 
 PROBE = Message("Probe", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 4, 5, 6)), timestamp=1)
 ABORT = pack(Message("command", Command(1, "Abort", "{}")))
-# What a browser sends for fetch(url, {method: "POST", mode: "no-cors", body: …}).
+# A browser sends this for fetch(url, {method: "POST", mode: "no-cors", body: …}).
 FROM_A_PAGE = (
     b"POST / HTTP/1.1\r\nHost: 127.0.0.1:18944\r\nConnection: keep-alive\r\n"
     b"Content-Length: %d\r\nOrigin: http://evil.example\r\nAccept: */*\r\n\r\n"

@@ -1,4 +1,4 @@
-"""What is published, how often in simulated time, and in millimeters."""
+"""The published state: how often in simulated time, and in millimeters."""
 
 import asyncio
 import json
@@ -35,7 +35,7 @@ SECOND = TouchState("2", (0.4, 0.1, 0.2), 2.0, 2.0)
 
 
 class Receiver:
-    """Stands in for a connection and unpacks what it is sent."""
+    """Stands in for a connection and unpacks its messages."""
 
     def __init__(self):
         self.messages = []

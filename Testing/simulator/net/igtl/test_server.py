@@ -1,4 +1,4 @@
-"""The server on real sockets: good clients are served whatever bad ones do."""
+"""The server on real sockets: bad clients do not disturb good clients."""
 
 import asyncio
 import contextlib
@@ -63,13 +63,6 @@ def good_client(server: LinkServer):
         yield client
         client.send(PROBE)
         assert client.wait_for("Probe").content == PROBE.content
-
-
-def test_every_type_arrives_as_it_was_sent(plain_server):
-    with Client(port=plain_server.port) as client:
-        for message in EVERY_MESSAGE:
-            client.send(message)
-        assert plain_server.handler.wait_for_messages(5) == EVERY_MESSAGE
 
 
 def test_every_type_reaches_every_client(plain_server):
@@ -170,16 +163,6 @@ def test_client_that_does_not_read_is_dropped_and_disturbs_no_other(start):
         assert good.is_open
 
 
-def test_client_that_lets_too_many_answers_wait_is_dropped_at_once(start):
-    server = start(PlainServer, slow_client_s=60, waiting_bytes=200_000)
-    with connect(server.port, receive_buffer=4096):
-        server.handler.wait_until(lambda: server.handler.connections)
-        (connection,) = server.server.clients
-        for _ in range(200):
-            server.thread.call(connection.send, LONG_TEXT)
-        server.handler.wait_until(lambda: server.handler.left == [connection])
-
-
 def test_state_of_a_slowly_reading_client_is_replaced_instead_of_piling_up(start):
     server = start(PlainServer, slow_client_s=600, silent_peer_s=600, waiting_bytes=200_000)
     with connect(server.port, receive_buffer=4096) as peer, peer.makefile("rb") as stream:
@@ -269,11 +252,6 @@ def test_port_in_use_is_reported_in_one_sentence(plain_server, start):
     other = start(LinkServer)
     with pytest.raises(InputError, match=f"Cannot listen on 127.0.0.1:{plain_server.port}"):
         other.thread.run(other.server.listen(HOST, plain_server.port))
-
-
-def test_invalid_host_is_reported_in_one_sentence(link_server):
-    with pytest.raises(InputError, match="Cannot listen on"):
-        link_server.thread.run(link_server.server.listen("256.1.1.1", 0))
 
 
 def test_server_connects_to_a_listening_slicer_and_reconnects(start, loop_thread: LoopThread):

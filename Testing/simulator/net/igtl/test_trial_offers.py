@@ -42,7 +42,7 @@ class Collector(Client):
             self.offers.append(message.content)
 
     def _send_hello(self):
-        """What was sent before the answer has then arrived."""
+        """Wait for an answer: all earlier messages have then arrived."""
         self.send_command("Hello", {"protocolVersion": PROTOCOL_VERSION, "client": "collector"})
 
     def after(self, action) -> list[str]:
@@ -102,15 +102,6 @@ def test_trials_that_nobody_acknowledges_do_not_hold_up_the_others(collector, li
     offered = [collector.after(link_server.link.offers.repeat) for _ in range(3)]
     assert {name for names in offered for name in names} == set(names)
     assert max(map(len, offered)) == OFFERS_AT_ONCE
-
-
-def test_offers_are_numbered_so_that_each_can_be_answered(link_server):
-    link_server.simulated.unacknowledged = (record("a"), record("b"))
-    with Collector(link_server) as collector:
-        collector.server.thread.call(link_server.link.offers.repeat)
-        collector.send_command("ListTasks")
-        first, second = collector.offers
-        assert first.command_id != second.command_id
 
 
 def test_an_aborted_trial_is_offered_as_such(link_server):

@@ -70,7 +70,7 @@ class Folding(QtCore.QObject):
 
 
 class ctkCollapsibleButton(QtWidgets.QAbstractButton):
-    """A header that hides what is laid out below it."""
+    """A header that hides the content below it."""
 
     contentsCollapsed = QtCore.Signal(bool)
 

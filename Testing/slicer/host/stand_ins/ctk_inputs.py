@@ -24,7 +24,7 @@ class ctkComboBox(QtWidgets.QComboBox):
 class ctkPathLineEdit(QtWidgets.QWidget):
     """A line for a path, and a button to browse for one.
 
-    By default it is as wide as its path, as CTK's is: a long path widens the dock.
+    It is as wide as its path unless it is configured, like CTK's: a long path widens the dock.
     """
 
     Dirs, Files, Drives, NoSymLinks, Readable, Writable, Executable = (1 << n for n in range(7))

@@ -29,7 +29,7 @@ class qMRMLWidget(QtWidgets.QWidget):
 
 
 class qSlicerScriptedLoadableModuleWidget(qMRMLWidget):
-    """The frame into which a module lays its widgets."""
+    """The frame of a module's widgets."""
 
     def __init__(self, parent: QtWidgets.QWidget | None = None) -> None:
         super().__init__(parent)

@@ -54,7 +54,7 @@ class _Loader(QtUiTools.QUiLoader):
 
 @functools.cache
 def _loader() -> _Loader:
-    """Return the loader of all files: one that is made looks for plugins first."""
+    """Return the loader of all files: a new loader looks for plugins first."""
     return _Loader()
 
 
@@ -93,7 +93,7 @@ def check_widget(element: ElementTree.Element) -> None:
 
 
 def _take_enumerations(element: ElementTree.Element) -> dict[str, tuple[str, int]]:
-    """Take the enumerations of CTK out of a widget: Qt cannot read those of Python's classes."""
+    """Take CTK's enumerations out of a widget: Qt cannot read those that Python defines."""
     made = WIDGETS.get(element.get("class"))
     taken = {}
     for item in element.findall("property"):

@@ -1,4 +1,4 @@
-"""From a volume to a head that the simulator can train on.
+"""Finds the head in a volume, for the simulator.
 
 An image becomes a level set of the head's tissue, continued past the edges of the image; that, a
 body without cavities and tunnels; and that, a closed surface.
@@ -19,7 +19,7 @@ from rastrainer.slicer.head.volume import SPACING_MM, HeadBody, HeadSettings, Vo
 from rastrainer.work_progress import Progress
 
 CT_SKIN = -475.0
-"""Hounsfield units; the skin's surface is half-way between air and what lies under it."""
+"""Hounsfield units; the skin's surface is half-way between air and tissue."""
 
 AIR_QUANTILE = 0.01
 TAIL_QUANTILE, TAIL_FACTOR = 0.999, 1.5
@@ -29,7 +29,7 @@ otherwise they alone would count as tissue."""
 
 @dataclass(frozen=True)
 class Tissue:
-    """What is tissue in an image.
+    """The tissue in an image.
 
     `level` (i, j, k) is within ±1, positive in tissue, its zero between the voxels.
     """
@@ -73,7 +73,7 @@ FASTEST_TREND = 2.0
 """Most voxels by which an outline shrinks per voxel at the image's edge; it never grows."""
 
 ROUNDING = 1 / 6
-"""Voxels per square voxel by which it shrinks ever faster, so that what is cut ends rounded."""
+"""Voxels per square voxel by which it shrinks ever faster, so that a cut head ends rounded."""
 
 
 def continued(level: np.ndarray, margin: int) -> np.ndarray:
@@ -91,7 +91,6 @@ def continued(level: np.ndarray, margin: int) -> np.ndarray:
 
 
 def _continueEnd(level: np.ndarray, axis: int, margin: int) -> np.ndarray:
-    """Append `margin` slices to the end of an axis."""
     slices = np.moveaxis(level, axis, 0)
     outline = _signedDistance(slices[-1])
     if outline is None:
@@ -125,7 +124,7 @@ MARGIN = 14
 MAX_TRIANGLES = 60_000
 MAX_DECIMATIONS, BASE_RESERVE = 3, 500
 LONGEST_HEAD_MM = 200.0
-"""From the crown down: what a scan shows below of neck and shoulders is cut off."""
+"""Measured down from the crown: neck and shoulders below are cut off."""
 
 
 def findHead(volume: Volume, settings: HeadSettings, progress: Progress) -> HeadBody:
@@ -145,7 +144,7 @@ def findHead(volume: Volume, settings: HeadSettings, progress: Progress) -> Head
             f"this range, not at {base:.0f} mm."
         )
     below = max(0, int((base - lowest) / SPACING_MM) - 1)
-    # The part of the image that the head needs; what is below and much air costs time.
+    # The part of the image that the head needs; more would cost time.
     spans = []
     for axis, count in enumerate(found.level.shape):
         others = tuple(other for other in range(3) if other != axis)
@@ -163,7 +162,7 @@ def findHead(volume: Volume, settings: HeadSettings, progress: Progress) -> Head
 def skinOf(head: HeadBody, settings: HeadSettings, progress: Progress) -> HeadMesh:
     """Return the skin as one closed surface of genus 0 with a flat base."""
     progress("Making the surface", 0.8)
-    # Changed only where it disagrees with the body.
+    # Changed only in voxels that disagree with the body.
     level = np.where(head.body, np.maximum(head.level, 0.05), np.minimum(head.level, -0.05))
     skin = surface.surfaceOf(level, head.origin, SPACING_MM)
     skin, wanted = surface.smoothed(skin), settings.triangles

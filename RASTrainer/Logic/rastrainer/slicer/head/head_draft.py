@@ -1,4 +1,4 @@
-"""From a volume to the draft of a head: checks, extraction, images and the skull, in one call."""
+"""Makes the draft of a head out of a volume: checks, extraction, images and skull, in one call."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from scipy import ndimage
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.head.volume import KEPT_MM, HeadVolume
+from rastrainer.scenario.scenario import SkullKind
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer.slicer.head import mask, surface
 from rastrainer.slicer.head.extraction import findHead, skinOf
@@ -73,7 +74,8 @@ def makeDraft(
             method = "Skull: bone of the CT."
         method = f"{draft.method} {method}"
         skull = skullOf(volume, found)
-        draft = replace(draft, method=method, skull=skull, is_skull_approximate=not found.isCt)
+        kind = SkullKind.BONE if found.isCt else SkullKind.APPROXIMATION
+        draft = replace(draft, method=method, skull=skull, skull_kind=kind)
     progress("Done", 1.0)
     return draft, warnings
 
@@ -177,7 +179,7 @@ CT_WINDOW, CT_LEVEL = 400.0, 40.0
 """Soft tissue, with bone white and air black."""
 
 BRIGHTEST_QUANTILE, WHITE_QUANTILE = 0.9995, 0.995
-"""Of the MRI's values in the head: what 255 stands for, and what is shown white."""
+"""Quantiles of the MRI's values in the head: the value stored as 255, and the value shown white."""
 
 _MAX_GRAY = 255.0
 
@@ -214,10 +216,10 @@ def imageOf(volume: Volume, head: HeadBody) -> tuple[HeadVolume, str]:
 
 CT_NOISE_MM = 0.7
 SCALP_MM = 7.0
-"""From the skin to the skull, which MRI does not show: a usual thickness, not the patient's."""
+"""Thickness of the scalp, which MRI does not show: a usual value, not the patient's."""
 BONE_MM = 7.0
-"""From the outer to the inner table, where MRI shows neither: the mean of the parietal bone; the
-frontal has 8.0 and the temporal 4.7 mm (Thulung et al. 2019, 10.31729/jnma.3949)."""
+"""Thickness of the skull, which MRI does not show: the mean of the parietal bone; the frontal bone
+has 8.0 and the temporal 4.7 mm (Thulung et al. 2019, 10.31729/jnma.3949)."""
 
 TRIANGLES = 30_000
 
@@ -234,7 +236,6 @@ def skullOf(volume: Volume, head: HeadBody) -> HeadMesh:
 
 
 def _bone(volume: Volume, head: HeadBody) -> np.ndarray:
-    """Return the level set of bone on the head's grid."""
     grid = onRasGrid(volume, SPACING_MM)
     smooth = ndimage.gaussian_filter(grid.values, CT_NOISE_MM / SPACING_MM, mode="nearest")
     bone = np.full(head.level.shape, -1.0, np.float32)
@@ -251,7 +252,6 @@ def _bone(volume: Volume, head: HeadBody) -> np.ndarray:
 
 
 def _belowScalp(head: HeadBody) -> np.ndarray:
-    """Return the level set of a shell between two depths below the skin."""
     outer, inner = SCALP_MM / SPACING_MM, (SCALP_MM + BONE_MM) / SPACING_MM
     depth = mask.depthInside(head.body, inner + 1.0)
     level = np.clip(depth - outer, -1.0, 1.0)

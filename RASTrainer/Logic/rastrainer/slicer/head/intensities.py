@@ -1,4 +1,4 @@
-"""What a volume's values mean: Hounsfield units or not, and which of them are no measurement."""
+"""Interprets a volume's values: Hounsfield units or not, and values that were not measured."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def isHounsfield(values: np.ndarray) -> bool:
 def cleaned(volume: Volume) -> tuple[Volume, float, list[str]]:
     """Return a volume of measured values alone, changed in place, an offset, and warnings.
 
-    A CT is in Hounsfield units; the offset is what was added to all values.
+    A CT is in Hounsfield units; the offset was added to all values.
     """
     values = volume.values
     _replaceFill(values)
@@ -64,7 +64,7 @@ FEWEST_FILL = 0.005
 """Share of the voxels that have exactly the value of a corner, from which on this is no chance."""
 
 _UNLIKE = 0.1
-"""Difference between a fill and the values beside it, as a share of the range of values."""
+"""Difference between a fill and its neighbors, as a share of the range of values."""
 
 _DARK = 0.25
 _DARKER_THAN_AIR = 0.05

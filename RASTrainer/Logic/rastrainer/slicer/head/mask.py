@@ -1,7 +1,7 @@
-"""Which voxels are head: everything within the skin, without cavities and tunnels.
+"""Finds the head's voxels: everything within the skin, without cavities and tunnels.
 
 Tunnels are closed by filling as little as possible. The body is carved out of a larger one that has
-no tunnel, one voxel at a time, and only where that cannot change the topology ("simple points",
+no tunnel, one voxel at a time, and only if that cannot change the topology ("simple points",
 Bertrand and Malandain 1994): the result differs from the wanted body by thin membranes.
 """
 

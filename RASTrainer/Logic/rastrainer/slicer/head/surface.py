@@ -1,4 +1,4 @@
-"""From a level set to a closed surface with a flat base: VTK's filters, one after the other."""
+"""Makes a closed surface with a flat base out of a level set, by VTK's filters."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from rastrainer.head.mesh import HeadMesh
 from rastrainer.slicer.polydata import trianglesPolyData, vtkArray
 
 SMOOTHING_PASS_BAND = 0.08
-"""Of the windowed-sinc filter (Taubin 1996): removes the grid's steps, keeps eyelids and ears."""
+"""Pass band of the windowed-sinc filter (Taubin 1996): removes the grid's steps, keeps eyelids and
+ears."""
 
 SMOOTHING_ITERATIONS = 30
 

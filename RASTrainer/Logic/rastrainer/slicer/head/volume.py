@@ -102,7 +102,7 @@ def onRasGrid(volume: Volume, spacingMm: float) -> Volume:
 def sampled(volume: Volume, gridToRas: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
     """Return a volume's values (i, j, k) float at the places of a grid, linearly interpolated.
 
-    What the volume does not cover is taken for air, its lowest value: 0 HU would be tissue.
+    Places outside the volume get its lowest value, air: 0 HU would be tissue.
     """
     # Only here: scipy takes time to import.
     from scipy import ndimage
@@ -125,21 +125,21 @@ def lowestSlice(volume: Volume) -> tuple[int, int]:
 
 
 SPACING_MM = 1.0
-"""Of the voxels."""
+"""Size of the voxels."""
 BELOW_BASE_MM = 3.0
 """How far a segment continues below the base, so that its end does not affect the cut."""
 
 
 @dataclass(frozen=True)
 class HeadSettings:
-    """What may be chosen about the extraction.
+    """Settings of the extraction.
 
     Attributes:
         threshold: value that parts air from skin; None finds it (Otsu; −475 HU of a CT).
         baseMm: height (S) of the flat base; None for just above the image's lower edge, or the
             neck.
         noiseMm: standard deviation of the smoothing of the image.
-        cavityDepthMm: what lies so deep below the skin is filled: airways, sinuses, ear canals.
+        cavityDepthMm: cavities so deep below the skin are filled: airways, sinuses, ear canals.
         openingMm: openings up to this width do not count as part of the skin's outside.
         triangles: how many are aimed at; the flat base adds a few.
     """
@@ -250,9 +250,9 @@ def readSegment(node: Any, segmentId: str) -> SegmentImage:
 
 
 def volumeOfSegment(segment: SegmentImage) -> Volume:
-    """Return a segment as a volume of zeros and ones, for `findHead` with `forSegment`.
+    """Return a segment as a binary volume, for `findHead` with `forSegment`.
 
-    Its grid is of 1 mm along RAS, whatever grid the Segment Editor has given the segment. It
+    Its grid has 1 mm along RAS; the Segment Editor may have changed the segment's own grid. It
     begins so that the base is cut where it was (to half a voxel) when the segment was shown, or,
     where the segment ends higher by now, just above that end.
     """
@@ -266,7 +266,7 @@ def volumeOfSegment(segment: SegmentImage) -> Volume:
     matrix = bare.ijkToRas.copy()
     matrix[:3, 3] -= matrix[:3, :3] @ widths[:, 0]
     grid = onRasGrid(Volume(np.pad(bare.values, widths), matrix), SPACING_MM)
-    # Without what is more than a voxel below its base.
+    # Without slices more than a voxel below its base.
     heights = grid.ijkToRas[2, 3] + SPACING_MM * np.arange(grid.values.shape[2])
     isBelow = heights <= segment.baseMm - 1.5 * SPACING_MM
     isWanted = (grid.values > _HALF).any(axis=(0, 1)) & ~isBelow

@@ -65,7 +65,7 @@ def missingOrientation(path: Path) -> str:
 
 
 def beginOf(path: Path) -> bytes:
-    """Return the first bytes of a file, or of the header beside an image; unpacked."""
+    """Return the first bytes of a file, or of an image's separate header; unpacked."""
     beside = path.with_suffix(".hdr")
     path = beside if path.suffix == ".img" and beside.is_file() else path
     try:
@@ -82,9 +82,9 @@ def beginOf(path: Path) -> bytes:
 
 def niftiHeader(begin: bytes) -> Any | None:
     """Return a record of `_NIFTI`, of either order of bytes; None for other files."""
-    for layout in (_NIFTI.newbyteorder("<"), _NIFTI.newbyteorder(">")):
+    for kind in (_NIFTI.newbyteorder("<"), _NIFTI.newbyteorder(">")):
         if len(begin) >= _HEADER_SIZE:
-            header = np.frombuffer(begin, layout, 1)[0]
+            header = np.frombuffer(begin, kind, 1)[0]
             if header["size"] == _HEADER_SIZE:
                 return header
     return None

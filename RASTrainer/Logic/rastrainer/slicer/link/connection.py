@@ -44,7 +44,7 @@ another program answers."""
 CONNECTOR_NAME = "RASTrainerLink"
 NOWHERE = 0
 """The port that the connector is given once it is connected: no program can listen there. Otherwise
-it would reconnect 0.1 s after a loss, to whatever has the simulator's port by then."""
+it would reconnect 0.1 s after a loss, perhaps to another program on that port."""
 CONNECT_WITHIN_S = 1.0
 """How long the connector may connect to a simulator that has answered; then it is tested again."""
 LONGEST_LOOK_S = 1.5
@@ -53,10 +53,10 @@ up, such as by loading a volume, it hears no one."""
 
 
 class SimulatorConnection:
-    """One connection to a simulator, for as long as it is wanted.
+    """One connection to a simulator, restored until `endConnection`.
 
     The connector is started only when a simulator has just answered, as anything else might end
-    Slicer: see `rastrainer.slicer.link.probe`. A Slicer that listens cannot ask who will connect.
+    Slicer: see `rastrainer.slicer.link.probe`.
 
     Attributes:
         connector: the connector in the scene; None while there is no simulator to connect to.
@@ -84,16 +84,11 @@ class SimulatorConnection:
         self._nextProbe = self._connectsUntil = self._lastLook = 0.0
         self._heartbeatTime: int | None = None
 
-    def beginConnection(self, address: tuple[str, int], isListening: bool) -> None:
-        """Request a connection: to the address, or from any client of its port."""
+    def beginConnection(self, address: tuple[str, int]) -> None:
         self.endConnection()
         self._kit = self.findKit()
         self._address = address
-        self.seen = LinkObservation(
-            f"{address[0]}:{address[1]}",
-            isInstalled=self._kit is not None,
-            isListening=isListening,
-        )
+        self.seen = LinkObservation(f"{address[0]}:{address[1]}", isInstalled=self._kit is not None)
 
     def endConnection(self) -> None:
         self._searchAnew()
@@ -101,7 +96,7 @@ class SimulatorConnection:
         self.seen = LinkObservation()
 
     def followConnection(self) -> bool:
-        """Restore what was lost; return whether the connection has just been opened."""
+        """Restore a lost connection; return whether it has just been opened."""
         if self._kit is None or not self.seen.address:
             return False
         wasOpen = self.seen.isOpen
@@ -118,9 +113,19 @@ class SimulatorConnection:
             self.seen.isOpen, self.seen.hasHeartbeat = True, False
             self.seen.peerVersion, self.seen.silenceS = None, 0.0
             self._lastLook = self._connectsUntil = self._clock()
-            if not self.seen.isListening:
-                connector.SetServerPort(NOWHERE)
-        self._countSilence(connector)
+            connector.SetServerPort(NOWHERE)
+        now = self._clock()
+        self.seen.silenceS += min(now - self._lastLook, LONGEST_LOOK_S)
+        self._lastLook = now
+        for index in range(connector.GetNumberOfIncomingMRMLNodes()):
+            node = connector.GetIncomingMRMLNode(index)
+            if node is None or node.GetAttribute(ORIGINAL_NAME) != DeviceName.SIM_SERVER:
+                continue
+            if node.GetMTime() != self._heartbeatTime:
+                self._heartbeatTime = node.GetMTime()
+                self.seen.hasHeartbeat = True
+                self.seen.silenceS = 0.0
+                self.seen.peerVersion = node.GetSubCode()
         if self.seen.silenceS > RECONNECT_AFTER_S:
             # Half-open: nothing will ever come over this connection again, if anything ever did.
             connector.Stop()
@@ -129,30 +134,24 @@ class SimulatorConnection:
         return self.seen.isOpen and not wasOpen
 
     def _connect(self, isLost: bool) -> None:
-        """Let the connector connect or listen; only to a simulator, so search for one first."""
+        """Let the connector connect; only to a simulator, so search for one first."""
         host, port = self._address
-        if self.seen.isListening:
-            if self.connector is None:
-                self._makeConnector().SetTypeServer(port)
-        else:
-            if self.connector is not None:
-                self.connector.SetServerPort(NOWHERE)
-            if isLost:
-                self._searchAnew()
-            found = self._search(host, port)
-            if found is None:
-                return
-            if self.connector is not None and self.connector.GetServerHostname() != found.ip:
-                self._dropConnector()
-            connector = self.connector or self._makeConnector()
-            if connector.GetState() == connector.StateOff:
-                connector.SetTypeClient(found.ip, port)
-            else:
-                # `Stop` would block as long as 0.1 s, and the connector retries automatically.
-                connector.SetServerPort(port)
-        connector = self.connector
-        if connector is not None and connector.GetState() == connector.StateOff:
+        if self.connector is not None:
+            self.connector.SetServerPort(NOWHERE)
+        if isLost:
+            self._searchAnew()
+        found = self._search(host, port)
+        if found is None:
+            return
+        if self.connector is not None and self.connector.GetServerHostname() != found.ip:
+            self._dropConnector()
+        connector = self.connector or self._makeConnector()
+        if connector.GetState() == connector.StateOff:
+            connector.SetTypeClient(found.ip, port)
             connector.Start()
+        else:
+            # `Stop` would block as long as 0.1 s, and the connector retries automatically.
+            connector.SetServerPort(port)
         self._connectsUntil = self._clock() + CONNECT_WITHIN_S
 
     def _searchAnew(self) -> None:
@@ -205,18 +204,3 @@ class SimulatorConnection:
         if self.connector.GetScene() is not None:
             self._scene.RemoveNode(self.connector)
         self.connector = self._heartbeatTime = None
-
-    def _countSilence(self, connector: Any) -> None:
-        """Add the time since the last look to the silence; a new heartbeat ends it."""
-        now = self._clock()
-        self.seen.silenceS += min(now - self._lastLook, LONGEST_LOOK_S)
-        self._lastLook = now
-        for index in range(connector.GetNumberOfIncomingMRMLNodes()):
-            node = connector.GetIncomingMRMLNode(index)
-            if node is None or node.GetAttribute(ORIGINAL_NAME) != DeviceName.SIM_SERVER:
-                continue
-            if node.GetMTime() != self._heartbeatTime:
-                self._heartbeatTime = node.GetMTime()
-                self.seen.hasHeartbeat = True
-                self.seen.silenceS = 0.0
-                self.seen.peerVersion = node.GetSubCode()

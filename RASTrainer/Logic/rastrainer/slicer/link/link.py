@@ -48,8 +48,8 @@ SOON_S, REST_S = 0.1, 1.0
 POSES_HZ = 30.0
 """Requested rate of poses; software graphics renders them 20 times a second at best."""
 MAX_KEPT = 256
-"""Most commands that may wait. The sender has to repeat further ones, as the simulator does with
-trials and answers until they are acknowledged."""
+"""Most commands that may wait. The sender has to repeat further commands, as the simulator does
+with trials and answers until they are acknowledged."""
 COMMANDS_A_TURN, CHARACTERS_A_TURN = 16, 200_000
 """How much is processed before the application may do something else."""
 
@@ -67,7 +67,6 @@ class Link(SimulatorConnection):
         self,
         scene: Any,
         findKit: Callable[[], ConnectorKit | None],
-        client: str = "3D Slicer",
         clock: Callable[[], float] = time.monotonic,
         callSoon: CallSoon = lambda _work: None,
     ) -> None:
@@ -81,7 +80,6 @@ class Link(SimulatorConnection):
         self.trialAborted = Signal()
         self.stepAnswered = Signal()
         self.status = judge(self.seen)
-        self._client = client
         self._callSoon = callSoon
         self._isCallDue = False
         self._guard = ErrorGuard()
@@ -110,12 +108,9 @@ class Link(SimulatorConnection):
 
     def connectTo(self, host: str = DEFAULT_HOST, port: int = DEFAULT_PORT) -> None:
         """Connect to a simulator, and again whenever the connection is lost."""
-        self._begin(_checkedAddress(host, port), isListening=False)
-
-    def listenOn(self, port: int = DEFAULT_PORT) -> None:
-        """Wait for a simulator that was started with `--connect`."""
-        _checkPort(port)
-        self._begin(("", port), isListening=True)
+        self.beginConnection(_checkedAddress(host, port))
+        self.process()
+        self.woken.emit()
 
     def testConnection(
         self, host: str, port: int, onFound: Callable[[LinkStatus], None]
@@ -161,7 +156,7 @@ class Link(SimulatorConnection):
         self._pending.send(Request(name, content, timeoutS, onReply))
 
     def process(self) -> None:
-        """Connect, judge the heartbeat, and emit what has arrived."""
+        """Connect, judge the heartbeat, and emit all arrivals."""
         self._isCallDue = False
         if self._scene.IsBatchProcessing():
             return
@@ -188,11 +183,6 @@ class Link(SimulatorConnection):
             self._guard.run("The touched points and the state", self._emitNodes)
         self._emitCommands()
 
-    def _begin(self, address: tuple[str, int], isListening: bool) -> None:
-        self.beginConnection(address, isListening)
-        self.process()
-        self.woken.emit()
-
     def _transmit(self, request: Request) -> Any:
         # Commands are transmitted over an open connection only.
         assert self._kit is not None
@@ -212,7 +202,7 @@ class Link(SimulatorConnection):
         self._guard.run("A command's event", self._processSoon)
 
     def _processSoon(self) -> None:
-        """Have what has arrived processed soon; called from inside VTK."""
+        """Have arrivals processed soon; called from inside VTK."""
         if not self._isCallDue:
             self._isCallDue = True
             self._callSoon(self._processArrivals)
@@ -234,7 +224,7 @@ class Link(SimulatorConnection):
                 self._guard.emit("The opened link", self.opened)
 
         hz = POSES_HZ if self._posesAreWanted else 0.0
-        hello = {"protocolVersion": PROTOCOL_VERSION, "client": self._client}
+        hello = {"protocolVersion": PROTOCOL_VERSION, "client": "3D Slicer"}
         self.send(CommandName.HELLO, {**hello, "toolTipHz": hz, "linksHz": hz}, welcome)
 
     def _emitNodes(self) -> None:
@@ -284,10 +274,6 @@ class Link(SimulatorConnection):
 def _checkedAddress(host: str, port: int) -> tuple[str, int]:
     if not host.strip():
         raise InputError(_("Enter the host of the simulator, such as 127.0.0.1."))
-    _checkPort(port)
-    return host.strip(), port
-
-
-def _checkPort(port: int) -> None:
     if not 0 < port < 65536:
         raise InputError(_("The port must be a number from 1 to 65535."))
+    return host.strip(), port

@@ -14,7 +14,7 @@ from rastrainer.slicer.translation import _
 
 
 class Peer(str, Enum):
-    """Who may answer at a port."""
+    """Programs that may answer at a port."""
 
     SIMULATOR = "simulator"
     UNREACHABLE = "unreachable"
@@ -29,7 +29,7 @@ class Peer(str, Enum):
 
 @dataclass(frozen=True)
 class ProbeResult:
-    """Who answered at an IPv4 address; the version is that of a simulator's protocol."""
+    """The program at an IPv4 address, with the protocol version of a simulator."""
 
     peer: Peer
     ip: str = ""
@@ -95,7 +95,7 @@ NOT_INSTALLED = LinkStatus(
 
 @dataclass
 class LinkObservation:
-    """What is known of a connection.
+    """The observed state of a connection.
 
     The `address` is as the user gave it, empty if no connection is wanted. `silenceS` are seconds
     since the last heartbeat, or since the TCP connection was opened, without those in which Slicer
@@ -104,7 +104,6 @@ class LinkObservation:
 
     address: str = ""
     isInstalled: bool = True
-    isListening: bool = False
     finding: ProbeResult | None = None
     isOpen: bool = False
     silenceS: float = 0.0
@@ -118,7 +117,11 @@ def judge(link: LinkObservation) -> LinkStatus:
     if not link.isInstalled:
         return NOT_INSTALLED
     if not link.isOpen:
-        return _judgeClosed(link)
+        status = lookingAt(link.address)
+        if link.finding is not None:
+            found = judgeFinding(link.finding, link.address)
+            status = status if found.state is LinkState.CONNECTED else found
+        return status
     if link.peerVersion not in (None, PROTOCOL_VERSION):
         return _wrongVersion(link.peerVersion)
     if link.silenceS > STALE_AFTER_S and link.hasHeartbeat:
@@ -136,20 +139,6 @@ def judge(link: LinkObservation) -> LinkStatus:
         return LinkStatus(LinkState.GREETING, sentence.format(address=link.address))
     sentence = _("Connected to the simulator at {address}.")
     return LinkStatus(LinkState.CONNECTED, sentence.format(address=link.address))
-
-
-def _judgeClosed(link: LinkObservation) -> LinkStatus:
-    if link.isListening:
-        return LinkStatus(
-            LinkState.ABSENT,
-            _("No simulator has connected yet."),
-            _("Start it so that it connects to this computer."),
-        )
-    if link.finding is not None:
-        status = judgeFinding(link.finding, link.address)
-        if status.state is not LinkState.CONNECTED:
-            return status
-    return lookingAt(link.address)
 
 
 def judgeFinding(finding: ProbeResult, address: str) -> LinkStatus:

@@ -1,4 +1,4 @@
-"""Commands in transit to the simulator: each gets exactly one reply, whatever happens."""
+"""Commands in transit to the simulator: each gets exactly one reply in any case."""
 
 from __future__ import annotations
 
@@ -19,8 +19,6 @@ OnReply = Callable[[Reply], None]
 
 MAX_AT_ONCE = 16
 """Most commands without an answer; the simulator carries out as many at once."""
-SENDING_S = 0.01
-"""Time limit for sending in one turn: sending blocks while the simulator does not read."""
 _LOST = Reply(False, _("The connection to the simulator was lost."))
 
 
@@ -58,7 +56,6 @@ class PendingCommands:
         self._clock = clock
         self._arrived = arrived
         self._waiting: deque[Request] = deque()
-        self._sendingS = 0.0
         self._sent: list[Request] = []
         self._abandoned: list[Any] = []
         self._refused: list[tuple[OnReply, Reply]] = []
@@ -72,8 +69,7 @@ class PendingCommands:
         self._refused.append((onReply, Reply(False, sentence)))
 
     def poll(self, isOpen: bool) -> None:
-        """Deliver replies that have come or will never come; send what is waiting."""
-        self._sendingS = 0.0
+        """Deliver replies that have come or will never come; send waiting commands."""
         replies, self._refused = self._refused, []
         sent, self._sent = self._sent, []
         for request in sent:
@@ -94,20 +90,15 @@ class PendingCommands:
             self._guard.run("The reply to a command", onReply, reply)
 
     def _sendSome(self) -> None:
-        while self._waiting and len(self._sent) < MAX_AT_ONCE and self._sendingS < SENDING_S:
-            begin = self._clock()
+        while self._waiting and len(self._sent) < MAX_AT_ONCE:
             request = self._waiting.popleft()
             request.command = self._transmit(request)
             request.command.AddObserver(
                 request.command.CommandCompletedEvent,
                 lambda *_event: self._guard.run("A command's event", self._arrived),
             )
-            now = self._clock()
-            self._sendingS += now - begin
-            request.deadline = now + request.timeoutS
+            request.deadline = self._clock() + request.timeoutS
             self._sent.append(request)
-        if self._waiting and len(self._sent) < MAX_AT_ONCE:
-            self._arrived()
 
     def _replyTo(self, request: Request, isOpen: bool) -> Reply | None:
         command = request.command

@@ -1,18 +1,15 @@
 """Looks up an address and tests once what answers there, without blocking.
 
-Slicer's connector must never meet anything but a simulator: OpenIGTLink's client takes whatever
-comes for a message, and ends Slicer over the sizes that it reads from, say, a web page.
+Slicer's connector must never meet anything but a simulator: OpenIGTLink's client takes any bytes
+for a message, and crashes Slicer at the sizes that it reads from, say, a web page.
 """
 
 from __future__ import annotations
 
 import contextlib
-import ipaddress
 import socket
-import threading
 import time
 from collections.abc import Callable
-from concurrent.futures import Future
 
 from rastrainer.igtl.content import Status
 from rastrainer.igtl.message import Message, MessageReader, pack
@@ -69,36 +66,18 @@ class PeerRecognition:
         return Peer.OTHER_OPENIGTLINK if self._reader.taken else Peer.OTHER_PROGRAM
 
 
-_running: dict[str, Future[str | Peer]] = {}
-_lock = threading.Lock()
-
-
 def _findAddress(host: str) -> str | Peer:
-    """Return the IPv4 address of a host, else why there is none; waits for a running look-up.
+    """Return the IPv4 address of a host, else why there is none.
 
     OpenIGTLink's client speaks IPv4 alone, so other addresses are useless.
     """
-    if host.lower() == "localhost":
-        return "127.0.0.1"
-    with contextlib.suppress(ValueError):
-        # As in `[::1]`, which separates an address of IPv6 from a port.
-        address = ipaddress.ip_address(host.removeprefix("[").removesuffix("]"))
-        if isinstance(address, ipaddress.IPv4Address):
-            return str(address)
-        return str(address.ipv4_mapped or "") or Peer.WITHOUT_IPV4
-    with _lock:
-        isRunning = host in _running
-        lookup = _running.setdefault(host, Future())
-    if not isRunning:
-        found: str | Peer = Peer.UNKNOWN_HOST
-        for family in (socket.AF_INET, socket.AF_INET6):
-            with contextlib.suppress(OSError, UnicodeError):
-                ip = socket.getaddrinfo(host, None, family, socket.SOCK_STREAM)[0][4][0]
-                found = str(ip) if family is socket.AF_INET else Peer.WITHOUT_IPV4
-                break
-        lookup.set_result(found)
-        del _running[host]
-    return lookup.result()
+    if ":" in host:
+        return Peer.WITHOUT_IPV4
+    for family in (socket.AF_INET, socket.AF_INET6):
+        with contextlib.suppress(OSError, UnicodeError):
+            ip = socket.getaddrinfo(host, None, family, socket.SOCK_STREAM)[0][4][0]
+            return str(ip) if family is socket.AF_INET else Peer.WITHOUT_IPV4
+    return Peer.UNKNOWN_HOST
 
 
 LOOKUP_S = 5.0
@@ -161,7 +140,7 @@ class Probe:
             except OSError:
                 return Peer.UNREACHABLE
             self._isAsked = True
-            with contextlib.suppress(OSError):  # What the peer has sent before may still be read.
+            with contextlib.suppress(OSError):  # Earlier bytes from the peer may still be read.
                 self._socket.send(question)
             with contextlib.suppress(OSError):
                 while self._recognition.peer is None and (data := self._socket.recv(_PIECE_BYTES)):

@@ -1,8 +1,8 @@
 """The sources of a set-up: the simulator's wheel, the lock of all other packages, and pip.
 
-Nothing of our own comes from an index: anyone who registered our name there would run code in
+Our own package never comes from an index: anyone who registered its name there would run code in
 hospitals. An installed module has the wheel, known by its SHA-256. In a checkout the sources are
-run as they are. What others have made is fixed by the hashes of the lock.
+run as they are. The lock fixes all other packages by their hashes.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from rastrainer.files.reading import read_bytes, read_json, read_text
 from rastrainer.slicer.translation import _
 
 RESOURCES = Path("Resources", "RASTrainerSimulator")
-"""Below the module's folder."""
+"""In the module's folder."""
 LOCK, SIZES = "requirements.lock", "sizes.json"
 WHEEL = f"rastrainer-{__version__}-py3-none-any.whl"
 LIMIT_BYTES = 200 * 2**20
@@ -37,7 +37,7 @@ class SimulatorPackage:
 
     Attributes:
         folder: of the lock, the sizes and the wheel.
-        checkout: the repository in which the module lies; None where it was installed.
+        checkout: the repository that contains the module; None if the module was installed.
     """
 
     folder: Path
@@ -83,7 +83,7 @@ class SimulatorPackage:
         return ""
 
     def sizesMB(self) -> tuple[int, int] | None:
-        """Return about what is downloaded and kept on this platform; None if not measured."""
+        """Return the sizes of download and installation on this platform; None if not measured."""
         with contextlib.suppress(InputError, KeyError, TypeError, ValueError):
             measured = read_json(self.folder / SIZES, LIMIT_BYTES)
             entry = measured[f"{sys.platform}-{platform.machine()}"]
@@ -95,7 +95,7 @@ PYTHON_SLICER = "PythonSlicer"
 
 
 def pythonSlicer(slicerHome: Path) -> Path:
-    """Return Slicer's own Python for programs beside it, where Slicer has it or on the PATH."""
+    """Return Slicer's own Python for other programs, from Slicer's folder or the PATH."""
     suffix = ".exe" if sys.platform == "win32" else ""
     inside = slicerHome / "bin" / f"{PYTHON_SLICER}{suffix}"
     found = None if inside.is_file() else shutil.which(PYTHON_SLICER)
@@ -104,8 +104,8 @@ def pythonSlicer(slicerHome: Path) -> Path:
 
 ADDRESS = re.compile(r"https?://[^\s/]\S*")
 OPTIONS = (
-    # Neither pip's settings of this user nor its cache: what is installed is what the lock says,
-    # and what was downloaded goes again with the private folder.
+    # Ignore the user's pip settings and cache: the lock alone counts, and all downloads are removed
+    # with the private folder.
     "--isolated",
     "--no-cache-dir",
     "--disable-pip-version-check",
@@ -114,7 +114,7 @@ OPTIONS = (
     # The lock holds all that is needed, and less than the packages ask for.
     "--no-deps",
     "--require-hashes",
-    # Building from sources would run whatever they say, by tools that no lock fixes.
+    # Building from sources would run their code by tools that no lock fixes.
     "--only-binary=:all:",
 )
 

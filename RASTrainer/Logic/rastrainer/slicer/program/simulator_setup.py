@@ -37,7 +37,7 @@ MARK = "rastrainer-setup.json"
 REQUIREMENTS = "rastrainer-requirements.txt"
 CHECKOUT = "rastrainer-checkout.pth"
 SOURCES = ("RASTrainer/Logic", "RASTrainerSimulatorServer")
-"""Of a checkout, run in place."""
+"""Sources of a checkout, run in place."""
 MARK_LIMIT_BYTES = 4096
 PROGRAM, TRIMMER = "rastrainer_simulator.cli.main", "rastrainer.slicer.program.trim_packages"
 REMOVED = ".removed-"
@@ -57,7 +57,7 @@ class SimulatorSetup:
         isCanceled: whether the set-up that runs, or ran last, was canceled.
         progressed: emits each line that pip writes.
         changed: emits nothing, whenever a set-up begins or ends, or the simulator is removed.
-        finished: emits an error's sentence, empty where the simulator is set up.
+        finished: emits an error message, empty on success.
     """
 
     def __init__(self, python: Path, folder: Path, package: SimulatorPackage) -> None:
@@ -79,23 +79,23 @@ class SimulatorSetup:
 
     @property
     def installedVersion(self) -> str:
-        """The version that is set up, empty where none is."""
+        """The version that is set up; empty if none is."""
         return str(self._read(MARK).get("version", ""))
 
     @property
     def isCurrent(self) -> bool:
-        """Whether the simulator that came with this module is set up."""
         mark = self._read(MARK)
         return (mark.get("version"), mark.get("origin")) == (__version__, self.package.origin())
 
     @property
     def installedMB(self) -> int | None:
-        """How much the private folder holds, in 10⁶ bytes; None where that is not known."""
+        """Size of the private folder in 10⁶ bytes; None if unknown."""
         kept = self._read(SIZES).get("keptBytes")
         return kept // 10**6 if isinstance(kept, int) else None
 
     def begin(self, index: str = "", wheels: Path | None = None) -> None:
-        """Start the set-up, replacing what is there; the source is that of `pipArguments`."""
+        """Start the set-up, which replaces an earlier one; the arguments are as for
+        `pipArguments`."""
         if self.isRunning:
             raise InputError(_("The simulator is already being set up."))
         words = ["-m", "pip", "install", *pipArguments(index, wheels)]
@@ -121,21 +121,19 @@ class SimulatorSetup:
         self.changed.emit()
 
     def cancel(self) -> None:
-        """Cancel the set-up, which ends soon; what was set up before stays."""
         if self._child is not None:
             self.isCanceled = True
             self._child.end()
             self.changed.emit()
 
     def remove(self) -> None:
-        """Remove the private folder with all that was set up."""
         if self.isRunning:
             raise InputError(_("Cancel the set-up first."))
         discard(self.folder)
         self.changed.emit()
 
     def process(self) -> None:
-        """Forward the output of pip, trim what it has installed, and finish."""
+        """Forward the output of pip, trim the installed packages, and finish."""
         if self._child is None:
             return
         isOver, child = self._child.poll(), self._child
@@ -151,13 +149,13 @@ class SimulatorSetup:
         if not isOver:
             return
         self._child = None
-        if child.exitStatus == 0 and not self._isTrimming and not self.isCanceled:
+        if child.process.poll() == 0 and not self._isTrimming and not self.isCanceled:
             self._isTrimming = True
             self._child = ChildProcess(
                 private_command(self._python, self._partial, TRIMMER, str(self._partial))
             )
             return
-        error = self._finish(child.exitStatus)
+        error = self._finish(child.process.poll())
         self.changed.emit()
         self.finished.emit(error)
 
@@ -172,7 +170,7 @@ class SimulatorSetup:
         return private_command(self._python, self.folder, PROGRAM, *arguments)
 
     def _read(self, name: str) -> dict[str, Any]:
-        """Return what a JSON file of the private folder holds, nothing where it is damaged."""
+        """Return the content of a JSON file in the private folder; empty if it is damaged."""
         with contextlib.suppress(InputError):
             values = read_json(self.folder / name, MARK_LIMIT_BYTES)
             if isinstance(values, dict):

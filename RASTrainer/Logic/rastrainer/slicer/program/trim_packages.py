@@ -3,12 +3,12 @@
     private_command(python, FOLDER, "rastrainer.slicer.program.trim_packages", FOLDER)
 
 Wheels bring C++ headers, manuals and tests, and VTK and Pinocchio a hundred libraries that the
-simulator does not use. What it uses is not guessed: every package that its sources import is
-imported, and a library that the loader has not opened then is one that nobody needs. Where
-something cannot be imported, or the system does not say what is loaded, the libraries stay. On
-Linux, a fourth of what they hold are names for debuggers, which no loader reads.
+simulator does not use. Nothing is guessed: every package that its sources import is imported, and
+libraries that the loader has not opened by then are removed. If an import fails, or the system does
+not list loaded libraries, all stay. On Linux, a fourth of their bytes are symbols for debuggers,
+which no loader reads.
 
-Prints one line and writes the sizes beside the packages, into SIZES.
+Prints one line and writes the sizes into SIZES, next to the packages.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ MEGABYTE = 10**6
 
 
 def trim(folder: Path) -> tuple[int, int]:
-    """Remove what is never opened; return the bytes that stay and those that were removed."""
+    """Remove files that are never opened; return the kept and the removed bytes."""
     before = size(folder)
     for name in NEVER_OPENED:
         shutil.rmtree(folder / name, ignore_errors=True)
@@ -129,7 +129,7 @@ SEGMENT = struct.Struct("<2I6Q")
 
 
 def drop_symbols(library: Path) -> None:
-    """Cut off what lies behind the last segment: symbols and sections, which only debuggers read.
+    """Cut off all bytes behind the last segment: symbols and sections, which only debuggers read.
 
     Other than 64-bit libraries of Linux stay as they are.
     """

@@ -31,7 +31,7 @@ SIZE = (0.1, 0.35)
 PLACE = (0.98, 0.5)
 TRE_SCALARS = "expected TRE (mm)"
 OPACITY_ATTRIBUTE = "RASTrainer.opacity"
-"""On a colored head: its opacity without the colors, which mean something only where it is 1."""
+"""On a colored head: its opacity before it was colored. Colors are readable only at opacity 1."""
 
 
 def showScalars(model: Any, name: str, ends: tuple[float, float]) -> None:
@@ -47,7 +47,7 @@ def showScalars(model: Any, name: str, ends: tuple[float, float]) -> None:
 def showLegend(node: Any, title: str, rank: int) -> Any | None:
     """Show the legend of a colored node in 3D, unless one of higher rank is shown.
 
-    Returns None where the scene knows no legends: only Slicer's module Colors brings them.
+    Returns None if the scene knows no legends: only Slicer's module Colors has them.
     """
     if not node.GetScene().IsNodeClassRegistered(CLASS_NAME):
         return None
@@ -75,7 +75,7 @@ def hideLegend(node: Any) -> None:
 
 def _showHighest(scene: Any) -> None:
     found = nodesOfClass(scene, CLASS_NAME)
-    # What has no rank is none of ours; a legend may have outlived what it belongs to.
+    # A legend without a rank is not ours; one of ours may have outlived its model.
     ours = [legend for legend in found if legend.GetAttribute(RANK_ATTRIBUTE) is not None]
     ranks = {legend: int(legend.GetAttribute(RANK_ATTRIBUTE)) for legend in ours}
     nodes = {legend: legend.GetDisplayableNode() for legend in ours if ranks[legend]}
@@ -146,8 +146,8 @@ def glyphsPolyData(
 ) -> vtk.vtkPolyData:
     """Return a ball on each fiducial and an arrow along its residual, in RAS mm.
 
-    Its point data hold the residual in mm under the name `residual (mm)`. `rows` are those of the
-    points that are wanted; all when left out.
+    Its point data hold the residual in mm under the name `residual (mm)`. `rows` selects points; by
+    default all.
     """
     append = vtk.vtkAppendPolyData()
     tips = arrowTips(registration)

@@ -1,9 +1,8 @@
-"""Our nodes in the scene: found or made, what they show, their points, and the link's nodes."""
+"""Our nodes in the scene: found or made, their content, their points, and the link's nodes."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,7 +16,7 @@ ROLE_ATTRIBUTE = "RASTrainer.role"
 
 
 class Role:
-    """What a node of ours is for. It stays when the node is renamed, saved and loaded again."""
+    """The purpose of one of our nodes; it survives renaming, saving and loading."""
 
     HEAD_MODEL = "head model"
     HEAD_PREVIEW = "head preview"
@@ -83,38 +82,40 @@ def findOrAddNode(scene: Any, className: str, role: str, name: str) -> Any:
     """Return the node of the class with the role, added under `name` where there is none."""
     node = findNode(scene, className, role)
     if node is None:
-        node = scene.AddNewNodeByClass(className, name)
-        node.SetAttribute(ROLE_ATTRIBUTE, role)
+        node = addNode(scene, className, role, name)
         if node.IsA("vtkMRMLDisplayableNode"):
             node.CreateDefaultDisplayNodes()
     return node
 
 
-SCENARIO_ATTRIBUTE = "RASTrainer.scenario"
+SELECTION = "vtkMRMLSelectionNodeSingleton"
+INTERACTION = "vtkMRMLInteractionNodeSingleton"
+
+
+def addNode(scene: Any, className: str, role: str, name: str) -> Any:
+    """Add a node of ours, without display.
+
+    Slicer has the next click place a point of the newest list; while the user is placing points,
+    they still go into the user's list.
+    """
+    selection, interaction = scene.GetNodeByID(SELECTION), scene.GetNodeByID(INTERACTION)
+    isPlacing = interaction and interaction.GetCurrentInteractionMode() == interaction.Place
+    active = scene.GetNodeByID(selection.GetActivePlaceNodeID() or "") if isPlacing else None
+    node = scene.AddNewNodeByClass(className, name)
+    node.SetAttribute(ROLE_ATTRIBUTE, role)
+    if active is not None:
+        selection.SetReferenceActivePlaceNodeClassName(active.GetClassName())
+        selection.SetActivePlaceNodeID(active.GetID())
+    return node
+
+
 TASK_ATTRIBUTE = "RASTrainer.task"
 CONTENT_ATTRIBUTE = "RASTrainer.content"
-"""Stamp of what a node shows: a rebuilt scenario may keep its name."""
-
-
-def isShown(node: Any, attribute: str, name: str, content: str) -> bool:
-    return (node.GetAttribute(attribute), node.GetAttribute(CONTENT_ATTRIBUTE)) == (name, content)
-
-
-def noteShown(node: Any, attribute: str, name: str, content: str) -> None:
-    node.SetAttribute(attribute, name)
-    node.SetAttribute(CONTENT_ATTRIBUTE, content)
-
-
-def stampOf(path: Path) -> str:
-    """Return a stamp that changes with a file, without reading it; empty if there is none."""
-    if not path.is_file():
-        return ""
-    status = path.stat()
-    return f"{status.st_mtime_ns} {status.st_size}"
+"""Stamp of a node's content: a rebuilt scenario may keep its name."""
 
 
 def surfaceOf(model: Any | None) -> tuple:
-    """Return a value that changes with the surface of a model; empty where there is none."""
+    """Return a value that changes with the surface of a model; empty without one."""
     if model is None or model.GetPolyData() is None or model.GetPolyData().GetPoints() is None:
         return ()
     return model.GetID(), model.GetPolyData().GetPoints().GetMTime()
@@ -125,7 +126,7 @@ def labelsOf(node: Any) -> tuple[str, ...]:
 
 
 def labelOf(node: Any, index: int) -> str:
-    """Return the label of one point; a peer may have sent one that is not UTF-8."""
+    """Return a point's label; a peer may have sent bytes that are not UTF-8."""
     return shownText(node.GetNthControlPointLabel(index))
 
 
@@ -140,7 +141,7 @@ def worldPoints(node: Any) -> np.ndarray:
 
 
 def usedPoints(node: Any, points: np.ndarray, labels: tuple[str, ...]) -> PointList:
-    """Return those of points (n, 3), mm, and their labels that Slicer would use."""
+    """Return the points, of (n, 3) mm, that Slicer would use, with their labels."""
     unused = {row: label for row, label in enumerate(labels) if not isUsed(node, row)}
     rows = [row for row in range(len(labels)) if row not in unused]
     return PointList(tuple(labels[row] for row in rows), points[rows], unused)
@@ -165,7 +166,7 @@ POINT_PIXELS = 5.0
 def prepareNodes(scene: Any) -> Iterator[Any]:
     """Make the nodes that are missing, one at each step, and yield all.
 
-    The connector adopts nodes of that name and class; what it has made itself meanwhile is adopted.
+    The connector adopts nodes of that name and class; nodes that it has made itself are adopted.
     """
     yield capturedPointsNode(scene)
     yield simStateNode(scene)
@@ -182,7 +183,7 @@ def poseNode(scene: Any, device: str) -> Any:
 
 
 def capturedPointsNode(scene: Any) -> Any:
-    """Return the list of touched points (World, mm), whatever users call it, or a new one."""
+    """Return the list of touched points (World, mm) under any name, or add it."""
     className, role = "vtkMRMLMarkupsFiducialNode", Role.CAPTURED_POINTS
     node = findNode(scene, className, role)
     if node is None:
@@ -206,7 +207,6 @@ def simStateNode(scene: Any) -> Any:
 
 
 def drawAsPoints(node: Any) -> None:
-    """Draw a model as the points of a trace."""
     node.SetSelectable(False)
     display = node.GetDisplayNode()
     with slicer.util.NodeModify(display):
@@ -217,21 +217,21 @@ def drawAsPoints(node: Any) -> None:
 
 
 def _node(scene: Any, className: str, role: str, name: str) -> Any:
-    """Return the node of the role, else the one of the name, else a new one."""
+    """Return the node with the role, else with the name, else a new node."""
     node = findNode(scene, className, role)
     if node is None:
-        node = scene.GetFirstNode(name, className) or scene.AddNewNodeByClass(className, name)
+        node = scene.GetFirstNode(name, className) or addNode(scene, className, role, name)
         node.SetAttribute(ROLE_ATTRIBUTE, role)
     return node
 
 
 def decodedText(text: str | bytes | None) -> str:
-    """Return the text, empty where there is none."""
+    """Return the text, empty for None."""
     if isinstance(text, bytes):
         raise InputError("The text must be encoded in UTF-8.")
     return text or ""
 
 
 def shownText(text: str | bytes | None) -> str:
-    """Return a text to be shown, such as a label: what is not UTF-8 in it is replaced."""
+    """Return a text for display, such as a label, with bytes that are not UTF-8 replaced."""
     return text.decode("utf-8", "replace") if isinstance(text, bytes) else text or ""

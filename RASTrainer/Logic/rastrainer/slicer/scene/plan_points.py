@@ -10,7 +10,9 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.scene.nodes import (
+    INTERACTION,
     ROLE_ATTRIBUTE,
+    SELECTION,
     Role,
     findOrAddNode,
     labelOf,
@@ -18,9 +20,6 @@ from rastrainer.slicer.scene.nodes import (
     setPoints,
 )
 from rastrainer.slicer.translation import _
-
-SELECTION = "vtkMRMLSelectionNodeSingleton"
-INTERACTION = "vtkMRMLInteractionNodeSingleton"
 
 
 def startPlacing(scene: Any, node: Any) -> None:
@@ -111,7 +110,7 @@ class UndoablePoints:
 
 
 class PlanPoints(UndoablePoints):
-    """The points of targets and trajectories; placing more never erases placed ones."""
+    """The points of targets and trajectories; placing more never erases any."""
 
     def newTarget(self) -> Any:
         node = findOrAddNode(self._scene, LIST, Role.PLAN_TARGET, _("Planned target"))
@@ -145,7 +144,7 @@ class PlanPoints(UndoablePoints):
 
 
 def whyNotRemoved(node: Any | None) -> str:
-    """Return why no point of a node can be removed, empty where one can."""
+    """Return why no point of a node can be removed; empty if one can."""
     if node is None or not placedPoints(node):
         return _("No point is placed.")
     if node.GetLocked():

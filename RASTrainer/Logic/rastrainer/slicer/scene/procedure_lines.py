@@ -28,6 +28,7 @@ from rastrainer.slicer.scene.error_colors import arrowPolyData
 from rastrainer.slicer.scene.nodes import (
     ROLE_ATTRIBUTE,
     Role,
+    addNode,
     findOrAddNode,
     nodesOf,
     nodesOfClass,
@@ -50,11 +51,10 @@ NO_GO_COLOR = (0.8, 0.2, 0.2)
 
 def planLines(scene: Any) -> list[Any]:
     lines = nodesOf(scene, LINE, Role.PLAN_LINE)
-    return sorted(lines, key=lambda line: _number(line.GetAttribute(ORDER_ATTRIBUTE), LAST))
+    return sorted(lines, key=lambda line: float(line.GetAttribute(ORDER_ATTRIBUTE) or LAST))
 
 
 def raiseLine(scene: Any, line: Any) -> None:
-    """Have a line of the plan carried out before the one above it; the first one stays."""
     lines = planLines(scene)
     place = lines.index(line)
     if place > 0:
@@ -78,7 +78,6 @@ def removeLine(scene: Any, line: Any) -> int:
 
 
 def restoreLine(scene: Any, line: Any, place: int) -> None:
-    """Restore a removed line at its place among the others."""
     lines = planLines(scene)
     scene.AddNode(line)
     line.CreateDefaultDisplayNodes()
@@ -87,9 +86,8 @@ def restoreLine(scene: Any, line: Any, place: int) -> None:
 
 def instrumentOf(line: Any) -> tuple[float, float]:
     """Return diameter and safety distance of a line's instrument, mm."""
-    usual = (DIAMETER_ATTRIBUTE, USUAL_DIAMETER_MM), (SAFETY_ATTRIBUTE, USUAL_SAFETY_MM)
-    diameter, safety = (_number(line.GetAttribute(name), value) for name, value in usual)
-    return diameter, safety
+    diameter, safety = line.GetAttribute(DIAMETER_ATTRIBUTE), line.GetAttribute(SAFETY_ATTRIBUTE)
+    return float(diameter or USUAL_DIAMETER_MM), float(safety or USUAL_SAFETY_MM)
 
 
 def setInstrument(line: Any, diameterMm: float, safetyMm: float) -> None:
@@ -160,23 +158,16 @@ def _noteOrder(lines: list[Any]) -> None:
         line.SetAttribute(ORDER_ATTRIBUTE, str(number))
 
 
-def _number(text: str | None, usual: float) -> float:
-    try:
-        return float(text or usual)
-    except ValueError:
-        return usual
-
-
 TRAJECTORY_ATTRIBUTE = "RASTrainer.trajectory"
 """On a line: the name of its trajectory."""
 THICKNESS = 0.3
-"""Of the arrows, which are true to scale, as a factor on those of residuals."""
+"""Thickness of the arrows, which are true to scale, relative to arrows of residuals."""
 
 
 def showPlannedLines(scene: Any, procedure: Procedure | None) -> None:
-    """Show the planned lines of a procedure, in the head, in place of those of another one.
+    """Show the planned lines of a procedure in the head; they replace other planned lines.
 
-    What was shown of an earlier procedure's errors goes. With None, nothing stays.
+    The errors of an earlier procedure are removed. None removes all lines.
     """
     for role in (Role.REGISTERED_LINE, Role.TRUE_LINE):
         _showLines(scene, role, "{}", {})
@@ -191,17 +182,17 @@ def showPlannedLines(scene: Any, procedure: Procedure | None) -> None:
 def showProcedureErrors(scene: Any, analysis: ProcedureAnalysis, lines: Sequence[TrueLine]) -> Any:
     """Show all lines of a procedure, arrows of its errors, and their table, which is returned.
 
-    The registered lines are where the plan, as it was shown, truly lay in the head. At entry and
-    target, arrows lead from the planned point to where the registration put it, and from there on
-    to what was reached; they are true to scale.
+    The registered lines are the true positions of the plan as the trainee saw it. At entry and
+    target, an arrow leads from the planned point to its registered position, and another from there
+    to the reached point; both are true to scale.
     """
-    planned = {line.trajectory: line.planned for line in lines}
-    _showLines(scene, Role.PLANNED_LINE, "{}", planned)
-    shown = {line.trajectory: line.shown for line in lines}
-    _showLines(scene, Role.REGISTERED_LINE, _("{}, registered"), shown)
-    placed = {line.trajectory: line.placed for line in lines}
-    _showLines(scene, Role.TRUE_LINE, _("{}, true"), placed)
-    _showArrows(scene, analysis.trajectories, list(planned.values()))
+    for role, title, member in (
+        (Role.PLANNED_LINE, "{}", "planned"),
+        (Role.REGISTERED_LINE, _("{}, registered"), "shown"),
+        (Role.TRUE_LINE, _("{}, true"), "placed"),
+    ):
+        _showLines(scene, role, title, {each.trajectory: getattr(each, member) for each in lines})
+    _showArrows(scene, analysis.trajectories, [line.planned for line in lines])
     return _showTable(scene, analysis.trajectories)
 
 
@@ -228,8 +219,7 @@ def _showLines(scene: Any, role: str, title: str, lines: Mapping[str, Any]) -> N
 
 
 def _newLine(scene: Any, role: str, name: str = "") -> Any:
-    node = scene.AddNewNodeByClass(LINE, name)
-    node.SetAttribute(ROLE_ATTRIBUTE, role)
+    node = addNode(scene, LINE, role, name)
     node.CreateDefaultDisplayNodes()
     display = node.GetDisplayNode()
     display.SetSelectedColor(_COLORS[role])
@@ -256,12 +246,9 @@ def _showArrows(
         for errors, ends in zip(each, planned, strict=True):
             splits = errors.entry_point_error, errors.target_point_error
             for start, split in zip(ends, splits, strict=True):
-                byRegistration, byHand = map(
-                    np.array, (split.by_registration_ras, split.by_hand_ras)
-                )
-                isFirst = role == Role.ERRORS_BY_REGISTRATION
-                begin = start if isFirst else start + byRegistration
-                vector = byRegistration if isFirst else byHand
+                begin, vector = start, np.array(split.by_registration_ras)
+                if role == Role.ERRORS_BY_HAND:
+                    begin, vector = start + vector, np.array(split.by_hand_ras)
                 append.AddInputData(arrowPolyData(begin, vector, THICKNESS))
         append.Update()
         node = findOrAddNode(scene, MODEL, role, name)
@@ -278,7 +265,6 @@ def _showTable(scene: Any, each: Sequence[TrajectoryErrors]) -> Any:
             f"{title}, by hand or robot (mm)": [split.by_hand_mm for split in splits],
         }
 
-    shownAngles = [errors.angular_deviation_by_registration_deg for errors in each]
     columns: dict[str, Sequence[Any]] = {
         "trajectory": [errors.trajectory for errors in each],
         "aligned by": ["robot" if errors.self_aligned else "hand" for errors in each],
@@ -289,7 +275,7 @@ def _showTable(scene: Any, each: Sequence[TrajectoryErrors]) -> Any:
         "depth error, by registration (mm)": [e.depth_error_by_registration_mm for e in each],
         "depth error, by hand (mm)": [errors.depth_error_by_hand_mm for errors in each],
         "angular deviation (°)": [errors.angular_deviation_deg for errors in each],
-        "angle by registration (°)": shownAngles,
+        "angle by registration (°)": [e.angular_deviation_by_registration_deg for e in each],
         "angle by hand or robot (°)": [e.angular_deviation_by_hand_deg for e in each],
         "plunge depth (mm)": [errors.plunge_mm for errors in each],
         "distance kept (mm)": [min(e.kept_mm.values(), default=None) for e in each],

@@ -1,6 +1,6 @@
-"""What a registration takes from the scene: pairs of points, and the normals of the skin at them.
+"""Input of a registration from the scene: pairs of points, and the skin's normals at them.
 
-The user may change the pairs. Of touches on the skin, errors differ along and across it.
+The user may change the pairs. Touches on the skin have different errors along and across it.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ estimated from the residuals."""
 
 @dataclass(frozen=True)
 class Choices:
-    """What the user has changed about the pairs.
+    """The user's changes to the pairs.
 
     Attributes:
         excluded: labels of pairs that are left out.
@@ -57,7 +57,7 @@ class Choices:
         return replace(self, fle=tuple(sorted(sizes.items())))
 
     def weights(self, labels: Sequence[str]) -> np.ndarray | None:
-        """Return the weight of each point, 1/FLE², (n,) float; None where all count alike."""
+        """Return the weight of each point, 1/FLE², (n,) float; None if all count alike."""
         sizes = dict(self.fle)
         fle = np.array([sizes.get(label, USUAL_FLE_MM) for label in labels])
         return None if (fle == USUAL_FLE_MM).all() else 1.0 / fle**2
@@ -126,7 +126,7 @@ def readPairs(moving: Any, fixed: Any, choices: Choices) -> Pairs:
 
 
 def snapshot(node: Any, pointsOf: Callable[[Any], np.ndarray] = worldPoints) -> tuple:
-    """Return a value that changes with a list: its ID, labels, positions, and what is used."""
+    """Return a value that changes with a list: its ID, labels, positions, and used points."""
     if node is None:
         return ()
     used = tuple(isUsed(node, row) for row in range(node.GetNumberOfControlPoints()))
@@ -135,7 +135,7 @@ def snapshot(node: Any, pointsOf: Callable[[Any], np.ndarray] = worldPoints) -> 
 
 @dataclass(frozen=True)
 class Remedy:
-    """A warning with its button, whose title is empty where the points must be mended."""
+    """A warning with its button; the title is empty if only better points help."""
 
     warning: RegistrationWarning
     title: str
@@ -182,16 +182,16 @@ class SkinNormals:
     """A head's surface and its normals at points, each found once; for one thread at a time."""
 
     def __init__(self, mesh: HeadMesh | None) -> None:
-        """`mesh` is None where the surface has other cells than triangles."""
+        """`mesh` is None if the surface has other cells than triangles."""
         self._mesh = mesh
         self._known: dict[bytes, np.ndarray | None] = {}
 
     def knows(self, points: np.ndarray) -> bool:
-        """Return whether the normals at points (n, 3) were looked for."""
+        """Return whether `findNormals` has had all points (n, 3)."""
         return all(point.tobytes() in self._known for point in points)
 
     def findNormals(self, points: np.ndarray) -> None:
-        """Look for the normals at points (n, 3), RAS mm: seconds for the first on a head."""
+        """Find the normals at points (n, 3), RAS mm; the first on a head takes seconds."""
         for point in points:
             if point.tobytes() in self._known:
                 continue
@@ -205,7 +205,7 @@ class SkinNormals:
     def localizationError(self, registration: Registration) -> LocalizationError | None:
         """Return the localization error of touches on the skin, separately along and across it.
 
-        None where the fixed points do not all lie on the surface, or are too few.
+        None if a fixed point is off the surface, or there are too few.
         """
         self.findNormals(registration.fixed_mm)
         normals = [self._known[point.tobytes()] for point in registration.fixed_mm]
@@ -218,7 +218,7 @@ class SkinNormals:
 
 
 def readSkin(model: Any | None) -> SkinNormals | None:
-    """Return the skin of a `vtkMRMLModelNode`; None where there is no surface yet."""
+    """Return the skin of a `vtkMRMLModelNode`; None if it has no surface yet."""
     from vtk.util.numpy_support import vtk_to_numpy
 
     if model is None or not surfaceOf(model):

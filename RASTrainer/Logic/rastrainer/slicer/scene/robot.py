@@ -27,7 +27,7 @@ def missingLinks(scene: Any) -> list[int]:
 def addLink(scene: Any, number: int, mesh: LinkMesh) -> None:
     """Show a link of the robot, transformed by the node that the connection fills."""
     poseNode(scene, DeviceName.LINK_TO_WORLD[number])
-    # Everything is set before the scene is told, and each view draws it once.
+    # Everything is set before the node is added, so each view draws it once.
     display = slicer.vtkMRMLModelDisplayNode()
     display.SetSaveWithScene(False)
     display.SetActiveScalar(COLORS, vtk.vtkAssignAttribute.POINT_DATA)

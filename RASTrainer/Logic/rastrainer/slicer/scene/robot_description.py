@@ -9,8 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 import vtk
-from scipy.spatial.transform import Rotation
-from vtk.util.numpy_support import vtk_to_numpy
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
@@ -48,6 +46,8 @@ def numbers(text: str) -> np.ndarray:
 
 def originOf(element: Element) -> np.ndarray:
     """Return the pose (4, 4) float, mm, of an origin: about x by roll, y by pitch, z by yaw."""
+    from scipy.spatial.transform import Rotation
+
     origin = element.find("origin")
     if origin is None:
         return np.eye(4)
@@ -61,7 +61,7 @@ class ArmChain:
     """The joints from the robot's base to the tip of its tool, in their order.
 
     Attributes:
-        origins: (n, 4, 4) float, of each joint in the frame of the one before, mm.
+        origins: (n, 4, 4) float, each joint in its predecessor's frame, mm.
         axes: (n, 3) float, unit; zeros for a joint that does not move.
     """
 
@@ -70,6 +70,8 @@ class ArmChain:
 
     def toolToWorld(self, q: np.ndarray) -> np.ndarray:
         """Return the poses (m, 4, 4) float, mm, of the tool at joint angles q (m, n) float, rad."""
+        from scipy.spatial.transform import Rotation
+
         poses = np.broadcast_to(np.eye(4), (len(q), 4, 4))
         column = 0
         for origin, axis in zip(self.origins, self.axes, strict=True):
@@ -84,7 +86,6 @@ class ArmChain:
 
 
 def readArmChain(urdf: Path) -> ArmChain:
-    """Read the chain of a robot without branches."""
     root = readUrdf(urdf)
     try:
         joints = {attribute(joint, "parent", "link"): joint for joint in root.findall("joint")}
@@ -140,6 +141,8 @@ def readLinkMeshes(folder: Path, progress: Progress = no_progress) -> tuple[Link
 
     VTK's filters take half a second: `READ_LINKS` names this for a separate process.
     """
+    from vtk.util.numpy_support import vtk_to_numpy
+
     root = readUrdf(folder / URDF)
     try:
         shells = _shells(root, folder)
@@ -165,7 +168,7 @@ def readLinkMeshes(folder: Path, progress: Progress = no_progress) -> tuple[Link
 
 
 def _shells(root: Element, folder: Path) -> list[list[Shell]]:
-    """Return the visual meshes of links 0 to 7; what is fixed to a link belongs to it."""
+    """Return the visual meshes of links 0 to 7, with all parts that are fixed to them."""
     colors = {
         material.get("name"): numbers(attribute(material, "color", "rgba"))[:3]
         for material in root.findall("material")

@@ -1,4 +1,4 @@
-"""Shows a scenario in the scene: head, images, what is planned, and the fiducials of a task.
+"""Shows a scenario in the scene: head, images, plan, and the fiducials of a task.
 
 Meshes and images are requested at once, and shown when they have been read.
 """
@@ -18,32 +18,29 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.volume import read_nrrd
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.scenario.scenario import Scenario, task_by_method
+from rastrainer.scenario.scenario import Scenario, SkullKind, task_by_method
 from rastrainer.slicer.background_work import BackgroundWork, CallLater, callNow
 from rastrainer.slicer.polydata import meshPolyData, vtkArray
 from rastrainer.slicer.scene.nodes import (
     CONTENT_ATTRIBUTE,
-    SCENARIO_ATTRIBUTE,
     TASK_ATTRIBUTE,
     Role,
     findNode,
     findOrAddNode,
-    isShown,
     nodesOfClass,
-    noteShown,
     removeNode,
     setPoints,
-    stampOf,
 )
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 
 MODEL, VOLUME = "vtkMRMLModelNode", "vtkMRMLScalarVolumeNode"
+LINE = "vtkMRMLMarkupsLineNode"
 SKIN_COLOR = (0.87, 0.72, 0.62)
 SKULL_COLOR = (0.95, 0.92, 0.82)
 SKIN_OPACITY_OVER_SKULL = 0.5
 OUTLINE_PIXELS = 2
-"""Of head and skull in the slice views: one is hardly seen on an MRI."""
+"""Width of the outlines of head and skull in slice views: one pixel is hardly visible on an MRI."""
 
 FIDUCIAL_COLOR = (0.25, 0.55, 0.95)
 TARGET_COLOR = (0.2, 0.75, 0.35)
@@ -53,11 +50,18 @@ def showScenario(scene: Any, scenario: Scenario, later: CallLater = callNow) -> 
     """Show head, skull, targets and trajectory, one after the other by `later`.
 
     Called again, nothing is made twice. Meshes and images come still later, by a `SceneFileLoader`.
-    The first point of the list of targets is the scenario's own, at which the target error is
-    reported.
     """
-    for show in (_showHead, _showSkull, _showTargets, _showTrajectory, requestVolume):
-        later(partial(show, scene, scenario))
+    skull, name = scenario.skull, "Skull"
+    if skull is not None and skull.kind is SkullKind.APPROXIMATION:
+        name = "Skull (approximation)"
+    opacity = 1.0 if skull is None else SKIN_OPACITY_OVER_SKULL
+    for role, title, path, color, share in (
+        (Role.HEAD_MODEL, "Head", scenario.head, SKIN_COLOR, opacity),
+        (Role.SKULL, name, None if skull is None else skull.file, SKULL_COLOR, 1.0),
+    ):
+        later(partial(_showSurface, scene, scenario, role, title, path, color, share))
+    later(partial(_showPlan, scene, scenario))
+    later(partial(requestVolume, scene, scenario))
 
 
 def showTask(
@@ -68,14 +72,15 @@ def showTask(
 ) -> Any:
     """Show the fiducials of a task, in RAS mm, and return their `vtkMRMLMarkupsFiducialNode`.
 
-    Of a trial by another method the landmarks that it has touched are shown instead.
+    A trial by another method shows its touched landmarks instead.
     """
     task = task_by_method(scenario, taskName, method)
     node = findOrAddNode(
         scene, "vtkMRMLMarkupsFiducialNode", Role.FIXED_FIDUCIALS, f"{task.title} fiducials"
     )
-    name, digest = taskKey(scenario.name, task.name), sha256(task.fiducials.tobytes()).hexdigest()
-    if not isShown(node, TASK_ATTRIBUTE, name, digest):
+    name = taskKey(scenario.name, task.name)
+    stamp = f"{name} {sha256(task.fiducials.tobytes()).hexdigest()}"
+    if node.GetAttribute(CONTENT_ATTRIBUTE) != stamp:
         display = node.GetDisplayNode()
         with slicer.util.NodeModify(node), slicer.util.NodeModify(display):
             node.SetName(f"{task.title} fiducials")
@@ -84,38 +89,34 @@ def showTask(
             display.SetSelectedColor(FIDUCIAL_COLOR)
             display.SetGlyphScale(2.0)
             display.SetTextScale(3.5)
-        noteShown(node, TASK_ATTRIBUTE, name, digest)
+        node.SetAttribute(TASK_ATTRIBUTE, name)
+        node.SetAttribute(CONTENT_ATTRIBUTE, stamp)
     return node
 
 
 def taskKey(scenarioName: str, taskName: str) -> str:
-    """Return what `TASK_ATTRIBUTE` says of a list of points that belongs to a task."""
     return f"{scenarioName}/{taskName}"
 
 
-def _showHead(scene: Any, scenario: Scenario) -> None:
-    node = findOrAddNode(scene, MODEL, Role.HEAD_MODEL, "Head")
-    opacity = 1.0 if scenario.skull_mesh is None else SKIN_OPACITY_OVER_SKULL
-    _requestMesh(node, scenario, scenario.head_mesh, SKIN_COLOR, opacity)
-
-
-def _showSkull(scene: Any, scenario: Scenario) -> None:
-    if scenario.skull_mesh is None:
-        removeNode(scene, MODEL, Role.SKULL)
+def _showSurface(
+    scene: Any,
+    scenario: Scenario,
+    role: str,
+    name: str,
+    path: Path | None,
+    color: tuple[float, float, float],
+    opacity: float,
+) -> None:
+    """Have the model of a role show a mesh of a scenario, or remove it if there is none."""
+    if path is None:
+        removeNode(scene, MODEL, role)
         return
-    node = findOrAddNode(scene, MODEL, Role.SKULL, "Skull")
-    if _requestMesh(node, scenario, scenario.skull_mesh, SKULL_COLOR, 1.0):
-        node.SetName("Skull (approximation)" if scenario.is_skull_approximate else "Skull")
-
-
-def _requestMesh(
-    node: Any, scenario: Scenario, path: Path, color: tuple[float, float, float], opacity: float
-) -> bool:
-    """Have a node show a mesh of a scenario; return whether it was not shown before."""
+    node = findOrAddNode(scene, MODEL, role, name)
     # Called before every trial: the file is read only if it is not shown yet.
-    if isFileShown(node, scenario.name, path):
-        return False
-    requestFile(node, scenario.name, path)
+    if node.GetAttribute(CONTENT_ATTRIBUTE) == _stamp(scenario, path):
+        return
+    _requestFile(node, scenario, path)
+    node.SetName(name)
     # Another scenario's head does not belong to these points.
     node.SetAndObservePolyData(None)
     display = node.GetDisplayNode()
@@ -125,28 +126,23 @@ def _requestMesh(
         display.SetOpacity(opacity)
         display.SetVisibility2D(True)
         display.SetSliceIntersectionThickness(OUTLINE_PIXELS)
-    return True
 
 
-def _showTargets(scene: Any, scenario: Scenario) -> None:
-    node = findOrAddNode(scene, "vtkMRMLMarkupsFiducialNode", Role.TARGET, "Targets")
-    names = [scenario.target_name, *(target.name for target in scenario.targets)]
-    places = [scenario.target_position, *(target.position_ras for target in scenario.targets)]
-    setPoints(node, names, np.array(places, dtype=float))
-    showAsPlanned(node)
-
-
-def _showTrajectory(scene: Any, scenario: Scenario) -> None:
+def _showPlan(scene: Any, scenario: Scenario) -> None:
+    """Show the targets, the first of which is where the target error is reported, and the line."""
+    targets = findOrAddNode(scene, "vtkMRMLMarkupsFiducialNode", Role.TARGET, "Targets")
+    names = [scenario.target.name, *(target.name for target in scenario.targets)]
+    places = [scenario.target.position_ras, *(target.position_ras for target in scenario.targets)]
+    setPoints(targets, names, np.array(places))
+    showAsPlanned(targets)
     planned = scenario.trajectory
     if planned is None:
-        removeNode(scene, "vtkMRMLMarkupsLineNode", Role.TRAJECTORY)
+        removeNode(scene, LINE, Role.TRAJECTORY)
         return
-    node = findOrAddNode(scene, "vtkMRMLMarkupsLineNode", Role.TRAJECTORY, planned.name)
-    node.SetName(planned.name)
-    setPoints(
-        node, ("Entry", "Target"), np.array([planned.entry_ras, planned.target_ras], dtype=float)
-    )
-    showAsPlanned(node)
+    line = findOrAddNode(scene, LINE, Role.TRAJECTORY, planned.name)
+    line.SetName(planned.name)
+    setPoints(line, ("Entry", "Target"), np.array([planned.entry_ras, planned.target_ras]))
+    showAsPlanned(line)
 
 
 def showAsPlanned(node: Any) -> None:
@@ -160,13 +156,14 @@ def requestVolume(scene: Any, scenario: Scenario) -> None:
     Called again, nothing is read twice: window, level and what the views show stay as they are.
     """
     node, file = findNode(scene, VOLUME, Role.HEAD_VOLUME), scenario.volume
-    if file is not None and isFileShown(node, scenario.name, file.file):
+    stamp = None if file is None else _stamp(scenario, file.file)
+    if node is not None and node.GetAttribute(CONTENT_ATTRIBUTE) == stamp:
         return
     removeNode(scene, VOLUME, Role.HEAD_VOLUME)
     if file is None:
         return
     node = findOrAddNode(scene, VOLUME, Role.HEAD_VOLUME, scenario.title)
-    requestFile(node, scenario.name, file.file)
+    _requestFile(node, scenario, file.file)
     display = node.GetDisplayNode()
     display.SetAutoWindowLevel(False)
     display.SetWindowLevel(file.window, file.level)
@@ -186,23 +183,22 @@ def showAsBackground(scene: Any, volume: Any, later: CallLater = callNow) -> Non
 
 
 FILE_ATTRIBUTE = "RASTrainer.file"
-"""Of a node that is not filled yet: the file that it is to show."""
+"""On a node without content yet: its file."""
 
 
-def isFileShown(node: Any | None, scenario: str, path: Path | None) -> bool:
-    """Return whether a node shows, or is going to, a scenario's file as it is on the disk."""
-    if node is None or path is None:
-        return False
-    return isShown(node, SCENARIO_ATTRIBUTE, scenario, stampOf(path))
+def _stamp(scenario: Scenario, path: Path) -> str:
+    """Return a stamp that changes with a file of a scenario, without reading it."""
+    status = path.stat() if path.is_file() else None
+    return f"{scenario.name} {status and (status.st_mtime_ns, status.st_size)}"
 
 
-def requestFile(node: Any, scenario: str, path: Path) -> None:
-    noteShown(node, SCENARIO_ATTRIBUTE, scenario, stampOf(path))
+def _requestFile(node: Any, scenario: Scenario, path: Path) -> None:
+    node.SetAttribute(CONTENT_ATTRIBUTE, _stamp(scenario, path))
     node.SetAttribute(FILE_ATTRIBUTE, str(path))
 
 
 def requestedFile(node: Any | None) -> tuple[str, ...]:
-    """Return which file a node is to show, empty where it is filled or not there."""
+    """Return the file that a node waits for; empty if there is no such node or it is filled."""
     if node is None or not node.GetAttribute(FILE_ATTRIBUTE):
         return ()
     attributes = (node.GetAttribute(name) or "" for name in (CONTENT_ATTRIBUTE, FILE_ATTRIBUTE))
@@ -214,14 +210,14 @@ _SHOWN = (
     (MODEL, Role.SKULL, _("No skull is shown: {problem}")),
     (VOLUME, Role.HEAD_VOLUME, _("There are no images in the slice views: {problem}")),
 )
-"""Class and role of each node that shows a file, and what to say of one that cannot be used."""
+"""Class and role of each node that shows a file, and the message for an unusable file."""
 
 
 class SceneFileLoader:
     """Fills the nodes of `showScenario` from files: read in the background, one shown in a turn.
 
-    A node holds what was in the file itself, so that a saved scene carries it. It has no file of
-    its own: Slicer's *Save* would offer to write over the scenario's.
+    A node holds the file's content, so that a saved scene carries it. It has no storage node:
+    Slicer's *Save* would offer to overwrite the scenario's file.
 
     Attributes:
         shown: emits each node that has been filled, in a later turn.
@@ -242,8 +238,9 @@ class SceneFileLoader:
             if requested != self._requested.get(role, ()):
                 self._requested[role] = requested
                 if requested:
+                    read = read_nrrd if className == VOLUME else _readMesh
                     self._work.do(
-                        partial(_readFile, className, Path(requested[-1])),
+                        partial(read, Path(requested[-1])),
                         partial(self._take, role, requested),
                         partial(self._refuse, role, requested, problem),
                     )
@@ -283,16 +280,14 @@ class SceneFileLoader:
                 self.problemFound.emit(problem.format(problem=error))
 
     def _awaiting(self, role: str, requested: tuple[str, ...]) -> Any | None:
-        """Return the node that still requests this file; None where there is none."""
+        """Return the node that still requests this file; None if there is none."""
         # In a cleared scene the next node has the same ID, and may request the same at once.
         self._requested[role] = ()
         node = self._scene.GetNodeByID(requested[0])
         return node if requestedFile(node) == requested else None
 
 
-def _readFile(className: str, path: Path) -> HeadMesh | tuple[np.ndarray, np.ndarray]:
-    if className == VOLUME:
-        return read_nrrd(path)
+def _readMesh(path: Path) -> HeadMesh:
     mesh = read_head_mesh(path)
     mesh.vertex_normals  # noqa: B018 (computed here, in the background, and kept)
     return mesh

@@ -36,11 +36,11 @@ TOOLS = (DeviceName.TOOL_TIP_TO_WORLD, DeviceName.INSTRUMENT_TIP_TO_WORLD)
 
 
 class SceneWatch:
-    """Observes nodes of the kinds that matter here, for as long as they are in the scene.
+    """Observes nodes of the classes in `CONTENT`, transforms and texts while they are in the scene.
 
     Attributes:
         noticed: emits nothing, from inside VTK, whenever something is to be looked at soon.
-        hasChanged: whether what the panels show has changed; whoever has looked resets it.
+        hasChanged: whether the panels' content has changed; its reader resets it.
     """
 
     def __init__(self, scene: Any) -> None:

@@ -56,7 +56,7 @@ class Row:
 
 @dataclass(frozen=True)
 class GroupComparison:
-    """A value beside those of a group.
+    """A value compared with the values of a group.
 
     `betterThan` is the share of the others that the trial is better than, 0 to 1.
     """
@@ -169,25 +169,44 @@ def standings(
 ) -> list[GroupComparison]:
     """Compare a trial with the trainee's own others, with everyone else's, and with a cohort.
 
-    Only trials of the same task and mode are compared, and only scores of the same method. Of a
-    cohort, such as the published one, times and FRE are known.
+    Only trials of the same task and mode are compared, and only scores of the same method. A
+    cohort, such as the published study, has only times and FRE.
     """
-    record = trial.record
+    record, rigid = trial.record, trial.registrations.get(RIGID)
     outcomes = study.outcomes(record.task, record.mode)
     (this,) = (o for o in outcomes if o.trial_id == record.trial_id)
     own = [o for o in outcomes if o.trainee == record.trainee and o is not this]
     others = [o for o in outcomes if o.trainee != record.trainee]
-    found = []
+    # Title, unit, 1 where more is better and −1 where less is, value, group, and its values.
+    compared: list[tuple[str, str, int, float | None, str, Sequence[float | None]]] = []
     for group, members in ((_("own"), own), (_("others"), others)):
-        for title, unit, better, name in _COMPARED:
-            value = getattr(this, name)
-            peers = members
-            if name == "score":
-                peers = [o for o in members if o.method == this.method]
-            values = [v for v in (getattr(o, name) for o in peers) if v is not None]
-            if value is not None and values:
-                found.append(_standing(title, unit, value, group, values, better))
-    return found + _comparedWithCohort(trial, cohort)
+        scores = [o.score for o in members if o.method == this.method]
+        times = [o.completion_time_s for o in members]
+        errors = [o.true_tre_mm for o in members]
+        compared += [
+            (_("Score"), "", 1, this.score, group, scores),
+            (_("Completion time"), "s", -1, this.completion_time_s, group, times),
+            (_("True TRE"), "mm", -1, this.true_tre_mm, group, errors),
+        ]
+    # The published tables call the tasks 1 to 5.
+    tasks = [
+        (peer, (peer.task, f"task-{peer.task}")) for peer in cohort if peer.mode == record.mode
+    ]
+    peers = [peer for peer, names in tasks if record.task in names]
+    times, errors = [p.completion_time_s for p in peers], [p.rmse_mm for p in peers]
+    fre = None if rigid is None else rigid.fre_mm
+    compared += [
+        (_("Completion time"), "s", -1, record.completion_time_s, _("reference"), times),
+        (_("FRE (RMSE)"), "mm", -1, fre, _("reference"), errors),
+    ]
+    found = []
+    for title, unit, better, value, group, all_ in compared:
+        values = [each for each in all_ if each is not None]
+        if value is not None and values:
+            share = float(np.mean([better * value > better * other for other in values]))
+            median = float(np.median(values))
+            found.append(GroupComparison(title, unit, value, group, len(values), median, share))
+    return found
 
 
 def showStandings(scene: Any, found: Sequence[GroupComparison]) -> Any:
@@ -221,37 +240,3 @@ def showRows(scene: Any, role: str, name: str, rows: Sequence[Row]) -> Any:
             "note": [row.note for row in rows],
         },
     )
-
-
-def _standing(
-    title: str, unit: str, value: float, group: str, values: Sequence[float], better: int
-) -> GroupComparison:
-    share = float(np.mean([better * value > better * other for other in values]))
-    return GroupComparison(title, unit, value, group, len(values), float(np.median(values)), share)
-
-
-def _comparedWithCohort(trial: StoredTrial, cohort: Sequence[Trial]) -> list[GroupComparison]:
-    record, rigid = trial.record, trial.registrations.get(RIGID)
-    # The published tables call the tasks 1 to 5.
-    peers = [
-        peer
-        for peer in cohort
-        if peer.mode == record.mode and record.task in (peer.task, f"task-{peer.task}")
-    ]
-    if not peers:
-        return []
-    group = _("reference")
-    times = [peer.completion_time_s for peer in peers]
-    found = [_standing(_("Completion time"), "s", record.completion_time_s, group, times, -1)]
-    if rigid is not None:
-        errors = [peer.rmse_mm for peer in peers]
-        found.append(_standing(_("FRE (RMSE)"), "mm", rigid.fre_mm, group, errors, -1))
-    return found
-
-
-_COMPARED = (
-    (_("Score"), "", 1, "score"),
-    (_("Completion time"), "s", -1, "completion_time_s"),
-    (_("True TRE"), "mm", -1, "true_tre_mm"),
-)
-"""Title, unit, 1 where more is better and −1 where less is, and the outcome's attribute."""

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 
 FEWEST_ROWS = 2
-"""Of a table that is plotted: VTK logs an error for each painted line with fewer points, with or
-without a pen, and Slicer plots all series as lines."""
+"""Fewest rows of a plotted table: VTK logs an error for each line with fewer points, visible or
+not, and Slicer plots every series as a line."""
 
 
 def showTable(
@@ -190,7 +190,7 @@ INSIDE = "true TRE, inside (mm)"
 OUTSIDE = "true TRE, outside (mm)"
 LOW, HIGH = "TRE from, 95 % (mm)", "TRE to, 95 % (mm)"
 ROOM = 1.5
-"""Of the plot's height to what it shows: the legend is above and hides no trial."""
+"""Ratio of the plot's height to its content: the legend lies above and hides no trial."""
 _DOTS = {INSIDE: (_("Inside"), (0.15, 0.4, 0.75)), OUTSIDE: (_("Outside"), (0.8, 0.15, 0.1))}
 _LINES = {
     TRUE: (_("True = expected"), (0.1, 0.1, 0.1)),

@@ -26,8 +26,10 @@ from rastrainer.slicer.scene.nodes import (
 )
 from rastrainer.slicer.scene.robot_description import ArmChain
 
+TRANSFORM, MODEL, TEXT = "vtkMRMLLinearTransformNode", "vtkMRMLModelNode", "vtkMRMLTextNode"
+LIST, BROWSER = "vtkMRMLMarkupsFiducialNode", "vtkMRMLSequenceBrowserNode"
 SAMPLE_HZ = 10.0
-"""Of what is shown; the journal has 50 samples a second."""
+"""Displayed samples a second; the journal has 50."""
 TRIAL_ATTRIBUTE = "RASTrainer.trial"
 """On a replay's browser: UUID of the trial."""
 STATES_A_SLICE = 50
@@ -86,23 +88,27 @@ def _fillScene(
     worldToHead: np.ndarray,
     rest: Callable[[float], None],
 ) -> Any:
-    placed = findOrAddNode(scene, "vtkMRMLLinearTransformNode", _PLACE, f"{name}: WorldToHead")
+    def add(className: str, role: str, title: str) -> Any:
+        rest(0.0)
+        return findOrAddNode(scene, className, role, title)
+
+    placed = add(TRANSFORM, _PLACE, f"{name}: WorldToHead")
     placed.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(worldToHead))
-    tool = findOrAddNode(scene, "vtkMRMLLinearTransformNode", _TOOL, f"{name}: tool")
+    tool = add(TRANSFORM, _TOOL, f"{name}: tool")
     tool.SetAndObserveTransformNodeID(placed.GetID())
-    rest(0.0)
-    _showTool(scene, f"{name}: tool model", tool)
-    rest(0.0)
-    touches = findOrAddNode(scene, "vtkMRMLMarkupsFiducialNode", _TOUCHES, f"{name}: touches")
+    tip = add(MODEL, _TIP, f"{name}: tool model")
+    tip.SetAndObservePolyData(_needle())
+    tip.GetDisplayNode().SetColor(TOOL_COLOR)
+    tip.SetAndObserveTransformNodeID(tool.GetID())
+    touches = add(LIST, _TOUCHES, f"{name}: touches")
     touches.SetLocked(True)
     display = touches.GetDisplayNode()
     display.SetSelectedColor(TOUCH_COLOR)
     display.SetGlyphScale(2.5)
     display.SetTextScale(3.5)
     touches.SetAndObserveTransformNodeID(placed.GetID())
-    rest(0.0)
-    clearance = findOrAddNode(scene, "vtkMRMLTextNode", _CLEARANCE, f"{name}: clearance")
-    browser = findOrAddNode(scene, "vtkMRMLSequenceBrowserNode", _BROWSER, f"Replay of {name}")
+    clearance = add(TEXT, _CLEARANCE, f"{name}: clearance")
+    browser = add(BROWSER, _BROWSER, f"Replay of {name}")
     browser.SetIndexDisplayMode(browser.IndexDisplayAsIndexValue)
     browser.SetPlaybackRateFps(SAMPLE_HZ)
     rest(0.0)
@@ -110,12 +116,12 @@ def _fillScene(
     times = trajectory.times_s[rows]
     total, done = 2 * len(rows) + len(trajectory.touches) + 1, 0
     shown = [
-        (tool, _toolStates(times, poses)),
+        (tool, zip(times, map(_toolState, poses), strict=True)),
         (touches, _touchStates(trajectory)),
-        (clearance, _clearanceStates(times, trajectory.clearance_mm[rows])),
+        (clearance, zip(times, map(_clearanceState, trajectory.clearance_mm[rows]), strict=True)),
     ]
     if trajectory.traced:
-        trace = findOrAddNode(scene, "vtkMRMLModelNode", _TRACE, f"{name}: trace")
+        trace = findOrAddNode(scene, MODEL, _TRACE, f"{name}: trace")
         drawAsPoints(trace)
         trace.SetAndObserveTransformNodeID(placed.GetID())
         shown.append((trace, _traceStates(trajectory)))
@@ -163,9 +169,9 @@ def goTo(scene: Any, timeS: float) -> None:
 
 
 def moment(scene: Any) -> tuple[float, str] | None:
-    """Return the replay's time in s and what is said about the clearance; None without one."""
+    """Return the replay's time in s and its text about the clearance; None without a replay."""
     browser = findReplay(scene)
-    text = findNode(scene, "vtkMRMLTextNode", _CLEARANCE)
+    text = findNode(scene, TEXT, _CLEARANCE)
     if browser is None or text is None or browser.GetMasterSequenceNode() is None:
         return None
     if browser.GetSelectedItemNumber() < 0:
@@ -176,23 +182,17 @@ def moment(scene: Any) -> tuple[float, str] | None:
 
 
 def findReplay(scene: Any) -> Any | None:
-    return findNode(scene, "vtkMRMLSequenceBrowserNode", _BROWSER)
+    return findNode(scene, BROWSER, _BROWSER)
 
 
 def isReplayOf(scene: Any, trialId: str) -> bool:
     browser = findReplay(scene)
-    parts = (
-        ("vtkMRMLLinearTransformNode", _PLACE),
-        ("vtkMRMLLinearTransformNode", _TOOL),
-        ("vtkMRMLModelNode", _TIP),
-        ("vtkMRMLMarkupsFiducialNode", _TOUCHES),
-        ("vtkMRMLTextNode", _CLEARANCE),
-    )
+    parts = (TRANSFORM, _PLACE), (TRANSFORM, _TOOL), (MODEL, _TIP), (LIST, _TOUCHES)
     return (
         browser is not None
         and browser.GetAttribute(TRIAL_ATTRIBUTE) == trialId
         and browser.GetMasterSequenceNode() is not None
-        and all(findNode(scene, className, part) is not None for className, part in parts)
+        and all(findNode(scene, *part) for part in (*parts, (TEXT, _CLEARANCE)))
     )
 
 
@@ -200,7 +200,7 @@ def removeReplay(scene: Any, rest: Callable[[float], None] = lambda _share: None
     """Remove the replay and all its nodes from the scene; `rest` is as of `showReplay`."""
     ours = _nodesOfReplay(scene, "vtkMRMLNode")
     # First what would show each change of the others.
-    for node in sorted(ours, key=lambda node: not node.IsA("vtkMRMLSequenceBrowserNode")):
+    for node in sorted(ours, key=lambda node: not node.IsA(BROWSER)):
         if node.GetScene() is None:
             continue
         if node.IsA("vtkMRMLDisplayableNode") and node.GetDisplayNode() is not None:
@@ -214,7 +214,7 @@ def removeReplay(scene: Any, rest: Callable[[float], None] = lambda _share: None
 def emptyReplay(scene: Any) -> Iterator[None]:
     """Keep the states of the replay that is in the scene, and release them slice by slice.
 
-    To be called before the scene is closed, which would delete thousands of them at once.
+    Call this before the scene is closed: that would delete thousands of states at once.
     """
     sequences = _nodesOfReplay(scene, "vtkMRMLSequenceNode")
     return itertools.chain.from_iterable(map(_slicesOf, sequences))
@@ -234,15 +234,19 @@ def _slicesOf(sequence: Any) -> Iterator[None]:
             yield
 
 
-def _toolStates(times: np.ndarray, poses: np.ndarray) -> Iterator[tuple[float, Any]]:
-    for time, pose in zip(times, poses, strict=True):
-        state = slicer.vtkMRMLLinearTransformNode()
-        state.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(pose))
-        yield time, state
+def _toolState(pose: np.ndarray) -> Any:
+    state = slicer.vtkMRMLLinearTransformNode()
+    state.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(pose))
+    return state
+
+
+def _clearanceState(clearanceMm: float) -> Any:
+    state = slicer.vtkMRMLTextNode()
+    state.SetText(f"{fixed(clearanceMm, 1)} mm")
+    return state
 
 
 def _touchStates(trajectory: Trajectory) -> Iterator[tuple[float, Any]]:
-    """Yield the touches made so far, at the start and at each touch."""
     made = trajectory.touches
     for count in range(len(made) + 1):
         state = slicer.vtkMRMLMarkupsFiducialNode()
@@ -253,7 +257,7 @@ def _touchStates(trajectory: Trajectory) -> Iterator[tuple[float, Any]]:
 
 
 def _traceStates(trajectory: Trajectory) -> Iterator[tuple[float, Any]]:
-    """Yield what has been traced so far, at the start and after some points each."""
+    """Yield the trace so far, at the start and after every few points."""
     made = trajectory.traced
     places = np.array([point.position_mm for point in made])
     for count in (*range(0, len(made), POINTS_A_STATE), len(made)):
@@ -262,15 +266,8 @@ def _traceStates(trajectory: Trajectory) -> Iterator[tuple[float, Any]]:
         yield made[count - 1].time_s if count else float(trajectory.times_s[0]), state
 
 
-def _clearanceStates(times: np.ndarray, clearance: np.ndarray) -> Iterator[tuple[float, Any]]:
-    for time, value in zip(times, clearance, strict=True):
-        state = slicer.vtkMRMLTextNode()
-        state.SetText(f"{fixed(value, 1)} mm")
-        yield time, state
-
-
-def _showTool(scene: Any, name: str, tool: Any) -> None:
-    """Show a needle whose tip is the tool's: its shaft lies along −z."""
+def _needle() -> vtk.vtkPolyData:
+    """Return a needle whose tip is the tool's: its shaft lies along −z."""
     line = vtk.vtkLineSource()
     line.SetPoint1(0.0, 0.0, 0.0)
     line.SetPoint2(0.0, 0.0, -TOOL_LENGTH_MM)
@@ -280,7 +277,4 @@ def _showTool(scene: Any, name: str, tool: Any) -> None:
     tube.SetNumberOfSides(16)
     tube.CappingOn()
     tube.Update()
-    model = findOrAddNode(scene, "vtkMRMLModelNode", _TIP, name)
-    model.SetAndObservePolyData(tube.GetOutput())
-    model.GetDisplayNode().SetColor(TOOL_COLOR)
-    model.SetAndObserveTransformNodeID(tool.GetID())
+    return tube.GetOutput()

@@ -6,6 +6,7 @@ from functools import partial
 from hashlib import sha256
 from typing import Any
 
+import numpy as np
 import slicer
 
 from rastrainer import transforms
@@ -61,7 +62,7 @@ def setTouchesVisible(scene: Any, visible: bool) -> None:
 
 
 def showOnlyTouchesOf(scene: Any, scenario: str, task: str) -> None:
-    """Hide touches that belong to another task than the one that is shown."""
+    """Hide touches that belong to another task than the task on display."""
     touched = capturedPointsNode(scene).GetAttribute(TASK_ATTRIBUTE)
     setTouchesVisible(scene, touched in (None, taskKey(scenario, task)))
 
@@ -105,30 +106,43 @@ MOVING_REFERENCE = "RASTrainer.moving"
 FIXED_REFERENCE = "RASTrainer.fixed"
 KIND_ATTRIBUTE = "RASTrainer.registration"
 FRE_ATTRIBUTE = "RASTrainer.freMm"
+PLANNED = "planned"
 
 
 def showRegistration(scene: Any, registration: Registration, moving: Any, fixed: Any) -> Any:
-    """Put a registration into the scene's WorldToHead transform and return that node.
-
-    The node remembers its lists of points. Whether it is applied to the moving points stays as it
-    was; the first time it is.
-    """
-    node = findOrAddNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD, "WorldToHead")
-    isFirst = movingNode(node) is None
-    # Touches and robot follow it.
-    with slicer.util.NodeModify(node):
-        node.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(registration.matrix))
-        rememberLists(node, moving, fixed)
-        node.SetAttribute(KIND_ATTRIBUTE, registration.kind)
-        node.SetAttribute(FRE_ATTRIBUTE, f"{registration.fre_mm:.6f}")
-    if isFirst:
-        setApplied(node, True)
+    """Put a registration into the scene's WorldToHead transform and return that node."""
+    node = _placeWorld(scene, registration.matrix, registration.kind, moving, fixed)
+    node.SetAttribute(FRE_ATTRIBUTE, f"{registration.fre_mm:.6f}")
     return node
 
 
-def rememberLists(transformNode: Any, moving: Any, fixed: Any) -> None:
-    transformNode.SetNodeReferenceID(MOVING_REFERENCE, moving.GetID())
-    transformNode.SetNodeReferenceID(FIXED_REFERENCE, fixed.GetID())
+def showPlannedPlace(scene: Any, scenario: Scenario, moving: Any, fixed: Any) -> Any:
+    """Place World as the scenario plans it, and return the WorldToHead transform.
+
+    The head of a trial is placed a little differently; only its registration shows where.
+    """
+    matrix = transforms.inverse(scenario.head_to_world)
+    node = _placeWorld(scene, matrix, PLANNED, moving, fixed)
+    node.RemoveAttribute(FRE_ATTRIBUTE)
+    return node
+
+
+def _placeWorld(scene: Any, matrix: np.ndarray, kind: str, moving: Any, fixed: Any) -> Any:
+    """Set the WorldToHead transform, which remembers its lists of points, and return its node.
+
+    At first it is applied to the moving points; later that stays as it was.
+    """
+    node = findOrAddNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD, "WorldToHead")
+    wanted = movingNode(node) is None or isApplied(node)
+    # Touches and robot follow it.
+    with slicer.util.NodeModify(node):
+        node.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(matrix))
+        node.SetNodeReferenceID(MOVING_REFERENCE, moving.GetID())
+        node.SetNodeReferenceID(FIXED_REFERENCE, fixed.GetID())
+        node.SetAttribute(KIND_ATTRIBUTE, kind)
+    if isApplied(node) != wanted:
+        setApplied(node, wanted)
+    return node
 
 
 def movingNode(transformNode: Any) -> Any | None:
@@ -146,28 +160,8 @@ def setApplied(transformNode: Any, applied: bool) -> None:
     if moving is not None:
         moving.SetAndObserveTransformNodeID(transformNode.GetID() if applied else None)
         if moving.GetDisplayNode() is not None:
-            # On the head, the fiducials beside them have the same numbers.
+            # On the head, the fiducials next to them have the same numbers.
             moving.GetDisplayNode().SetPointLabelsVisibility(not applied)
-
-
-PLANNED = "planned"
-
-
-def showPlannedPlace(scene: Any, scenario: Scenario, moving: Any, fixed: Any) -> Any:
-    """Place World as the scenario plans it, and return the WorldToHead transform.
-
-    The head of a trial is placed a little differently; only its registration shows where.
-    """
-    known = findNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
-    wasApplied = known is None or isApplied(known)
-    node = findOrAddNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD, "WorldToHead")
-    matrix = transforms.inverse(scenario.head_to_world)
-    node.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(matrix))
-    node.SetAttribute(KIND_ATTRIBUTE, PLANNED)
-    node.RemoveAttribute(FRE_ATTRIBUTE)
-    rememberLists(node, moving, fixed)
-    setApplied(node, wasApplied)
-    return node
 
 
 def followPlacement(scene: Any) -> None:
@@ -181,7 +175,7 @@ def showTrial(
 ) -> None:
     """Replace what the scene shows by this trial, one part after the other by `later`.
 
-    The touches are those of its record.
+    The touches come from its record.
     """
     record, rigid = analysis.record, analysis.rigid
     errors = [analysis.target_errors[kind] for kind in analysis.fits]

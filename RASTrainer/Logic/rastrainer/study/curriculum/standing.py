@@ -58,7 +58,6 @@ class CurriculumStanding:
         return max(is_open, key=shortfall, default=None)
 
     def message(self, trainee: str) -> CurriculumMessage:
-        """Return what the simulator shows a trainee."""
         best = self.next_best
         name = "" if best is None else best.name
         return CurriculumMessage(trainee, self.curriculum.title, name, self.standings)

@@ -90,7 +90,6 @@ class CohortStore:
                 )
 
     def add_stuck(self, trial_id: str) -> None:
-        """Note that a trial was played but not finished."""
         self._database.insert("stuck_trials", is_once=True, trial_id=trial_id)
 
     def finish(self) -> None:

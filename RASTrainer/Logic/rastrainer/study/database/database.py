@@ -125,7 +125,6 @@ class LockWait:
 
     @property
     def timeout_s(self) -> float:
-        """How long to wait now."""
         return 0.0 if self._clock() < self._retry_at else self._most_s
 
     def note_timeout(self, waited_s: float = 0.0) -> None:
@@ -182,12 +181,10 @@ class StudyDatabase(ABC):
         self._connection.close()
 
     def rows(self, sql: str, *parameters: Any) -> list[Any]:
-        """Return all rows that a query finds."""
         with self.reading():
             return self._execute(sql, *parameters).fetchall()
 
     def row(self, sql: str, *parameters: Any) -> Any:
-        """Return the first row that a query finds, or None."""
         with self.reading():
             return self._execute(sql, *parameters).fetchone()
 

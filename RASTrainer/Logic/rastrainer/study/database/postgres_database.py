@@ -1,6 +1,6 @@
 """A study in PostgreSQL: many seats, one study.
 
-A reader sees one state of the study, however long it reads. A writer first changes the one row of
+A reader sees one state of the study, however long it reads. A writer first changes the only row of
 `rastrainer_study` and so waits for all writers before it, as writers of an SQLite file do; the
 number in that row tells the others that something has changed.
 

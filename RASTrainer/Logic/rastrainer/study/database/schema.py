@@ -28,7 +28,6 @@ class Table:
 
 
 def check_schema_version(version: int, place: object) -> None:
-    """Raise `InputError` if a study was made with another schema."""
     if version != SCHEMA_VERSION:
         raise InputError(
             f"The study {place} has version {version} of the tables, and this RASTrainer reads "

@@ -164,7 +164,6 @@ class Study:
             return trainee
 
     def next_pseudonym(self) -> str:
-        """Return the next free pseudonym, such as `T001`."""
         with self.database.reading():
             # Numbers of deleted trainees are not reused, to avoid confusion.
             number = self.database.row("SELECT latest FROM trainee_numbers")[0] + 1
@@ -175,12 +174,13 @@ class Study:
     def has_trainee(self, pseudonym: str) -> bool:
         return self.database.row(TRAINEE_ID, pseudonym) is not None
 
-    def trainees(self, archived: bool = False) -> tuple[Trainee, ...]:
-        query = f"{_TRAINEES} WHERE archived = ? ORDER BY pseudonym"
-        return tuple(_trainee(*row) for row in self.database.rows(query, int(archived)))
+    def trainees(self, archived: bool | None = False) -> tuple[Trainee, ...]:
+        """Return the active or the archived trainees, by pseudonym; with None, all of them."""
+        query = f"{_TRAINEES} WHERE archived = coalesce(?, archived) ORDER BY pseudonym"
+        wanted = None if archived is None else int(archived)
+        return tuple(_trainee(*row) for row in self.database.rows(query, wanted))
 
     def trainee(self, pseudonym: str) -> Trainee:
-        """Return a trainee; raise `InputError` if unknown."""
         row = self.database.row(f"{_TRAINEES} WHERE pseudonym = ?", pseudonym)
         if row is None:
             raise InputError(f"The study has no trainee {json.dumps(str(pseudonym)[:64])}.")
@@ -240,11 +240,7 @@ class Study:
             delivered = record
             record = record_from_json(TrialRecord, delivered)
         with self.database.writing():
-            self._check_not_deleted(record.trial_id)
-            if self.has("trials", record.trial_id):
-                # The seed is the simulator's secret at first and may be revealed later.
-                if replace(self.record(record.trial_id), seed=None) != replace(record, seed=None):
-                    raise _other_trial(record.trial_id)
+            if not self.check_trial(record):
                 return False
             self._store(
                 "trials",
@@ -259,6 +255,18 @@ class Study:
             )
             self.add_results(record.trial_id, registrations, target_errors, score)
         return True
+
+    def check_trial(self, record: TrialRecord) -> bool:
+        """Return whether a trial would be new, before anything is computed from it."""
+        with self.database.reading():
+            self._check_not_deleted(record.trial_id)
+            if self.has("trials", record.trial_id):
+                # The seed is the simulator's secret at first and may be revealed later.
+                if replace(self.record(record.trial_id), seed=None) != replace(record, seed=None):
+                    raise _other_trial(record.trial_id)
+                return False
+            json_checks.accepted(json_checks.pseudonym, record.trainee, "A pseudonym")
+            return True
 
     def add_aborted(
         self, record: AbortedTrial | Mapping[str, Any], delivered: Mapping[str, Any] | None = None
@@ -287,7 +295,6 @@ class Study:
         return self.database.row(query, trial_id) is not None
 
     def is_revealed(self, trial_id: str) -> bool:
-        """Return whether the truth of a trial is known."""
         query = "SELECT 1 FROM results WHERE trial_id = ? AND kind = ?"
         return self.database.row(query, trial_id, TRUTH) is not None
 
@@ -372,7 +379,6 @@ class Study:
                 )
 
     def record(self, trial_id: str) -> TrialRecord:
-        """Return the record of a trial; raise `InputError` if unknown."""
         row = self.database.row("SELECT record_json FROM trials WHERE trial_id = ?", trial_id)
         if row is None:
             raise _no_trial(trial_id)

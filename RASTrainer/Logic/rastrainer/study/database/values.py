@@ -32,7 +32,6 @@ def utc_now() -> str:
 
 
 def day_of(utc: str) -> str:
-    """Return the day of an ISO 8601 time, such as 2026-01-31."""
     return utc[: len("2026-01-31")]
 
 
@@ -65,7 +64,6 @@ def json_text(value: object) -> str:
 
 
 def decoded(written: str, read: Callable[[Any], Value]) -> Value:
-    """Return decoded stored JSON; raise `InputError` if it is invalid."""
     try:
         return read(decode_finite_json(written))
     except (TypeError, ValueError, KeyError, AttributeError):

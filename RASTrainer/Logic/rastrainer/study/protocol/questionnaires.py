@@ -127,7 +127,6 @@ QUESTIONNAIRES = {q.name: q for q in (SUS, NASA_TLX, SSQ)}
 
 
 def find_questionnaire(name: str) -> Questionnaire:
-    """Return a questionnaire; raise `InputError` if unknown."""
     if name not in QUESTIONNAIRES:
         raise InputError(
             f"There is no questionnaire {name[:40]!r}; there are {', '.join(QUESTIONNAIRES)}."

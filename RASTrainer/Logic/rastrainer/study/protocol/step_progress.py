@@ -60,7 +60,6 @@ class StepProgress:
 
     @property
     def next_step(self) -> StudyStep | None:
-        """The next step, or None when all are done."""
         return self.steps[len(self.entries)] if len(self.entries) < len(self.steps) else None
 
     @property
@@ -125,7 +124,6 @@ class StepProgress:
         return replace(step, trainee=trainee, kind=kind, over=over, name="", allows=())
 
     def check_start(self, mode: str, task: str) -> StudyStep:
-        """Return the step of a trial to be started."""
         step = self.due()
         if not step.is_played or (step.mode, step.task) != (mode, task):
             raise InputError(f"Not yet: the study asks for something else first. {self.sentence}")

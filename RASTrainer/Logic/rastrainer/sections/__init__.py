@@ -1,0 +1,1 @@
+"""The sections of the module: each has logic without Qt, and a panel that shows it."""

@@ -1,0 +1,121 @@
+"""The landmarks of a scenario's head: placed, proposed, undone, checked, and saved in a copy of it.
+
+Landmarks are touched in the order of the list in the scene; the module Markups can change it.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.files.point_files import read_markups, write_markups
+from rastrainer.files.point_list import PointList
+from rastrainer.scenario.points import Landmark
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.sections.scenario_files import ScenarioFiles
+from rastrainer.slicer.scene.nodes import Role, findNode, findOrAddNode
+from rastrainer.slicer.scene.plan_points import (
+    LIST,
+    PlacedPoint,
+    UndoablePoints,
+    placedPoints,
+    putPoints,
+    startPlacing,
+)
+from rastrainer.slicer.translation import _
+from rastrainer.work_progress import Progress, no_progress
+
+FILE, COLOR = "landmarks.mrk.json", (0.1, 0.55, 0.9)
+
+
+class LandmarkPoints(UndoablePoints):
+    """Places, replaces and removes landmarks.
+
+    Points that are deselected in the module Markups are left out, but kept.
+    """
+
+    def placed(self, areSelected: bool = True) -> tuple[Landmark, ...]:
+        """Return the landmarks that are selected, or the others, in the order of touching."""
+        points = placedPoints(findNode(self._scene, LIST, Role.LANDMARKS), inRas=True)
+        return tuple(
+            Landmark(point.label, np.array(point.position))
+            for point in points
+            if point.isSelected == areSelected
+        )
+
+    def show(self, landmarks: Sequence[Landmark]) -> None:
+        node = self._list()
+        self.remember(node)
+        putPoints(node, [PlacedPoint(each.name, each.position_ras.tolist()) for each in landmarks])
+
+    def startPlacing(self, name: str) -> None:
+        """Let the next click in a view place a landmark, in place of one of the same name."""
+        node = self._list()
+        points = self.remember(node)
+        if name in [point.label for point in points]:
+            putPoints(node, [point for point in points if point.label != name])
+        # The new point gets this as its label.
+        node.SetControlPointLabelFormat(name.replace("%", "%%"))
+        startPlacing(self._scene, node)
+
+    def remove(self, row: int) -> None:
+        """Remove the landmark of a row of those that are `placed` and selected."""
+        if 0 <= row < len(self.placed()):
+            node = self._list()
+            points = self.remember(node)
+            points.remove([point for point in points if point.isSelected][row])
+            putPoints(node, points)
+
+    def _list(self) -> Any:
+        node = findOrAddNode(self._scene, LIST, Role.LANDMARKS, _("Landmarks"))
+        node.GetDisplayNode().SetSelectedColor(COLOR)
+        node.GetDisplayNode().SetOccludedVisibility(True)
+        return node
+
+
+class LandmarkLogic:
+    """Work of the group Landmarks with the landmarks of the scene, its `points`."""
+
+    def __init__(self, scene: Any, files: ScenarioFiles) -> None:
+        self.points = LandmarkPoints(scene)
+        self._files = files
+
+    def propose(self, scenario: Scenario, progress: Progress = no_progress) -> str:
+        """Propose landmarks in place of those in the scene; return a sentence about them."""
+        with tempfile.TemporaryDirectory() as temporary:
+            path = Path(temporary) / FILE
+            words = ["landmarks", str(scenario.folder), str(path), "--propose"]
+            sentence = self._files.run(words, progress)
+            proposed = read_markups(path)
+        places = np.array(proposed.points, dtype=float)
+        self.points.show([*map(Landmark, proposed.labels or (), places)])
+        return sentence
+
+    def check(self, scenario: Scenario, progress: Progress = no_progress) -> str:
+        """Return the faults of the landmarks on the head of a scenario, or that there are none."""
+        with self._written() as path:
+            words = ["landmarks", str(scenario.folder), str(path)]
+            return self._files.run(words, progress, mayFail=True)
+
+    def save(self, scenario: Scenario, title: str, progress: Progress = no_progress) -> Scenario:
+        with self._written() as path:
+            plan = ["--landmarks", str(path)]
+            return self._files.saveWith(plan, scenario.name, title, progress)
+
+    @contextmanager
+    def _written(self) -> Iterator[Path]:
+        landmarks = self.points.placed()
+        if not landmarks:
+            raise InputError(_("Place landmarks first, or have them proposed."))
+        names = tuple(landmark.name for landmark in landmarks)
+        places = np.array([landmark.position_ras for landmark in landmarks])
+        with tempfile.TemporaryDirectory() as temporary:
+            path = Path(temporary) / FILE
+            write_markups(path, PointList(names, places))
+            yield path

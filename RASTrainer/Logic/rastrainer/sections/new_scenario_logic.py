@@ -1,0 +1,277 @@
+"""Makes scenarios of volumes in the scene: the head is made here, and the simulator plans on it.
+
+The head is shown first, to be accepted or changed. Fiducials and tasks need the robot, so the
+simulator's program proposes them.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rastrainer.errors import InputError
+from rastrainer.files.point_files import write_markups
+from rastrainer.files.writing import write_json
+from rastrainer.json_records import record_to_json
+from rastrainer.protocol import FIDUCIAL_COUNT
+from rastrainer.scenario.points import touch_order
+from rastrainer.scenario.scenario import UNKNOWN_LICENSE, Scenario
+from rastrainer.scenario.setup import SetUp
+from rastrainer.scenario.writer import HeadDraft, write_draft
+from rastrainer.sections.scenario_files import ScenarioFiles, planArguments
+from rastrainer.sections.scenario_logic import findSkin
+from rastrainer.slicer.background_work import inBackground
+from rastrainer.slicer.polydata import meshPolyData
+from rastrainer.slicer.program.child_process import Run, runChild
+from rastrainer.slicer.scene.nodes import (
+    ROLE_ATTRIBUTE,
+    Role,
+    findNode,
+    findOrAddNode,
+    isUsed,
+    labelsOf,
+    nodesOf,
+    nodesOfClass,
+    usedPoints,
+    worldPoints,
+)
+from rastrainer.slicer.scene.scenario_nodes import SKIN_COLOR
+from rastrainer.slicer.translation import _
+from rastrainer.work_progress import Progress, no_progress
+
+if TYPE_CHECKING:
+    from rastrainer.slicer.head.volume import HeadSettings, SegmentImage
+
+MAKE_DRAFT = "rastrainer.slicer.head.head_draft:makeDraft"
+SEGMENTATION, MODEL = "vtkMRMLSegmentationNode", "vtkMRMLModelNode"
+PREVIEWED_ATTRIBUTE = "RASTrainer.previewed"
+SETTINGS_ATTRIBUTE = "RASTrainer.previewedWith"
+
+
+@dataclass(frozen=True)
+class NewScenarioOptions:
+    """Options of a new scenario; the name of its volume stands in for empty texts.
+
+    Attributes:
+        volume: the `vtkMRMLScalarVolumeNode`, a T1-weighted MRI or CT of a head.
+        threshold: value that separates air from skin; found if None.
+        cutMm: height (S) of the flat base; found if None.
+        hasVolume: whether the scenario carries the images.
+        targets: a `vtkMRMLMarkupsFiducialNode`, or None.
+        trajectory: a `vtkMRMLMarkupsLineNode` from the entry to the target, or None.
+        isHandPlaced: whether the scene's own point lists of 15 are the tasks, in their order.
+    """
+
+    volume: Any
+    title: str = ""
+    source: str = ""
+    license: str = ""
+    threshold: float | None = None
+    cutMm: float | None = None
+    hasSkull: bool = True
+    hasVolume: bool = True
+    setUp: SetUp = field(default_factory=SetUp)
+    targets: Any = None
+    trajectory: Any = None
+    isHandPlaced: bool = False
+
+    @property
+    def headSettings(self) -> HeadSettings:
+        from rastrainer.slicer.head.volume import HeadSettings
+
+        return HeadSettings(threshold=self.threshold, baseMm=self.cutMm)
+
+
+class ScenarioMaker:
+    """Shows the head in a volume, and makes a scenario of it.
+
+    `progress` may raise to cancel: then nothing is left behind.
+    """
+
+    def __init__(self, scene: Any, files: ScenarioFiles, run: Run) -> None:
+        self._scene = scene
+        self._files = files
+        self._run = run
+
+    def preview(self, options: NewScenarioOptions, progress: Progress) -> list[str]:
+        """Show the head that is found, and return warnings, one sentence each.
+
+        It is shown as a model, and as a segment that the Segment Editor may change; `make` then
+        takes the segment as it is.
+        """
+        from rastrainer.slicer.head.volume import showSegment
+
+        volume, settings = options.volume, options.headSettings
+        found, skin, warnings = findSkin(self._run, volume, settings, progress)
+        draft = findOrAddNode(self._scene, SEGMENTATION, Role.HEAD_SEGMENT, "Head to be edited")
+        model = findOrAddNode(self._scene, MODEL, Role.HEAD_PREVIEW, "Head as found")
+        for node in (draft, model):
+            # It is shown where it was found.
+            node.SetAndObserveTransformNodeID(None)
+        showSegment(draft, found)
+        draft.SetReferenceImageGeometryParameterFromVolumeNode(volume)
+        draft.SetAttribute(PREVIEWED_ATTRIBUTE, volume.GetID())
+        draft.SetAttribute(SETTINGS_ATTRIBUTE, repr(settings))
+        model.SetAndObservePolyData(meshPolyData(skin))
+        model.GetDisplayNode().SetColor(SKIN_COLOR)
+        for node in (draft, model):
+            node.SetDisplayVisibility(True)
+        return warnings
+
+    def make(self, options: NewScenarioOptions, progress: Progress) -> tuple[Scenario, list[str]]:
+        """Make a scenario, and return it with warnings."""
+        warnings: list[str] = []
+        scenario = self._files.add(
+            options.title.strip() or options.volume.GetName(),
+            lambda folder: warnings.extend(self._plan(options, progress, folder)),
+        )
+        self._hidePreview(options.volume)
+        return scenario, warnings
+
+    def check(self, options: NewScenarioOptions, progress: Progress) -> list[str]:
+        """Check set-up, plan and fiducials as `make` does, without making anything."""
+        return self._plan(replace(options, hasSkull=False, hasVolume=False), progress)
+
+    def _plan(
+        self, options: NewScenarioOptions, progress: Progress, folder: Path | None = None
+    ) -> list[str]:
+        """Make a scenario in a folder, or only check its parts; return warnings."""
+        from rastrainer.slicer.head.volume import imageOfNode
+
+        volume, settings = options.volume, options.headSettings
+        image, segment = imageOfNode(volume), editedHead(volume, settings)
+        title = options.title.strip() or volume.GetName()
+        source = options.source.strip() or f"The volume {volume.GetName()} in 3D Slicer."
+        terms = options.license.strip() or UNKNOWN_LICENSE
+        words = [f"--title={title}", f"--source={source}", f"--license={terms}"]
+        lists, leftOut = list[Any](), list[str]()
+        if options.isHandPlaced:
+            lists, leftOut = handPlacedLists(self._scene, options.targets)
+
+        def make(report: Progress) -> tuple[HeadDraft, list[str]]:
+            kept = {"segment": segment, "hasVolume": options.hasVolume}
+            made: tuple[HeadDraft, list[str]] = self._run(
+                MAKE_DRAFT, report, image, settings, options.hasSkull, **kept
+            )
+            return made
+
+        with tempfile.TemporaryDirectory() as temporary:
+            setUp = Path(temporary, "setup.json")
+            write_json(setUp, record_to_json(options.setUp, with_defaults=True))
+            words += ["--setup", str(setUp), *planArguments(options.targets, options.trajectory)]
+            tasks = [Path(temporary, f"task-{index}.mrk.json") for index in range(len(lists))]
+            for path, node in zip(tasks, lists, strict=True):
+                write_markups(path, usedPoints(node, worldPoints(node), labelsOf(node)))
+            words += ["--tasks", *map(str, tasks)] if tasks else []
+            words += ["--check"] if folder is None else []
+            command = self._files.simulator.command([])
+            folder = folder or Path(temporary, "none")
+            return [*leftOut, *planScenario(make, folder, words, command, progress)]
+
+    def _hidePreview(self, volume: Any) -> None:
+        """Hide the head as found, and a rendering of its volume: the result is shown instead."""
+        for className, role in ((SEGMENTATION, Role.HEAD_SEGMENT), (MODEL, Role.HEAD_PREVIEW)):
+            for node in nodesOf(self._scene, className, role):
+                node.SetDisplayVisibility(False)
+        for index in range(volume.GetNumberOfDisplayNodes()):
+            display = volume.GetNthDisplayNode(index)
+            if display is not None and display.IsA("vtkMRMLVolumeRenderingDisplayNode"):
+                display.SetVisibility(False)
+
+
+def editedHead(volume: Any, settings: HeadSettings) -> SegmentImage | None:
+    """Return the segment of the head that is shown of a volume; None if none is."""
+    from rastrainer.slicer.head.volume import SEGMENT_NAME, readSegment
+
+    node = findNode(volume.GetScene(), SEGMENTATION, Role.HEAD_SEGMENT)
+    if node is None or node.GetAttribute(PREVIEWED_ATTRIBUTE) != volume.GetID():
+        return None
+    if node.GetAttribute(SETTINGS_ATTRIBUTE) != repr(settings):
+        raise InputError(
+            _(
+                "The threshold or the cut has been changed since the head was found: find the "
+                "head again, or reset it."
+            )
+        )
+    return readSegment(node, node.GetSegmentation().GetSegmentIdBySegmentName(SEGMENT_NAME))
+
+
+MAX_LISTS = 6
+
+
+def handPlacedLists(scene: Any, targets: Any) -> tuple[list[Any], list[str]]:
+    """Return the usable lists, in the scene's order, and why others are left out.
+
+    The list of the planned `targets` has no fiducials.
+    """
+    taken: list[Any] = []
+    leftOut = []
+    for node in nodesOfClass(scene, "vtkMRMLMarkupsFiducialNode"):
+        if node is targets or node.GetAttribute(ROLE_ATTRIBUTE) is not None:
+            continue
+        count = sum(isUsed(node, row) for row in range(node.GetNumberOfControlPoints()))
+        if count != FIDUCIAL_COUNT:
+            reason = _(
+                "The point list {name} is left out: it has {count} points that are placed and "
+                "selected, not {all}."
+            )
+            leftOut.append(reason.format(name=node.GetName(), count=count, all=FIDUCIAL_COUNT))
+        elif len(taken) == MAX_LISTS:
+            reason = _("The point list {name} is left out: a scenario has at most {most} tasks.")
+            leftOut.append(reason.format(name=node.GetName(), most=MAX_LISTS))
+        else:
+            try:
+                used = usedPoints(node, worldPoints(node), labelsOf(node))
+                touch_order(used.labels or [""] * len(used.points))
+            except InputError as error:
+                problem = _("The point list {name} cannot be used: {reason}")
+                raise InputError(problem.format(name=node.GetName(), reason=error)) from None
+            taken.append(node)
+    if not taken:
+        problem = _("There is no point list of {count} fiducials in the scene.")
+        raise InputError(" ".join([problem.format(count=FIDUCIAL_COUNT), *leftOut]))
+    return taken, leftOut
+
+
+HEAD_SHARE = 0.5
+"""Share of the work on a scenario that finding and making its head takes."""
+
+
+def planScenario(
+    make: Callable[[Progress], tuple[HeadDraft, list[str]]],
+    folder: Path,
+    words: Sequence[str],
+    command: Sequence[str],
+    progress: Progress = no_progress,
+) -> list[str]:
+    """Make a head, have the simulator plan on it, and return warnings, one sentence each.
+
+    Args:
+        make: makes the head with its warnings, in a worker thread.
+        folder: to be made; must be new or empty.
+        words: further arguments of `rastrainer scenario tasks`.
+        command: runs `rastrainer` of the simulator's Python.
+    """
+    with tempfile.TemporaryDirectory() as temporary:
+
+        def makeAndWrite(report: Progress) -> list[str]:
+            draft, warnings = make(report)
+            write_draft(Path(temporary), draft)
+            return warnings
+
+        warnings = inBackground(
+            makeAndWrite, lambda step, share: progress(step, HEAD_SHARE * share)
+        )
+        planner = [*command, "scenario", "tasks", temporary, "-o", str(folder), *words]
+        ended = runChild(
+            planner,
+            lambda step, share: progress(step, HEAD_SHARE + (1.0 - HEAD_SHARE) * share),
+            "Placing fiducials",
+        )
+    if ended.exitStatus != 0:
+        reason = ended.lastLine.removeprefix("rastrainer: ") or "it wrote nothing"
+        raise InputError(f"The tasks could not be made: {reason}")
+    return [*warnings, *ended.warnings]

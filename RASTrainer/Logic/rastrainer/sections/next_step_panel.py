@@ -1,0 +1,188 @@
+"""The line at the top: the state of the link, the trainee, the task, and the next step."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import qt
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import TRIAL_RUN, Phase, StepKind
+from rastrainer.sections.module_session import ModuleSession
+from rastrainer.sections.next_step_logic import (
+    NextAction,
+    NextStep,
+    Section,
+    WorkflowState,
+    nextStep,
+)
+from rastrainer.sections.panel import Panel
+from rastrainer.slicer.link.link_status import NOT_INSTALLED, LinkState
+from rastrainer.slicer.translation import _
+from rastrainer.study.protocol.steps import instruction
+from rastrainer.trial.analysis import TrialAnalysis
+from rastrainer.widgets.controls import LINK_COLORS, connectAsPressed, setEnabled, setLight, setText
+from rastrainer.widgets.plain_text import buttonTitle, shortName
+
+SHORTCUT = "Ctrl+Return"
+THIS_COMPUTER = ("", "127.0.0.1", "localhost", "::1")
+WORDS = {
+    LinkState.OFF: _("Not connected"),
+    LinkState.NOT_INSTALLED: _("Not installed"),
+    LinkState.LOOKING: _("Looking"),
+    LinkState.ABSENT: _("No answer"),
+    LinkState.OTHER_PROGRAM: _("No simulator"),
+    LinkState.GREETING: _("Connecting"),
+    LinkState.CONNECTED: _("Connected"),
+    LinkState.STALE: _("Silent"),
+    LinkState.WRONG_VERSION: _("Wrong version"),
+}
+
+
+class NextStepPanel(Panel):
+    """Leads through a session: it draws what `nextStep` says, and lets the sections do it.
+
+    It folds and opens sections only when the workflow moves to another one. Until then, sections
+    stay as the user opens or folds them. Sections without a next step, such as Scenario and Plan,
+    are never changed.
+    """
+
+    def __init__(
+        self, ui: Any, session: ModuleSession, actions: Mapping[NextAction, Callable[[], None]]
+    ) -> None:
+        """`actions` does what belongs to a section: everything but waiting and viewing."""
+        super().__init__(ui, session)
+        self._actions = actions
+        self._sections = {each: getattr(ui, f"{each.value}CollapsibleButton") for each in Section}
+        self._now = WorkflowState(session.link.status)
+        self._step = nextStep(self._now)
+        self._section: Section | None = None
+        connectAsPressed(ui.nextStepButton, lambda: partial(self._do, self._step))
+        ui.hostLineEdit.connect("textChanged(QString)", self.showState)
+        ui.programPathLineEdit.connect("currentPathChanged(QString)", self._lookAtSetup)
+        ui.scoreCollapsibleButton.connect("contentsCollapsed(bool)", self._noteScoreSeen)
+        self.listen(
+            (session.link.statusChanged, self.showState),
+            (session.training.changed, self._followTrial),
+            (session.taskChosen, self.showState),
+            (session.simulator.program.changed, self.showState),
+            (session.simulator.setup.changed, self._lookAtSetup),
+            (session.simulator.setup.finished, self._lookAtSetup),
+            (session.simulator.running.changed, self.showState),
+            (session.trainees.changed, self._lookUp),
+            (session.study.changed, self._lookUp),
+            # Each section shows it in a separate turn; only then is there something to see.
+            (
+                session.trials.trialScored,
+                lambda a: session.work.later(partial(self._noteScored, a)),
+            ),
+            (session.trials.problemFound, lambda _sentence: self._note(isUnscored=True)),
+        )
+        self._lookAtSetup()
+        self._lookUp()
+
+    def _do(self, step: NextStep) -> None:
+        if step.action in self._actions:
+            self._actions[step.action]()
+        elif step.action is NextAction.CHOOSE_TRAINEE:
+            self._sections[Section.TRAINEES].collapsed = False
+            self._ui.traineeComboBox.showPopup()
+        elif step.action is NextAction.ANSWER:
+            self._sections[Section.STUDY].collapsed = False
+        elif step.action is NextAction.SHOW_RESULT:
+            self._note(hasNewResult=False, isResultShown=True)
+        self.showState()
+
+    def _note(self, **changes: Any) -> None:
+        self._now = replace(self._now, **changes)
+        self.showState()
+
+    def showState(self, *_arguments: Any) -> None:
+        session, ui = self._session, self._ui
+        simulator, trial = session.simulator, session.training.status
+        self._now = now = replace(
+            self._now,
+            # Reported at once, before downloading a simulator to which no connection is possible.
+            link=session.link.status if session.link.findKit() else NOT_INSTALLED,
+            program=simulator.program.state,
+            programSentence=simulator.program.sentence,
+            isBeingSetUp=simulator.setup.isRunning,
+            isElsewhere=ui.hostLineEdit.text.strip() not in THIS_COMPUTER,
+            runningSentence=simulator.running.sentence if simulator.running.canConnect else "",
+            isLearning=bool(self._now.trainee) and session.training.learner == self._now.trainee,
+            taskTitle=session.taskTitle,
+            phase=trial.phase,
+            touched=trial.touched,
+            total=trial.total,
+            isLoading=session.training.loadings > 0,
+        )
+        setLight(ui.linkLight, LINK_COLORS[now.link.state])
+        setText(ui.linkText, WORDS[now.link.state])
+        trainee, task = now.trainee, now.taskTitle
+        if now.link.state is LinkState.CONNECTED and trial.isOpen:
+            titles = {session.task: session.taskTitle, TRIAL_RUN: _("Trial run")}
+            trainee, task = trial.trainee, titles.get(trial.task, trial.task)
+        setText(ui.nowTraineeText, shortName(trainee) or _("No trainee"))
+        setText(ui.nowTaskText, shortName(task))
+        self._showStep(nextStep(now))
+
+    def _showStep(self, step: NextStep) -> None:
+        ui, self._step = self._ui, step
+        if ui.nextStepButton.text != buttonTitle(step.title):
+            ui.nextStepButton.text = buttonTitle(step.title)
+            # A new text removes the shortcut.
+            ui.nextStepButton.setShortcut(qt.QKeySequence(SHORTCUT))
+        isPossible = step.action is not NextAction.WAIT
+        tip = _("The next thing to do ({shortcut})").format(shortcut=SHORTCUT)
+        setEnabled(ui.nextStepButton, isPossible, step.sentence, tip)
+        setText(ui.nextStepText, step.sentence)
+        if self._section is not step.section:
+            self._section = step.section
+            for each, button in self._sections.items():
+                button.collapsed = each is not step.section
+
+    def _lookUp(self, *_arguments: Any) -> None:
+        trainees, now = self._session.trainees, self._now
+        if trainees.chosen != now.trainee:
+            now = replace(now, hasPracticed=False, hasNewResult=False, isResultShown=False)
+        now = replace(now, trainee=trainees.chosen, studyStep=None, needsRepeatReason=False)
+        # The section Trainees shows the error.
+        with contextlib.suppress(InputError):
+            now = replace(now, hasTrainees=bool(trainees.trainees()))
+            now = replace(now, hasPracticed=now.hasPracticed or bool(trainees.history()))
+            progress = self._session.study.progress()
+            step = None if progress is None else progress.next_step
+            if progress is not None and step is not None:
+                now = replace(
+                    now,
+                    studyStep=StepKind(step.kind),
+                    needsRepeatReason=bool(progress.repeat_sentence),
+                    studySentence=progress.repeat_sentence or instruction(step),
+                )
+        self._now = now
+        self.showState()
+
+    def _lookAtSetup(self, *_arguments: Any) -> None:
+        # It is in a file, which should not be read at each state of a trial.
+        self._note(needsSetup=self._session.simulator.needsSetup)
+
+    def _followTrial(self) -> None:
+        trial, now = self._session.training.status, self._now
+        if trial.phase == Phase.RUNNING.value:
+            hasPracticed = now.hasPracticed or trial.trainee == now.trainee
+            now = replace(now, hasPracticed=hasPracticed, isUnscored=False)
+            self._now = replace(now, hasNewResult=False, isResultShown=False)
+        self.showState()
+
+    def _noteScored(self, analysis: TrialAnalysis) -> None:
+        if analysis.record.trainee == self._now.trainee:
+            self._note(hasNewResult=True)
+
+    def _noteScoreSeen(self, isFolded: bool) -> None:
+        """Treat a result as seen when the user opens its section."""
+        if not isFolded and self._now.hasNewResult:
+            self._note(hasNewResult=False, isResultShown=True)

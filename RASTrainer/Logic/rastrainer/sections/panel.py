@@ -1,0 +1,59 @@
+"""What all sections have in common: their widgets, their clicks, and how they end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.sections.module_session import ModuleSession
+from rastrainer.slicer.signal import Listening, Signal
+from rastrainer.slicer.translation import _
+from rastrainer.widgets.controls import CancelableWork, chosenData
+from rastrainer.widgets.shown_errors import guardedAction
+
+
+class Panel:
+    """Wires the widgets of a section to the session, until it is closed."""
+
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
+        self._ui = ui
+        self._session = session
+        self._listening: list[Listening] = []
+
+    def close(self) -> None:
+        """Cancel running work, and stop listening to the session."""
+        for work in vars(self).values():
+            if isinstance(work, CancelableWork):
+                work.cancel()
+        for listening in self._listening:
+            listening.close()
+
+    def listen(self, *pairs: tuple[Signal, Callable[..., Any]]) -> None:
+        self._listening.append(Listening(*pairs))
+
+    def showWhileOpen(self, section: Any, show: Callable[[], None], *signals: Signal) -> None:
+        """Call `show` when a section is opened, and at signals while it is open."""
+
+        def showIfOpen(*_values: Any) -> None:
+            if not section.collapsed:
+                show()
+
+        section.connect("contentsCollapsed(bool)", showIfOpen)
+        self.listen(*((signal, showIfOpen) for signal in signals))
+
+
+def connectClick(button: Any, action: Callable[[], object], failure: str) -> Callable[[], None]:
+    """Connect a click to an action, which is returned; `failure` is shown if it fails."""
+    guarded = guardedAction(action, failure)
+    button.connect("clicked()", guarded)
+    return guarded
+
+
+def chosenScenario(ui: Any, session: ModuleSession) -> Scenario:
+    """Return the scenario that is chosen in the section Scenario."""
+    name = chosenData(ui.scenarioComboBox)
+    if not name:
+        raise InputError(_("Choose a scenario that can be used."))
+    return session.scenarios.find(name)

@@ -1,0 +1,222 @@
+"""The plan of a procedure: taken from a scenario, read from the scene, checked and saved."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import vtk
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.files.writing import write_json
+from rastrainer.head.mesh import HeadMesh, write_head_mesh
+from rastrainer.json_checks import identifier_of
+from rastrainer.json_records import record_from_json
+from rastrainer.procedure.checks import MeasuredProcedure
+from rastrainer.procedure.plan import (
+    MAX_NO_GO,
+    MAX_TRAJECTORIES,
+    MIN_LENGTH_MM,
+    NO_GO_FOLDER,
+    Checkpoint,
+    NoGoStructure,
+    Procedure,
+    ProcedureKind,
+    ProcedureTrajectory,
+    check_no_go_mesh,
+    check_no_go_size,
+    procedure_json,
+    read_procedure_meshes,
+)
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.sections.scenario_files import ScenarioFiles
+from rastrainer.slicer.scene.nodes import labelsOf, worldPoints
+from rastrainer.slicer.scene.plan_points import ENDS, placedPoints
+from rastrainer.slicer.scene.procedure_lines import instrumentOf, noGoNodes, planLines, showPlan
+from rastrainer.slicer.translation import _
+from rastrainer.work_progress import Progress, no_progress
+
+FILE = "procedure.json"
+
+
+@dataclass(frozen=True)
+class PlanDescription:
+    """The parts of a plan that are not nodes of the scene.
+
+    Attributes:
+        kind: a `ProcedureKind`.
+        source: where the coordinates come from; empty says that they were placed in Slicer.
+        name: of the procedure that is changed; empty for a new one, whose name its title gives.
+        checkpoints: a list of points on the skin, or None.
+    """
+
+    title: str
+    kind: str
+    source: str = ""
+    name: str = ""
+    checkpoints: Any = None
+
+
+class ProcedurePlanLogic:
+    """Shows, reads, checks and saves the plan of a procedure."""
+
+    def __init__(self, scene: Any, files: ScenarioFiles) -> None:
+        self._scene = scene
+        self._files = files
+
+    def edit(self, scenario: Scenario, name: str) -> Procedure | None:
+        """Show a procedure in the scene, to be changed; an empty one without a name."""
+        if not name:
+            showPlan(self._scene, (), {}, ())
+            return None
+        procedure = scenario.procedure(name)
+        meshes = read_procedure_meshes(procedure, scenario.skull_path)
+        showPlan(self._scene, procedure.trajectories, dict(meshes.no_go), procedure.checkpoints)
+        return procedure
+
+    def read(self, plan: PlanDescription) -> tuple[Procedure, dict[str, HeadMesh]]:
+        """Return the plan of the scene, and the meshes of its no-go structures by file name."""
+        title = plan.title.strip()
+        if not title:
+            raise InputError(_("Enter a title for the procedure."))
+        trajectories = self._trajectories()
+        noGo = noGoMeshes(noGoNodes(self._scene))
+        files = [f"structure-{number}.ply" for number in range(1, len(noGo) + 1)]
+        if len(files) > MAX_NO_GO:
+            text = _("The plan has {count} no-go structures; it may have {most}.")
+            raise InputError(text.format(count=len(files), most=MAX_NO_GO))
+        name = plan.name or identifier_of(title)
+        if not name:
+            text = _("{title} cannot be a procedure's title: it needs a Latin letter or digit.")
+            raise InputError(text.format(title=title))
+        points: list[tuple[str, np.ndarray]] = []
+        if plan.checkpoints is not None:
+            places = worldPoints(plan.checkpoints)
+            points = list(zip(labelsOf(plan.checkpoints), places, strict=True))
+        procedure = Procedure(
+            name=name,
+            title=title[:80],
+            kind=ProcedureKind(plan.kind),
+            source=plan.source.strip() or _("Planned in 3D Slicer."),
+            trajectories=trajectories,
+            no_go=tuple(
+                NoGoStructure(structure[:60], Path(NO_GO_FOLDER, file))
+                for structure, file in zip(noGo, files, strict=True)
+            ),
+            checkpoints=tuple(Checkpoint(label, np.array(place)) for label, place in points),
+        )
+        return procedure, dict(zip(files, noGo.values(), strict=True))
+
+    def check(
+        self, scenario: Scenario, plan: PlanDescription, progress: Progress = no_progress
+    ) -> MeasuredProcedure:
+        """Measure the plan on the head of a scenario; nothing is changed."""
+        with tempfile.TemporaryDirectory() as temporary:
+            path = self._write(Path(temporary), plan)
+            measures = path.with_name("lines.json")
+            words = ["lines", str(scenario.folder), "--procedure", str(path)]
+            words += ["--json", str(measures)]
+            refusal = self._files.run(words, progress, mayFail=True)
+            if not measures.is_file():
+                raise InputError(refusal)
+            (measured,) = json.loads(measures.read_text(encoding="utf-8"))
+        return record_from_json(MeasuredProcedure, measured)
+
+    def save(
+        self,
+        scenario: Scenario,
+        title: str,
+        plan: PlanDescription,
+        progress: Progress = no_progress,
+    ) -> Scenario:
+        with tempfile.TemporaryDirectory() as temporary:
+            words = ["--procedure", str(self._write(Path(temporary), plan))]
+            return self._files.saveWith(words, scenario.name, title, progress)
+
+    def _write(self, folder: Path, plan: PlanDescription) -> Path:
+        procedure, meshes = self.read(plan)
+        (folder / NO_GO_FOLDER).mkdir()
+        for name, mesh in meshes.items():
+            write_head_mesh(folder / NO_GO_FOLDER / name, mesh)
+        write_json(folder / FILE, procedure_json(procedure))
+        return folder / FILE
+
+    def _trajectories(self) -> tuple[ProcedureTrajectory, ...]:
+        lines = planLines(self._scene)
+        if not 1 <= len(lines) <= MAX_TRAJECTORIES:
+            text = _("A procedure has 1 to {most} lines; the plan has {count}. Place a line.")
+            raise InputError(text.format(most=MAX_TRAJECTORIES, count=len(lines)))
+        names = [line.GetName() for line in lines]
+        for name in names:
+            if names.count(name) > 1:
+                text = _("Two lines are named {name}: give each its own name.")
+                raise InputError(text.format(name=name))
+        return tuple(_trajectory(line) for line in lines)
+
+
+def _trajectory(line: Any) -> ProcedureTrajectory:
+    name = line.GetName()
+    if len(placedPoints(line)) != ENDS:
+        text = _("{name} needs two points: its entry and its target.")
+        raise InputError(text.format(name=name))
+    entry, target = (np.array(point) for point in worldPoints(line))
+    trajectory = ProcedureTrajectory(name[:60], entry, target, *instrumentOf(line))
+    if trajectory.length_mm < MIN_LENGTH_MM:
+        text = _("{name} is {length:.1f} mm long; it must be at least {least:g} mm.")
+        raise InputError(text.format(name=name, length=trajectory.length_mm, least=MIN_LENGTH_MM))
+    return trajectory
+
+
+def noGoMeshes(nodes: list[Any]) -> dict[str, HeadMesh]:
+    """Return the surfaces of no-go structures by name, RAS mm.
+
+    Args:
+        nodes: `vtkMRMLModelNode` or `vtkMRMLSegmentationNode`, of which each segment is one.
+    """
+    found: dict[str, HeadMesh] = {}
+    for node in nodes:
+        for name, surface in _surfaces(node):
+            if name in found:
+                text = _("Two no-go structures are named {name}: give each its own name.")
+                raise InputError(text.format(name=name))
+            found[name] = _mesh(name, surface, node)
+    return found
+
+
+def _surfaces(node: Any) -> Iterator[tuple[str, vtk.vtkPolyData]]:
+    if node.IsA("vtkMRMLModelNode"):
+        yield node.GetName(), node.GetPolyData()
+        return
+    segmentation = node.GetSegmentation()
+    node.CreateClosedSurfaceRepresentation()
+    for segmentId in segmentation.GetSegmentIDs():
+        surface = vtk.vtkPolyData()
+        node.GetClosedSurfaceRepresentation(segmentId, surface)
+        yield segmentation.GetSegment(segmentId).GetName(), surface
+
+
+def _mesh(name: str, surface: vtk.vtkPolyData | None, node: Any) -> HeadMesh:
+    from rastrainer.slicer.head.surface import meshOf
+    from rastrainer.slicer.head.volume import toWorld
+
+    if surface is None or surface.GetNumberOfPolys() == 0:
+        raise InputError(_("The no-go structure {name} is empty.").format(name=name))
+    # Before anything takes long.
+    check_no_go_size(surface.GetNumberOfPolys(), name)
+    triangles = vtk.vtkTriangleFilter()
+    triangles.SetInputData(surface)
+    triangles.PassLinesOff()
+    triangles.PassVertsOff()
+    merged = vtk.vtkCleanPolyData()
+    merged.SetInputConnection(triangles.GetOutputPort())
+    merged.Update()
+    mesh = meshOf(merged.GetOutput())
+    placed = HeadMesh(transforms.apply(toWorld(node), mesh.vertices), mesh.triangles)
+    check_no_go_mesh(placed, name)
+    return placed

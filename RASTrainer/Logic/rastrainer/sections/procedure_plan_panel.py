@@ -1,0 +1,275 @@
+"""The section Plan of a procedure: its lines, their checks, and a scenario that has it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import Any
+
+import slicer
+
+from rastrainer.procedure.checks import LineMeasures, MeasuredProcedure
+from rastrainer.procedure.plan import ProcedureKind
+from rastrainer.sections.module_session import ModuleSession
+from rastrainer.sections.panel import Panel, chosenScenario, connectClick
+from rastrainer.sections.procedure_plan_logic import PlanDescription
+from rastrainer.slicer.scene.nodes import Role, findNode, worldPoints
+from rastrainer.slicer.scene.plan_points import LIST, startPlacing
+from rastrainer.slicer.scene.procedure_lines import (
+    checkpointList,
+    instrumentOf,
+    isNoGo,
+    lengthMm,
+    newPlanLine,
+    noGoNodes,
+    planLines,
+    raiseLine,
+    removeLine,
+    restoreLine,
+    setInstrument,
+    setNoGo,
+)
+from rastrainer.slicer.translation import _
+from rastrainer.widgets.controls import (
+    CancelableWork,
+    blockedSignals,
+    chosenData,
+    fillComboBox,
+    fillTable,
+    numberOrDash,
+    offerEntries,
+    setEnabled,
+    setProperty,
+    setSilently,
+    setText,
+    showPercent,
+)
+
+KINDS = (
+    (_("Biopsy"), ProcedureKind.BIOPSY.value),
+    (_("Deep brain stimulation (DBS)"), ProcedureKind.DBS.value),
+    (_("Stereo-EEG (SEEG)"), ProcedureKind.SEEG.value),
+)
+REACH = {True: _("yes"), False: _("no"), None: "–"}
+
+
+class ProcedurePlanPanel(Panel):
+    """The section Plan of a procedure."""
+
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
+        super().__init__(ui, session)
+        self._logic = session.procedurePlan
+        self._name = ""
+        self._checked: tuple[tuple, MeasuredProcedure] | None = None
+        self._problem = ""
+        self._removed: list[tuple[Any, int]] = []
+        failure = _("The lines were not checked.")
+        shows = (self._showProblem, self.showState, partial(showPercent, ui.procedurePlanText))
+        self._work = CancelableWork(ui.checkLinesButton, self.check, failure, *shows)
+        fillComboBox(ui.procedureKindComboBox, KINDS, ProcedureKind.BIOPSY.value)
+        connectClick(ui.editProcedureButton, self.edit, _("The procedure cannot be edited."))
+        connectClick(ui.placeLineButton, self.placeLine, _("No line can be placed."))
+        ui.removeLineButton.connect("clicked()", self.removeLine)
+        ui.restoreLineButton.connect("clicked()", self.restoreLine)
+        ui.raiseLineButton.connect("clicked()", self.raiseLine)
+        connectClick(
+            ui.placeCheckpointButton, self.placeCheckpoint, _("No checkpoint can be placed.")
+        )
+        ui.linesTable.connect("itemSelectionChanged()", self._showLine)
+        ui.lineNameLineEdit.connect("editingFinished()", self._renameLine)
+        for box in (ui.lineDiameterSpinBox, ui.lineSafetySpinBox):
+            box.connect("valueChanged(double)", self._changeInstrument)
+        ui.noGoButton.connect("clicked()", self.toggleNoGo)
+        ui.noGoComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self.showState)
+        connectClick(ui.saveProcedureButton, self.save, _("The procedure was not saved."))
+        self.listen((session.taskChosen, self._showProcedures))
+        section = ui.procedurePlanCollapsibleButton
+        self.showWhileOpen(section, self.showState, session.sceneChanged)
+        self._showProcedures()
+
+    def edit(self) -> None:
+        """Load the chosen procedure into the scene, in place of the plan there."""
+        ui = self._ui
+        scenario = chosenScenario(ui, self._session)
+        procedure = self._logic.edit(scenario, chosenData(ui.procedurePlanComboBox))
+        self._checked, self._problem, self._removed = None, "", []
+        self._name = "" if procedure is None else procedure.name
+        if procedure is not None:
+            ui.procedureTitleLineEdit.text = procedure.title
+            ui.procedureSourceLineEdit.text = procedure.source
+            ui.procedureSourceLineEdit.cursorPosition = 0
+            fillComboBox(ui.procedureKindComboBox, KINDS, procedure.kind.value)
+        checkpoints = findNode(slicer.mrmlScene, LIST, Role.CHECKPOINTS)
+        ui.checkpointsComboBox.setCurrentNode(checkpoints)
+        self.showState()
+
+    def placeLine(self) -> None:
+        """Let the next two clicks place a line, from its entry to its target."""
+        startPlacing(slicer.mrmlScene, newPlanLine(slicer.mrmlScene))
+        self.showState()
+
+    def removeLine(self) -> None:
+        """Remove the chosen line; it can be restored."""
+        line = self._line()
+        if line is not None:
+            self._removed.append((line, removeLine(slicer.mrmlScene, line)))
+        self.showState()
+
+    def restoreLine(self) -> None:
+        if self._removed:
+            restoreLine(slicer.mrmlScene, *self._removed.pop())
+        self.showState()
+
+    def raiseLine(self) -> None:
+        """Move the chosen line up in the order of the procedure; it stays chosen."""
+        line, table = self._line(), self._ui.linesTable
+        if line is not None:
+            raiseLine(slicer.mrmlScene, line)
+            table.selectRow(max(table.currentRow() - 1, 0))
+        self.showState()
+
+    def placeCheckpoint(self) -> None:
+        """Let the next click place a checkpoint, in the chosen list or in the plan's own."""
+        chosen = self._ui.checkpointsComboBox
+        node = chosen.currentNode() or checkpointList(slicer.mrmlScene)
+        chosen.setCurrentNode(node)
+        startPlacing(slicer.mrmlScene, node)
+
+    def toggleNoGo(self) -> None:
+        """Make the chosen model or segmentation a no-go structure, or no longer."""
+        node = self._ui.noGoComboBox.currentNode()
+        if node is not None:
+            setNoGo(node, not isNoGo(node))
+            self.showState()
+
+    def check(self) -> None:
+        """Measure all lines on the head of the chosen scenario."""
+        self._problem = ""
+        scenario = chosenScenario(self._ui, self._session)
+        plan, snapshot = self._description(), self._snapshot()
+        found = self._work.run(lambda report: self._logic.check(scenario, plan, report))
+        if found is not None:
+            self._checked = snapshot, found
+            self.showState()
+
+    def save(self) -> None:
+        """Copy the chosen scenario with this procedure and use the copy."""
+        title = self._ui.procedureScenarioLineEdit.text.strip()
+        scenario, plan = chosenScenario(self._ui, self._session), self._description()
+        saved = self._work.run(lambda report: self._logic.save(scenario, title, plan, report))
+        if saved is not None:
+            self._session.scenarioMade.emit(saved.name)
+
+    def showState(self, *_arguments: Any) -> None:
+        ui, isAtWork = self._ui, self._work.isUnderWay
+        isFresh = self._checked is not None and self._checked[0] == self._snapshot()
+        self._showLines(self._checked[1].lines if isFresh and self._checked else ())
+        hasLines, line = bool(planLines(slicer.mrmlScene)), self._line()
+        for box in (ui.lineNameLineEdit, ui.lineDiameterSpinBox, ui.lineSafetySpinBox):
+            box.enabled = line is not None
+        setEnabled(ui.removeLineButton, line is not None, _("Choose a line in the table first."))
+        setEnabled(ui.restoreLineButton, bool(self._removed), _("No line has been removed."))
+        isBelow = line is not None and ui.linesTable.currentRow() > 0
+        first = _("Choose a line below the first one in the table.")
+        setEnabled(ui.raiseLineButton, isBelow, first)
+        node = ui.noGoComboBox.currentNode()
+        isKept = node is not None and isNoGo(node)
+        setProperty(ui.noGoButton, "text", _("Ignore") if isKept else _("Keep away"))
+        setEnabled(ui.noGoButton, node is not None, _("Choose a model or a segmentation first."))
+        names = ", ".join(each.GetName() for each in noGoNodes(slicer.mrmlScene))
+        setText(ui.noGoText, _("To keep away from: {names}").format(names=names or "–"))
+        first = _("Place a line first.")
+        setEnabled(ui.checkLinesButton, hasLines or isAtWork, first)
+        reason = _("Wait until the current work is done.") if isAtWork else first
+        setEnabled(ui.saveProcedureButton, hasLines and not isAtWork, reason)
+        if not isAtWork:
+            setText(ui.procedurePlanText, self._problem or self._verdict(isFresh))
+
+    def _verdict(self, isFresh: bool) -> str:
+        """Return the errors found by the last check of the plan, or that there are none."""
+        if self._checked is None:
+            return ""
+        if not isFresh:
+            return _("The plan has changed since it was checked: check it again.")
+        wrong = self._checked[1].wrong
+        return "\n".join(wrong) or _("The procedure can be carried out.")
+
+    def _snapshot(self) -> tuple:
+        """Return a value that changes whenever a measured input changes."""
+        lines = planLines(slicer.mrmlScene)
+        return (
+            *(
+                (line.GetName(), instrumentOf(line), worldPoints(line).tobytes(), lengthMm(line))
+                for line in lines
+            ),
+            *((node.GetID(), node.GetMTime()) for node in noGoNodes(slicer.mrmlScene)),
+            chosenData(self._ui.scenarioComboBox),
+        )
+
+    def _showLines(self, found: Sequence[LineMeasures]) -> None:
+        lines, table = planLines(slicer.mrmlScene), self._ui.linesTable
+        measured = {each.name: each for each in found}
+        chosen = table.currentRow()
+        with blockedSignals(table):
+            if fillTable(table, [_row(line, measured.get(line.GetName())) for line in lines]):
+                if lines:
+                    table.selectRow(min(max(chosen, 0), len(lines) - 1))
+                self._showLine()
+
+    def _showLine(self) -> None:
+        ui, line = self._ui, self._line()
+        if line is not None:
+            diameter, safety = instrumentOf(line)
+            setSilently(ui.lineDiameterSpinBox, "value", diameter)
+            setSilently(ui.lineSafetySpinBox, "value", safety)
+            setProperty(ui.lineNameLineEdit, "text", line.GetName())
+
+    def _renameLine(self) -> None:
+        line, name = self._line(), self._ui.lineNameLineEdit.text.strip()
+        if line is not None and name:
+            line.SetName(name)
+            self.showState()
+
+    def _changeInstrument(self, _value: float = 0.0) -> None:
+        ui, line = self._ui, self._line()
+        if line is not None:
+            setInstrument(line, ui.lineDiameterSpinBox.value, ui.lineSafetySpinBox.value)
+            self.showState()
+
+    def _line(self) -> Any | None:
+        lines, row = planLines(slicer.mrmlScene), self._ui.linesTable.currentRow()
+        return lines[row] if 0 <= row < len(lines) else None
+
+    def _description(self) -> PlanDescription:
+        ui = self._ui
+        return PlanDescription(
+            title=ui.procedureTitleLineEdit.text,
+            kind=chosenData(ui.procedureKindComboBox),
+            source=ui.procedureSourceLineEdit.text,
+            name=self._name,
+            checkpoints=ui.checkpointsComboBox.currentNode(),
+        )
+
+    def _showProcedures(self) -> None:
+        entries = [(title, name) for name, title in self._session.procedures]
+        entries.append((_("New procedure"), ""))
+        combo = self._ui.procedurePlanComboBox
+        offerEntries(combo, entries, *([chosenData(combo)] if combo.count else []))
+        self.showState()
+
+    def _showProblem(self, sentence: str) -> None:
+        self._problem = sentence
+
+
+def _row(line: Any, measured: LineMeasures | None) -> tuple[str, ...]:
+    first = (line.GetName(), numberOrDash(lengthMm(line), 1))
+    if measured is None:
+        return (*first, "–", "–", "–", "–")
+    nearest = measured.nearest_no_go
+    return (
+        *first,
+        numberOrDash(measured.skull_angle_deg, 1),
+        numberOrDash(measured.no_go_mm.get(nearest), 1, nearest),
+        numberOrDash(measured.nearest_line_mm, 1, measured.nearest_line),
+        REACH[measured.is_held],
+    )

@@ -1,0 +1,289 @@
+"""The section Scenario: head, task, robot, other heads, and each method of registration on one."""
+
+from __future__ import annotations
+
+import tempfile
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import qt
+import slicer
+
+from rastrainer.number_text import fixed
+from rastrainer.protocol import TRIAL_RUN, RegistrationMethod
+from rastrainer.sections.application import askWhereToSave, fitSliceViews, fitThreeDViews
+from rastrainer.sections.module_session import ModuleSession
+from rastrainer.sections.panel import Panel, chosenScenario
+from rastrainer.sections.scenario_files import compareMethods
+from rastrainer.sections.training_panel import METHODS
+from rastrainer.slicer.link.link_status import LinkState
+from rastrainer.slicer.settings import SCENARIO, TASK
+from rastrainer.slicer.translation import _
+from rastrainer.widgets.controls import (
+    CancelableWork,
+    chosenData,
+    fillComboBox,
+    fillTable,
+    offerEntries,
+    setEnabled,
+    setSilently,
+    setText,
+    showPercent,
+)
+from rastrainer.widgets.plain_text import toolTip
+from rastrainer.widgets.shown_errors import showErrors
+from rastrainer.work_progress import no_progress
+
+PICTURE_HEIGHT = 180
+
+
+class ScenarioPanel(Panel):
+    """The section Scenario."""
+
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
+        super().__init__(ui, session)
+        self._logic = session.scenario
+        self._scenarios, self._files = session.scenarios, session.scenarioFiles
+        failure = _("This cannot be used as the head.")
+        self._showHeadMessage = partial(setText, ui.otherHeadText)
+        shows = (self._showHeadMessage, self._showUsable, partial(showPercent, ui.otherHeadText))
+        self._work = CancelableWork(ui.useHeadButton, self.useHead, failure, *shows)
+        failure = _("The scenario was not saved.")
+        self._writing = CancelableWork(
+            ui.exportScenarioButton,
+            self.exportScenario,
+            failure,
+            self._showMessage,
+            show=no_progress,
+        )
+        failure = _("The scenario was not added.")
+        self._adding = CancelableWork(
+            ui.importScenarioButton, self.importScenario, failure, self._showMessage
+        )
+        ui.scenarioComboBox.connect("activated(int)", self._showTasks)
+        ui.taskComboBox.connect("activated(int)", self._chooseTask)
+        for combo in (ui.scenarioComboBox, ui.taskComboBox):
+            combo.connect("activated(int)", self._keepChoice)
+        ui.showScenarioButton.connect("clicked()", self.show)
+        ui.loadScenarioButton.connect("clicked()", self.loadIntoSimulator)
+        ui.robotCheckBox.connect("toggled(bool)", self._logic.setRobotShown)
+        ui.headModelComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._showUsable)
+        self.listen(
+            (session.link.statusChanged, self._showUsable),
+            (session.training.answered, self._showMessage),
+            (session.scenarioMade, self.continueWith),
+            (session.files.shown, self._frame),
+            (session.files.problemFound, self._showMessage),
+            (self._logic.robotShown, fitThreeDViews),
+            (self._logic.problemFound, self._showMessage),
+            (
+                session.sceneChanged,
+                lambda: setSilently(ui.robotCheckBox, "checked", self._logic.isRobotShown),
+            ),
+        )
+        self._fill(session.settings.get(SCENARIO))
+
+    def show(self) -> None:
+        with showErrors(_("The scenario cannot be shown.")):
+            name = chosenData(self._ui.scenarioComboBox)
+            target = self._scenarios.find(name).target.position_ras
+
+            def showTarget() -> None:
+                self._session.slices.show(target)
+                fitThreeDViews()
+
+            self._logic.show(name, self._session.task, showTarget)
+
+    def loadIntoSimulator(self) -> None:
+        with showErrors(_("The scenario was not loaded.")):
+            scenario = self._scenarios.find(chosenData(self._ui.scenarioComboBox))
+            self._showMessage(
+                _("The simulator was asked to load {title}.").format(title=scenario.title)
+            )
+            loaded = _("The simulator now uses {title}.").format(title=scenario.title)
+            self._session.training.loadScenario(scenario.name, lambda: self._showMessage(loaded))
+
+    def useHead(self) -> None:
+        node = self._ui.headModelComboBox.currentNode()
+        used = self._work.run(lambda report: self._logic.useHead(node, report))
+        if used is not None:
+            model, warnings = used
+            fitThreeDViews()
+            text = _("{name} is now the head; the simulator keeps its own head.")
+            self._showHeadMessage(" ".join([text.format(name=model.GetName()), *warnings]))
+
+    def importScenario(self) -> None:
+        """Add a scenario that comes as a zip file, and choose it."""
+        path = qt.QFileDialog.getOpenFileName(
+            slicer.util.mainWindow(), _("Add a scenario"), "", "Zip (*.zip)"
+        )
+        if not path:
+            return
+        added = self._adding.run(lambda report: self._files.importScenario(Path(path), report))
+        if added is not None:
+            self._fill(added.name)
+            self._showMessage(_("{title} was added.").format(title=added.title))
+
+    def exportScenario(self) -> None:
+        name = chosenData(self._ui.scenarioComboBox)
+        keepsFace = not self._ui.removeFaceCheckBox.checked
+        keepsNames = not self._ui.removeNamesCheckBox.checked
+        # A file named after the patient would reveal the name, too.
+        proposed = f"{name}.zip" if keepsNames else "head.zip"
+        path = askWhereToSave(_("Save the scenario"), proposed, "Zip (*.zip)")
+        if path is None or not (keepsFace or self._isFaceGone(name)):
+            return
+        taken = self._writing.run(
+            lambda report: self._files.exportScenario(name, path, keepsFace, keepsNames, report)
+        )
+        if taken is not None:
+            self._showMessage(_("{path} was written.").format(path=path) + f" {taken}")
+
+    def _isFaceGone(self, name: str) -> bool:
+        """Show a scenario's head before and after its face is removed, and ask the user."""
+        with tempfile.TemporaryDirectory() as temporary:
+            picture = Path(temporary) / "before-and-after.png"
+            drawn = self._writing.run(
+                lambda report: self._files.drawFaceRemoval(name, picture, report)
+            )
+            return drawn is not None and slicer.util.confirmYesNoDisplay(
+                toolTip(f"{drawn} " + _("Is the face gone?")),
+                _("Save the scenario without its face"),
+                iconPixmap=qt.QPixmap(str(picture)),
+            )
+
+    def continueWith(self, name: str) -> None:
+        """Choose a scenario that has just been made, show it, and have the simulator take it."""
+        self._ui.scenarioCollapsibleButton.collapsed = False
+        self._fill(name)
+        self._keepChoice()
+        self.show()
+        if self._session.link.status.state is LinkState.CONNECTED:
+            self.loadIntoSimulator()
+
+    def _frame(self, node: Any) -> None:
+        """Fit the views to a newly loaded head, or to newly loaded images."""
+        if node.IsA("vtkMRMLModelNode"):
+            fitThreeDViews()
+            return
+        fitSliceViews(self._session.work.later)
+        self._session.work.later(self._session.slices.showAgain)
+
+    def _fill(self, wanted: str = "") -> None:
+        """Offer the available scenarios, and choose one; the first if it is missing."""
+        listed = self._scenarios.listed()
+        names = [entry.name for entry in listed if not entry.problem] or [""]
+        chosen = wanted if wanted in names else names[0]
+        combo = self._ui.scenarioComboBox
+        fillComboBox(combo, [(entry.title, entry.name) for entry in listed], chosen)
+        for row, entry in enumerate(listed):
+            if entry.preview is not None:
+                combo.setItemIcon(row, qt.QIcon(str(entry.preview)))
+        self._showTasks()
+
+    def _showTasks(self, _index: int = 0) -> None:
+        """Show the chosen scenario's picture and tasks, or why it cannot be used."""
+        ui = self._ui
+        name = chosenData(ui.scenarioComboBox)
+        entry = next((each for each in self._scenarios.listed() if each.name == name), None)
+        preview = None if entry is None else entry.preview
+        if preview is not None:
+            picture = qt.QPixmap(str(preview)).scaledToHeight(PICTURE_HEIGHT)
+            ui.scenarioPicture.setPixmap(picture)
+        ui.scenarioPicture.visible = preview is not None
+        ui.taskComboBox.enabled = isUsable = entry is not None and not entry.problem
+        self._showUsable()
+        if not isUsable:
+            self._showMessage(_("There is no scenario.") if entry is None else entry.problem)
+            return
+        scenario = self._scenarios.find(name)
+        tasks = [(task.title, task.name) for task in scenario.tasks]
+        last = self._session.task or self._session.settings.get(TASK)
+        others = (task for _title, task in tasks if task != TRIAL_RUN)
+        offerEntries(ui.taskComboBox, tasks, last, *others)
+        self._chooseTask()
+
+    def _chooseTask(self, _index: int = 0) -> None:
+        scenario = self._scenarios.find(chosenData(self._ui.scenarioComboBox))
+        task = scenario.task(chosenData(self._ui.taskComboBox))
+        self._session.chooseTask(task, scenario)
+        self._showMessage(
+            _("{count} fiducials, complexity {complexity:.2f}; target: {target}.").format(
+                count=len(task.labels), complexity=task.complexity, target=scenario.target.name
+            )
+        )
+
+    def _keepChoice(self, _index: int = 0) -> None:
+        settings, ui = self._session.settings, self._ui
+        settings.set(SCENARIO, chosenData(ui.scenarioComboBox))
+        settings.set(TASK, chosenData(ui.taskComboBox))
+
+    def _showUsable(self, *_arguments: Any) -> None:
+        ui = self._ui
+        isConnected = self._session.link.status.state is LinkState.CONNECTED
+        isUsable = ui.taskComboBox.enabled
+        ui.showScenarioButton.enabled = ui.exportScenarioButton.enabled = isUsable
+        reason = _("Choose a scenario that can be used.")
+        if isUsable:
+            reason = _("Connect to the simulator first.")
+        setEnabled(ui.loadScenarioButton, isConnected and isUsable, reason)
+        mayUse = ui.headModelComboBox.currentNode() is not None or self._work.isUnderWay
+        reason = _("Choose a model or a volume of the scene first.")
+        setEnabled(ui.useHeadButton, mayUse, reason)
+
+    def _showMessage(self, sentence: str) -> None:
+        if sentence:
+            setText(self._ui.scenarioText, sentence)
+
+
+METHOD_NAMES = {
+    **METHODS,
+    RegistrationMethod.BONE_SCREWS.value: _("Bone screws"),
+    RegistrationMethod.SCAN.value: _("Range camera"),
+}
+
+
+class MethodsPanel(Panel):
+    """The group Methods of registration."""
+
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
+        super().__init__(ui, session)
+        self._showMessage = partial(setText, ui.methodsText)
+        failure = _("The methods were not compared.")
+        self._work = CancelableWork(
+            ui.compareMethodsButton, self.compare, failure, self._showMessage
+        )
+        self._showMessage("")
+
+    def compare(self) -> None:
+        """Simulate trials on the chosen head, and show how each method registers them."""
+        ui, simulator = self._ui, self._session.simulator
+        scenario = chosenScenario(ui, self._session)
+        trials, shift = ui.methodTrialsSpinBox.value, ui.methodShiftSpinBox.value
+        self._showMessage(_("Trials are being simulated and registered."))
+        found = self._work.run(
+            lambda report: compareMethods(simulator, scenario, trials, shift, report)
+        )
+        if found is not None:
+            interval = _("{low} to {high}")
+            rows = [
+                (
+                    METHOD_NAMES.get(each.name, each.name),
+                    fixed(each.residual, 2),
+                    fixed(each.true, 2),
+                    fixed(each.expected, 2),
+                    interval.format(low=fixed(each.low, 2), high=fixed(each.high, 2)),
+                    _("{share} %").format(share=fixed(100.0 * each.held, 0)),
+                )
+                for each in found
+            ]
+            fillTable(ui.methodsTable, rows)
+            text = _(
+                "Residuals of different methods are of different points: they do not show which "
+                "is better. The true error does."
+            )
+            if len(found) < len(METHOD_NAMES):
+                few = _("The head has too few landmarks for the other methods.")
+                text = f"{text} {few}"
+            self._showMessage(text)

@@ -1,0 +1,247 @@
+"""The section Score: scores of a trial and their parts, its motion, and a comparison."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import qt
+import slicer
+
+from rastrainer.errors import InputError
+from rastrainer.number_text import fixed
+from rastrainer.sections.application import TABLES, askWhereToSave, fitThreeDViews, showTable
+from rastrainer.sections.module_session import ModuleSession
+from rastrainer.sections.panel import Panel, connectClick
+from rastrainer.slicer.scene.nodes import Role
+from rastrainer.slicer.scene.score_tables import (
+    ctpsRows,
+    motionRows,
+    scoreRows,
+    showRows,
+    showStandings,
+    standings,
+)
+from rastrainer.slicer.scene.trial_replay import moment
+from rastrainer.slicer.translation import _
+from rastrainer.study.database.values import StoredTrial
+from rastrainer.study.outcomes import short_mode_title, task_title
+from rastrainer.trial.analysis import TrialAnalysis
+from rastrainer.trial.ctps import CTPS_WARNING
+from rastrainer.widgets.controls import (
+    CancelableWork,
+    chosenData,
+    fillTable,
+    offerEntries,
+    setEnabled,
+    setSilently,
+    setText,
+    showPercent,
+)
+from rastrainer.widgets.shown_errors import showErrors
+
+
+class ScorePanel(Panel):
+    """The section Score."""
+
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
+        super().__init__(ui, session)
+        self._trainees = session.trainees
+        failure = _("The trial is not shown.")
+        self._showMessage = partial(setText, ui.scoreMessageText)
+        shows = (self._showMessage, self._showUsable, partial(showPercent, ui.replayText))
+        self._work = CancelableWork(ui.replayButton, self.replay, failure, *shows)
+        self._trial: StoredTrial | None = None
+        self._newTrial = ""
+        self._worst = ""
+        self._named: str | None = None
+        ui.trialComboBox.connect("activated(int)", self._showTrial)
+        connectClick(ui.showTablesButton, self.showTables, _("The tables cannot be shown."))
+        connectClick(ui.exportScoresButton, self.exportScores, _("The trials were not exported."))
+        ui.reportButton.connect("clicked()", self.writeReport)
+        ui.scoreCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
+        replayTouch = partial(self.replay, isWorstTouch=True)
+        connectClick(ui.worstTouchButton, replayTouch, _("The touch is not shown."))
+        self.listen(
+            (self._trainees.changed, self._show),
+            (session.trials.trialScored, self._noteNewTrial),
+            (session.replay.feedbackFound, self._showFeedback),
+            (session.sceneChanged, self._showReplay),
+        )
+        self._show()
+
+    def showTables(self) -> None:
+        """Show the section's content as tables of the scene, or restore the user's layout."""
+        if not self._ui.showTablesButton.checked:
+            self._session.layout.giveBack(TABLES)
+            return
+        trial, cohort, scene = self._trial, self._session.cohort, slicer.mrmlScene
+        if trial is None:
+            return
+        showStandings(scene, standings(self._trainees.study, trial, cohort))
+        showRows(scene, Role.MOTION, "Motion metrics", motionRows(trial))
+        rows = [*scoreRows(trial), *ctpsRows(trial, cohort)]
+        table = showRows(scene, Role.SCORE, "Score", rows)
+        showTable(self._session.layout, table)
+        self._showMessage(_("Score, Comparison and Motion metrics are now tables in the scene."))
+
+    def exportScores(self) -> None:
+        from rastrainer.study.tidy_csv import write_histories
+
+        path = askWhereToSave(_("Export all trials"), "trials.csv", "CSV (*.csv)")
+        if path is None:
+            return
+        read, write = self._trainees.inStudy, lambda study: write_histories(study, path)
+        written = self._work.run(lambda report: read(write, report))
+        if written is not None:
+            text = _(
+                "{count} trials were written to {path}. Trainees left out because they did not "
+                "consent to research: {leftOut}."
+            )
+            self._showMessage(text.format(count=written[0], path=path, leftOut=written[1]))
+
+    def writeReport(self) -> None:
+        """Have the simulator write the report of the study into a folder, and open it."""
+        simulator = self._session.simulator
+        with showErrors(_("The report was not written.")):
+            if simulator.needsSetup:
+                raise InputError(
+                    _(
+                        "The simulator writes it, and is not set up yet: in the section "
+                        "Simulator, press Set up."
+                    )
+                )
+            caption = _("Folder for the report")
+            folder = qt.QFileDialog.getExistingDirectory(slicer.util.mainWindow(), caption)
+            if not folder:
+                return
+            command = ["report", str(self._session.studyPlace), "-o", folder]
+            if self._work.run(lambda report: simulator.run(command, report)) is not None:
+                page = str(Path(folder, "report.html"))
+                self._showMessage(_("The report is {path}.").format(path=page))
+                qt.QDesktopServices.openUrl(qt.QUrl.fromLocalFile(page))
+
+    def replay(self, isWorstTouch: bool = False) -> None:
+        trial, replay = self._trial, self._session.replay
+        if trial is not None:
+            show = replay.showWorstTouch if isWorstTouch else replay.show
+            self._work.run(lambda report: show(trial, report))
+            if not isWorstTouch:
+                fitThreeDViews()
+
+    def _showReplay(self) -> None:
+        setSilently(self._ui.showTablesButton, "checked", self._session.layout.purpose == TABLES)
+        if not self._work.isUnderWay:
+            now = moment(slicer.mrmlScene)
+            text = _("{time:.1f} s, clearance {clearance}")
+            shown = "" if now is None else text.format(time=now[0], clearance=now[1])
+            setText(self._ui.replayText, shown)
+
+    def _fold(self, isFolded: bool) -> None:
+        if isFolded:
+            self._session.layout.giveBack(TABLES)
+
+    def _noteNewTrial(self, analysis: TrialAnalysis) -> None:
+        if analysis.record.trainee == self._trainees.chosen:
+            self._newTrial = analysis.record.trial_id
+
+    def _show(self) -> None:
+        try:
+            history = self._trainees.history()
+        except InputError as error:
+            self._named = None
+            self._showMessage(str(error))
+            return
+        text = _("{number}: {task}, {day}")
+        entries: list[tuple[str, str]] = []
+        for number, trial in enumerate(history, start=1):
+            record = trial.record
+            day = record.started_utc[:16].replace("T", " ")
+            entry = text.format(number=number, task=task_title(record.task), day=day)
+            entries.insert(0, (entry, record.trial_id))
+        wanted = self._newTrial or chosenData(self._ui.trialComboBox)
+        self._newTrial = ""
+        offerEntries(self._ui.trialComboBox, entries, wanted)
+        self._showTrial()
+
+    def _showTrial(self, _index: int = 0) -> None:
+        ui, cohort, trialId = self._ui, self._session.cohort, chosenData(self._ui.trialComboBox)
+        self._session.replay.retryFeedback()
+        try:
+            study = self._trainees.study
+            self._trial = trial = study.trial(trialId) if trialId else None
+            beside = [] if trial is None else standings(study, trial, cohort)
+        except InputError as error:
+            self._named = None
+            self._showMessage(str(error))
+            return
+        scores = [] if trial is None else scoreRows(trial)
+        ctps = [] if trial is None else ctpsRows(trial, cohort)
+        motion = [] if trial is None else motionRows(trial)
+        rows = ((row.title, row.text, row.note) for row in scores)
+        fillTable(ui.scoreTable, rows, [row.tip for row in scores])
+        fillTable(ui.ctpsTable, ((row.title, row.text) for row in ctps), [row.note for row in ctps])
+        setText(ui.ctpsText, CTPS_WARNING if ctps else "")
+        comparisons = [
+            (
+                f"{each.title} ({each.unit})" if each.unit else each.title,
+                fixed(each.value, 2),
+                each.group,
+                str(each.count),
+                fixed(each.median, 2),
+                f"{100 * each.betterThan:.0f} %",
+            )
+            for each in beside
+        ]
+        fillTable(ui.standingsTable, comparisons)
+        notes = [row.note for row in motion]
+        fillTable(ui.motionTable, ((row.title, row.text) for row in motion), notes)
+        # Once for each trial, so that messages about an export or a report stay.
+        if trialId != self._named:
+            self._named = trialId
+            self._showMessage(_title(trial))
+        self._showFeedback()
+
+    def _showFeedback(self) -> None:
+        trial, self._worst = self._trial, ""
+        sentences = [] if trial is None else [_("Feedback on the trial is being prepared.")]
+        try:
+            feedback = None if trial is None else self._session.replay.feedback(trial)
+        except InputError as error:
+            sentences = [str(error)]
+        else:
+            if feedback is not None:
+                # The score is one paragraph: the whole panel fits a laptop's screen.
+                parts = len(feedback.score_sentences)
+                score, others = feedback.sentences[:parts], feedback.sentences[parts:]
+                sentences = [*filter(None, [" ".join(score)]), *others]
+                self._worst = feedback.worst.label
+        setText(self._ui.feedbackText, "\n".join(sentences))
+        self._showUsable()
+
+    def _showUsable(self) -> None:
+        ui, isAtWork = self._ui, self._work.isUnderWay
+        hasTrial = bool(chosenData(ui.trialComboBox))
+        reason = _("Choose a trial first.")
+        busy = _("Wait until the current work is done.")
+        setEnabled(ui.showTablesButton, hasTrial, reason)
+        setEnabled(ui.replayButton, hasTrial or isAtWork, reason)
+        setEnabled(ui.exportScoresButton, not isAtWork, busy)
+        setEnabled(ui.reportButton, not isAtWork, busy)
+        if hasTrial:
+            reason = _("The trial cannot be analyzed.")
+        tip = _("Show how point {label} was touched.").format(label=self._worst)
+        isUsable = bool(self._worst) and not isAtWork
+        setEnabled(ui.worstTouchButton, isUsable, busy if isAtWork else reason, tip)
+        self._showReplay()
+
+
+def _title(trial: StoredTrial | None) -> str:
+    if trial is None:
+        return _("Choose a trainee with a scored trial.")
+    return _("{trainee}, {task}, {mode}").format(
+        trainee=trial.record.trainee,
+        task=task_title(trial.record.task),
+        mode=short_mode_title(trial.record.mode),
+    )

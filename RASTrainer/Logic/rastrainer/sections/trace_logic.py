@@ -1,0 +1,175 @@
+"""Shows the trace of the trial that is being played, at most once a second.
+
+That is its points, the covered skin, and where to draw next.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from rastrainer.commands import CommandName
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.protocol import Phase
+from rastrainer.registration.surface_error import TraceGuide
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.sections.trial_services import Question, Steps, TrialServices
+from rastrainer.sections.trial_status import TraceStatus, readStatus
+from rastrainer.slicer.polydata import pointCloud
+from rastrainer.slicer.scene.error_colors import colorSkin, removeHeadColors
+from rastrainer.slicer.scene.nodes import (
+    Role,
+    drawAsPoints,
+    findNode,
+    findOrAddNode,
+    removeNode,
+    setPoints,
+    surfaceOf,
+)
+from rastrainer.slicer.scene.scenario_nodes import requestedFile
+from rastrainer.slicer.signal import Listening
+from rastrainer.slicer.translation import _
+from rastrainer.trial.touch_registration import (
+    FollowedTrace,
+    GivenPoints,
+    follow_trace,
+    trace_guide,
+)
+
+PERIOD_S = 1.0
+"""Each time, the whole trace is requested, and the head is redrawn."""
+_TRACED_PHASES = (Phase.RUNNING.value, Phase.PAUSED.value, Phase.COMPLETE.value)
+
+
+Wanted = tuple[str, TraceStatus]
+"""A trial and the state of its trace; another one is to be shown."""
+
+
+class TraceLogic(Listening):
+    """Asks for the trace as it grows, and shows it on the head while the trial is open.
+
+    Guidance is shown in the scene where the simulator's setting, or the study, has it shown to the
+    trainee. All of it is by the landmarks: the head's true pose stays unknown.
+    """
+
+    def __init__(
+        self, services: TrialServices, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._services = services
+        self._clock = clock
+        self._scenario: Scenario | None = None
+        self._guide: TraceGuide | None = None
+        self._wanted: Wanted | None = None
+        self._shown: Wanted | None = None
+        self._isAsking = False
+        self._asked = -PERIOD_S
+        super().__init__(
+            (services.link.stateChanged, self._follow), (services.link.opened, self._beginAgain)
+        )
+
+    def begin(self, scenario: Scenario) -> None:
+        """Show traces on the head of a scenario, which is in the scene now."""
+        self._scenario, self._guide, self._shown = scenario, None, None
+
+    def forgetScene(self) -> None:
+        self._scenario = None
+
+    def process(self) -> None:
+        """Ask for the trace if it has changed, and a second has passed."""
+        wanted = self._wanted
+        isDue = self._clock() - self._asked >= PERIOD_S
+        if wanted is None or wanted == self._shown or self._isAsking or not isDue:
+            return
+        if self._scenario is None or not self._services.link.seen.isOpen:
+            return
+        if requestedFile(findNode(self._services.scene, MODEL, Role.HEAD_MODEL)):
+            # The head that is to be colored is still being read.
+            return
+        self._isAsking, self._asked = True, self._clock()
+        self._services.converse(self._updating(self._scenario, wanted))
+
+    def _follow(self, state: Mapping[str, Any]) -> None:
+        trial, wasShown = readStatus(state), self._wanted is not None
+        self._wanted = None
+        if trial.trace and trial.phase in _TRACED_PHASES and not trial.nextPoint:
+            self._wanted = trial.trialId, trial.trace
+        if self._wanted is None and wasShown:
+            self._shown = None
+            forgetTrace(self._services.scene)
+
+    def _beginAgain(self) -> None:
+        self._isAsking, self._shown = False, None
+
+    def _updating(self, scenario: Scenario, wanted: Wanted) -> Steps:
+        trialId, trace = wanted
+        try:
+            answer = yield Question(CommandName.GET_TRIAL, {"trialId": trialId})
+
+            def follow() -> FollowedTrace:
+                if self._guide is None:
+                    self._guide = trace_guide(scenario, read_head_mesh(scenario.head))
+                given = GivenPoints.of_answer(answer, least_traced=0)
+                return follow_trace(self._guide, scenario, given, trace.on)
+
+            followed = yield follow
+        except Exception:
+            # Wait for another state: what cannot be shown is reported at registration.
+            self._shown = wanted
+        else:
+            isSameTrial = self._wanted is not None and self._wanted[0] == trialId
+            if isSameTrial and self._scenario is scenario:
+                self._shown = wanted
+                showTrace(self._services.scene, followed, trace.isGuided)
+        finally:
+            self._isAsking = False
+
+
+MODEL, MARKUPS = "vtkMRMLModelNode", "vtkMRMLMarkupsFiducialNode"
+DISTANCE_SCALARS = "distance to the trace (mm)"
+FARTHEST_MM = 20.0
+"""Skin farther from the trace has the color of this distance."""
+NEXT_COLOR = (0.75, 0.0, 0.5)
+"""Far from the trace, the head is yellow."""
+
+
+def showTrace(scene: Any, trace: FollowedTrace, isGuided: bool) -> None:
+    """Show a trace on the head, RAS mm.
+
+    Where the trainee is guided, the head is colored by the distance to the trace, and the place to
+    draw next is marked.
+    """
+    node = findOrAddNode(scene, MODEL, Role.TRACED_POINTS, _("Traced points"))
+    drawAsPoints(node)
+    node.SetAndObservePolyData(pointCloud(trace.places))
+    head = findNode(scene, MODEL, Role.HEAD_MODEL)
+    if head is None:
+        pass
+    elif not (isGuided and len(trace.places)):
+        removeHeadColors(head, DISTANCE_SCALARS)
+    # Another head may have been shown meanwhile.
+    elif surfaceOf(head) and head.GetPolyData().GetNumberOfPoints() == len(trace.away_mm):
+        near = np.minimum(trace.away_mm, FARTHEST_MM)
+        colorSkin(head, DISTANCE_SCALARS, near, (0.0, FARTHEST_MM), _("To trace (mm)"))
+    if trace.next_place is None or not isGuided:
+        removeNode(scene, MARKUPS, Role.NEXT_PLACE)
+        return
+    node = findOrAddNode(scene, MARKUPS, Role.NEXT_PLACE, _("Draw here next"))
+    setPoints(node, (_("Next"),), trace.next_place[None])
+    node.SetLocked(True)
+    display = node.GetDisplayNode()
+    display.SetSelectedColor(NEXT_COLOR)
+    display.SetGlyphScale(4.0)
+    display.SetTextScale(3.5)
+    display.SetOccludedVisibility(True)
+
+
+def forgetTrace(scene: Any) -> None:
+    removeNode(scene, MODEL, Role.TRACED_POINTS)
+    removeNode(scene, MARKUPS, Role.NEXT_PLACE)
+    head = findNode(scene, MODEL, Role.HEAD_MODEL)
+    if head is not None and surfaceOf(head):
+        removeHeadColors(head, DISTANCE_SCALARS)
+        head.GetPolyData().GetPointData().RemoveArray(DISTANCE_SCALARS)

@@ -1,0 +1,313 @@
+"""The section Trainees: create, choose, archive, export and delete them, and show their trials."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import slicer
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import TRIAL_RUN, Mode
+from rastrainer.sections.application import CALIBRATION, CURVE, askWhereToSave, showChart
+from rastrainer.sections.module_session import ModuleSession
+from rastrainer.sections.panel import Panel, connectClick
+from rastrainer.sections.trainees_logic import calibration
+from rastrainer.slicer.scene.tables import showCalibration, showLearningCurve
+from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS, Setting
+from rastrainer.slicer.translation import _
+from rastrainer.study.database.database import EXAMPLE, study_place
+from rastrainer.study.database.values import StoredAbortedTrial, StoredTrial, Trainee, day_of
+from rastrainer.study.outcomes import short_mode_title, task_title
+from rastrainer.widgets.controls import (
+    CancelableWork,
+    chosenData,
+    connectAsPressed,
+    fillComboBox,
+    fillTable,
+    numberOrDash,
+    setEnabled,
+    setSilently,
+    setText,
+)
+from rastrainer.widgets.plain_text import toolTip
+from rastrainer.widgets.shown_errors import showErrors
+
+
+class TraineesPanel(Panel):
+    """The section Trainees."""
+
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
+        super().__init__(ui, session)
+        self._logic = session.trainees
+        self._trainee: Trainee | None = None
+        self._isStateShown = self._isErasing = False
+        failure = _("The trainee was not deleted.")
+        shows = (self._showMessage, self._showDeleting, self._noteErasing)
+        self._deletion = CancelableWork(ui.deleteTraineeButton, self.deleteTrainee, failure, *shows)
+        self._showPlace()
+        ui.studyPathLineEdit.connect("currentPathChanged(QString)", self.chooseStudy)
+        ui.studyAddressLineEdit.connect("editingFinished()", self.chooseStudyAddress)
+        ui.traineeComboBox.connect(
+            "activated(int)", lambda _index: self._logic.choose(chosenData(ui.traineeComboBox))
+        )
+        ui.archivedCheckBox.connect("toggled(bool)", self._show)
+        ui.consentCheckBox.connect("toggled(bool)", self.setConsent)
+        ui.createTraineeButton.connect("clicked()", self.createTrainee)
+        ui.traineesCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
+        connectAsPressed(
+            ui.archiveButton,
+            lambda: partial(self.setArchived, not (self._trainee and self._trainee.archived)),
+        )
+        for button, action, failure in (
+            (ui.exportTraineeButton, self.exportTrainee, _("The trainee was not exported.")),
+            (ui.exportHistoryButton, self.exportHistory, _("The history was not exported.")),
+            (ui.learningCurveButton, self.showCurve, _("The learning curve cannot be shown.")),
+            (ui.calibrationButton, self.showCalibration, _("The target errors cannot be shown.")),
+        ):
+            connectClick(button, action, failure)
+        self.listen((self._logic.changed, self._show), (session.sceneChanged, self._showPlots))
+        self._show()
+
+    def chooseStudy(self, path: str) -> None:
+        """Continue with the study of another file, once its name is complete."""
+        isFile, file = isinstance(self._session.studyPlace, Path), Path(path)
+        if not isFile or file == self._session.studyFile:
+            return
+        if not path.endswith(".db"):
+            self._showNoStudy(file)
+            return
+        question = _("There is no folder {folder}. Make it, for a new study?")
+        text, title = toolTip(question.format(folder=file.parent)), _("Choose a study")
+        if file.parent.is_dir() or slicer.util.confirmYesNoDisplay(text, title):
+            self._openStudy(file, STUDY, path)
+        else:
+            self._showPlace()
+
+    def _showNoStudy(self, path: Path) -> None:
+        """Say why a path is no study, unless the user may still be typing it."""
+        sentence = ""
+        if path.is_dir():
+            sentence = _(
+                "{path} is a folder: choose the file of a study in it, or enter the name of a new "
+                "one, such as {example}. Until then, {study} stays open."
+            )
+        elif path.is_file():
+            sentence = _(
+                "{path} is no study, whose name ends with .db. Until one is chosen, {study} stays "
+                "open."
+            )
+        names = {"path": path, "example": path / "study.db", "study": self._session.studyFile}
+        self._showMessage(sentence.format(**names), isState=True)
+
+    def chooseStudyAddress(self) -> None:
+        address = self._ui.studyAddressLineEdit.text.strip()
+        self._openStudy(address or self._session.studyFile, STUDY_ADDRESS, address)
+
+    def _openStudy(self, where: str | Path, setting: Setting[str], chosen: str) -> None:
+        with showErrors(_("The study cannot be used.")):
+            try:
+                place = study_place(where)
+                if setting is STUDY_ADDRESS and chosen and isinstance(place, Path):
+                    raise InputError(_("An address looks like {text}.").format(text=EXAMPLE))
+                if place == self._session.studyPlace:
+                    return
+                self._session.chooseStudy(place)
+            finally:
+                self._showPlace()
+            self._session.settings.set(setting, chosen)
+
+    def _showPlace(self) -> None:
+        ui, place = self._ui, self._session.studyPlace
+        ui.studyAddressLineEdit.text = "" if isinstance(place, Path) else str(place)
+        ui.studyPathLineEdit.currentPath = str(self._session.studyFile)
+
+    def createTrainee(self) -> None:
+        ui = self._ui
+        with showErrors(_("The trainee was not created.")):
+            self._logic.create(ui.pseudonymLineEdit.text, ui.newConsentCheckBox.checked)
+            ui.pseudonymLineEdit.text = ""
+            ui.newConsentCheckBox.checked = False
+
+    def setConsent(self, consent: bool) -> None:
+        with showErrors(_("The consent was not saved.")):
+            try:
+                self._logic.change(consent=consent)
+            except InputError:
+                setSilently(self._ui.consentCheckBox, "checked", not consent)
+                raise
+
+    def setArchived(self, isArchived: bool) -> None:
+        """Archive the chosen trainee, who stays in view, or bring them back."""
+        failed = _("The trainee was not archived.")
+        with showErrors(failed if isArchived else _("The trainee was not restored.")):
+            if isArchived:
+                self._ui.archivedCheckBox.checked = True
+            self._logic.change(archived=isArchived)
+
+    def exportTrainee(self) -> None:
+        from rastrainer.study.trainee_data import export_trainee
+
+        chosen = self._logic.chosen
+        path = askWhereToSave(_("Export the trainee"), f"{chosen}.json", "JSON (*.json)")
+        if path is not None:
+            self._showWritten(export_trainee(self._logic.study, chosen, path), path)
+
+    def exportHistory(self) -> None:
+        """Write the trials of the chosen trainee as a table, and aborted trials as another."""
+        from rastrainer.study.tidy_csv import write_history
+
+        chosen = self._logic.chosen
+        path = askWhereToSave(_("Export the history"), f"{chosen}.csv", "CSV (*.csv)")
+        if path is not None:
+            self._showWritten(write_history(self._logic.study, [chosen], path), path)
+
+    def _showWritten(self, count: int, path: Path) -> None:
+        text = _("{count} trials were written to {path}.")
+        self._showMessage(text.format(count=count, path=path))
+
+    def deleteTrainee(self) -> None:
+        name, trials = self._logic.chosen, len(self._logic.history())
+        question = _(
+            "Delete {name} with {trials} trials from the study and from the journals on this "
+            "computer, permanently? This cannot be undone; export the trainee first if the "
+            "data may be needed. Earlier exports and backups are yours to delete."
+        ).format(name=name, trials=trials)
+        if slicer.util.confirmYesNoDisplay(toolTip(question), _("Delete the trainee")):
+            erased = self._deletion.run(self._logic.delete)
+            if erased is None:
+                return
+            text = _("{name} was deleted with {trials} trials and {journals} journals.").format(
+                name=name, trials=erased.trials, journals=erased.journals
+            )
+            self._showMessage(" ".join((text, *erased.warnings)))
+
+    def _noteErasing(self, step: str, _share: float) -> None:
+        """Show that the deletion has begun, which nothing can undo."""
+        if step and not self._isErasing:
+            self._isErasing = True
+            self._showMessage(step)
+            self._showDeleting()
+
+    def _showDeleting(self) -> None:
+        ui, isAtWork = self._ui, self._deletion.isUnderWay
+        self._isErasing = self._isErasing and isAtWork
+        # Nobody else is chosen meanwhile. A file is chosen only if no address is.
+        for widget in (ui.studyAddressLineEdit, ui.traineeComboBox):
+            widget.enabled = not isAtWork
+        isFile = isinstance(self._session.studyPlace, Path)
+        ui.studyPathLineEdit.enabled = isFile and not isAtWork
+        if isAtWork:
+            tip = _("Delete nothing; the study is still being opened.")
+            begun = _("The deletion has begun, and can no longer be canceled.")
+            setEnabled(ui.deleteTraineeButton, not self._isErasing, begun, tip)
+        else:
+            reason = _("Choose a trainee first.")
+            setEnabled(ui.deleteTraineeButton, self._trainee is not None, reason)
+
+    def showCurve(self) -> None:
+        if not self._ui.learningCurveButton.checked:
+            self._session.layout.giveBack(CURVE)
+            return
+        chart = showLearningCurve(slicer.mrmlScene, self._logic.chosen, self._logic.history())
+        showChart(self._session.layout, chart)
+
+    def showCalibration(self) -> None:
+        """Plot true over expected TRE of the study's trials, or restore the user's layout."""
+        if not self._ui.calibrationButton.checked:
+            self._session.layout.giveBack(CALIBRATION)
+            return
+        found = self._logic.inStudy(calibration)
+        chart = showCalibration(slicer.mrmlScene, found)
+        showChart(self._session.layout, chart, CALIBRATION)
+        self._showMessage(" ".join(found.sentences()))
+
+    def _showPlots(self) -> None:
+        purpose = self._session.layout.purpose
+        setSilently(self._ui.learningCurveButton, "checked", purpose == CURVE)
+        setSilently(self._ui.calibrationButton, "checked", purpose == CALIBRATION)
+
+    def _fold(self, isFolded: bool) -> None:
+        if isFolded:
+            self._session.layout.giveBack(CURVE)
+            self._session.layout.giveBack(CALIBRATION)
+
+    def _show(self, *_arguments: Any) -> None:
+        ui = self._ui
+        try:
+            trainees = self._logic.trainees(archived=ui.archivedCheckBox.checked)
+            trainee, history = self._logic.chosenTrainee(), self._logic.history()
+            aborted = () if trainee is None else self._logic.study.aborted(trainee.pseudonym)
+        except InputError as error:
+            self._showMessage(str(error), isState=True)
+            return
+        self._trainee = trainee
+        archived = _("{name} (archived)")
+        entries = [
+            (
+                archived.format(name=each.pseudonym) if each.archived else each.pseudonym,
+                each.pseudonym,
+            )
+            for each in trainees
+        ]
+        entries.insert(0, (_("Choose a trainee"), ""))
+        ui.pseudonymLineEdit.placeholderText = self._logic.study.next_pseudonym()
+        fillComboBox(ui.traineeComboBox, entries, trainee.pseudonym if trainee else "")
+        setSilently(ui.consentCheckBox, "checked", trainee is not None and trainee.consent)
+        self._showDeleting()
+        ui.consentCheckBox.enabled = trainee is not None
+        isArchived = trainee is not None and trainee.archived
+        ui.archiveButton.text = _("Bring back") if isArchived else _("Archive")
+        nobody = _("Choose a trainee first.")
+        for button in (ui.archiveButton, ui.exportTraineeButton):
+            setEnabled(button, trainee is not None, nobody)
+        nothing = nobody if trainee is None else _("The trainee has no trials yet.")
+        for button in (ui.learningCurveButton, ui.exportHistoryButton):
+            setEnabled(button, bool(history), nothing)
+        if trainee is not None:
+            text = _("{name}, since {day}. Trials: {count}. {aborted}").format(
+                name=trainee.pseudonym,
+                count=len(history),
+                day=day_of(trainee.created_utc),
+                aborted=_aborted(aborted),
+            )
+            self._showMessage(text, isState=True)
+        elif self._isStateShown or not ui.traineeText.text:
+            text = _("Choose who is training, or create a new trainee.")
+            self._showMessage(text, isState=True)
+        fillTable(
+            ui.historyTable,
+            (_historyRow(number, trial) for number, trial in enumerate(history, start=1)),
+            [trial.record.started_utc for trial in history],
+        )
+
+    def _showMessage(self, sentence: str, isState: bool = False) -> None:
+        """Show a sentence; one about the present state, until there is another state."""
+        self._isStateShown = isState
+        setText(self._ui.traineeText, sentence.rstrip())
+
+
+def _aborted(aborted: Sequence[StoredAbortedTrial]) -> str:
+    """Return how many trials were aborted, trial runs counted separately; "" for none."""
+    records = [stored.record for stored in aborted if stored.record.task != TRIAL_RUN]
+    runs = len(aborted) - len(records)
+    if not aborted:
+        return ""
+    return _(
+        "Aborted: {count}, of them {late} after all touches; trial runs ended early: {runs}."
+    ).format(count=len(records), late=sum(r.is_after_all_touches for r in records), runs=runs)
+
+
+def _historyRow(number: int, trial: StoredTrial) -> tuple[str, ...]:
+    record = trial.record
+    task = task_title(record.task)
+    return (
+        str(number),
+        record.started_utc[5:16].replace("T", " "),
+        task if record.mode == Mode.DESKTOP.value else f"{task}, {short_mode_title(record.mode)}",
+        f"{record.completion_time_s:.1f}",
+        numberOrDash(trial.true_tre_mm, 2),
+        numberOrDash(None if trial.score is None else trial.score.score, 1),
+    )

@@ -1,0 +1,218 @@
+"""Starts and controls trials from Slicer, and shows the scene of the trial that is being played."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from rastrainer.commands import CommandName
+from rastrainer.errors import InputError
+from rastrainer.igtl.client import Reply
+from rastrainer.protocol import FIDUCIAL_COUNT, TRIAL_RUN, Phase, RegistrationMethod
+from rastrainer.scenario.scenario import Scenario, method_of
+from rastrainer.sections.trial_status import TrialStatus, readStatus
+from rastrainer.slicer.background_work import CallLater, callNow
+from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.link.link_status import LinkState
+from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode
+from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
+from rastrainer.slicer.scene.trial_scene import (
+    forgetStoredTouches,
+    noteTouchedTask,
+    showPlannedPlace,
+)
+from rastrainer.slicer.signal import Listening, Signal
+from rastrainer.slicer.translation import _
+
+LOADING = _("The simulator is still loading a scenario: wait until it says that it uses it.")
+LOADING_S = 30.0
+"""How long the simulator may take to load a scenario."""
+
+
+class TrainingLogic(Listening):
+    """Work of the section Training; answers come by a later `process` of the link.
+
+    Attributes:
+        changed: emits nothing, whenever `status` has changed in more than its time.
+        answered: emits the error of each command, empty if it was accepted.
+        sceneShown: emits the `Scenario` of an open trial whose head and fiducials are now shown.
+        learner: pseudonym of the trainee doing the tutorial before the trial run; empty if none.
+        loadings: how many scenarios the simulator is loading for Slicer; it refuses trials then.
+    """
+
+    def __init__(
+        self,
+        scene: Any,
+        link: Link,
+        findScenario: Callable[[str], Scenario],
+        clock: Callable[[], float] = time.monotonic,
+        later: CallLater = callNow,
+    ) -> None:
+        """`later` changes the scene, one part after the other."""
+        self.changed = Signal()
+        self.answered = Signal()
+        self.sceneShown = Signal()
+        self.learner = ""
+        self._scene = scene
+        self._link = link
+        self._findScenario = findScenario
+        self._clock = clock
+        self._later = later
+        self._said = TrialStatus()
+        self._saidAt = 0.0
+        self._shownTrial = ""
+        self._total = FIDUCIAL_COUNT
+        self.loadings = 0
+        super().__init__(
+            (link.stateChanged, self._follow),
+            (link.pointsChanged, lambda _node: self.changed.emit()),
+        )
+
+    @property
+    def status(self) -> TrialStatus:
+        """State of the trial now; its time continues between two messages."""
+        said, elapsed = self._said, self._said.elapsedS
+        if said.phase == Phase.RUNNING.value:
+            elapsed += self._clock() - self._saidAt
+        touches = findNode(self._scene, "vtkMRMLMarkupsFiducialNode", Role.CAPTURED_POINTS)
+        touched = touches.GetNumberOfControlPoints() if said.trialId and touches else 0
+        return replace(said, touched=touched, total=self._total, elapsedS=elapsed)
+
+    def start(
+        self,
+        trainee: str,
+        task: str,
+        mode: str,
+        isTutorialFirst: bool = False,
+        procedure: str = "",
+        method: str = "",
+        skin: Mapping[str, float] | None = None,
+    ) -> None:
+        """Start a trial, which continues with a procedure of the scenario if one is named.
+
+        It is registered by a `RegistrationMethod`, by fiducials if none is named. Its skin shifts
+        by `skin`, or as the scenario says.
+
+        With `isTutorialFirst`, the simulator opens the tutorial instead of a trial run for trainees
+        who have not done it yet with the device in use, unless the study or the simulator's setting
+        does without it. The trial run can be started after it.
+        """
+        if not trainee:
+            raise InputError(_("Choose a trainee in the section Trainees first."))
+        if not task:
+            raise InputError(_("Choose a task first."))
+        if task == TRIAL_RUN and isTutorialFirst:
+            who = {"trainee": trainee, "mode": mode}
+            self._link.send(
+                CommandName.START_TUTORIAL, who, lambda reply: self._startUnlessTutorial(reply, who)
+            )
+        else:
+            wanted = {"task": task, "trainee": trainee, "mode": mode}
+            isMarked = method == RegistrationMethod.FIDUCIALS.value
+            others = {"procedure": procedure, "method": "" if isMarked else method, "skin": skin}
+            self.command(
+                CommandName.START_TASK, wanted | {key: each for key, each in others.items() if each}
+            )
+
+    def command(self, name: str, arguments: Mapping[str, Any] | None = None) -> None:
+        self._link.send(name, arguments, lambda reply: self.answered.emit(reply.error))
+
+    def abort(self, trialId: str) -> None:
+        if self.status.trialId != trialId:
+            raise InputError(_("This trial is over. The trial that is open now was not aborted."))
+        self.command(CommandName.ABORT, {"trialId": trialId})
+
+    @property
+    def obstacle(self) -> str:
+        """Why no trial can be started now, for any trainee; empty if one can."""
+        if self._link.status.state is not LinkState.CONNECTED:
+            return _("Connect to the simulator first.")
+        if self.status.isOpen:
+            return _("A trial is open: abort it or let it be registered first.")
+        return LOADING if self.loadings else ""
+
+    def loadScenario(self, folder: str, done: Callable[[], None]) -> None:
+        """Load another scenario into the simulator, between two trials; call `done` once it has."""
+
+        def takeAnswer(reply: Reply) -> None:
+            self.loadings -= 1
+            self.answered.emit(reply.error)
+            if reply.ok:
+                done()
+            self.changed.emit()
+
+        self.loadings += 1
+        self.changed.emit()
+        self._link.send(
+            CommandName.LOAD_SCENARIO, {"folder": folder}, takeAnswer, timeoutS=LOADING_S
+        )
+
+    def _startUnlessTutorial(self, reply: Reply, who: Mapping[str, str]) -> None:
+        """Start the trial run, unless the simulator has opened the tutorial before it."""
+        if not reply.ok:
+            self.answered.emit(reply.error)
+        elif reply.data.get("isNeeded") is True:
+            self.learner = who["trainee"]
+            self.answered.emit(tutorialSentence(self.learner))
+            self.changed.emit()
+        else:
+            self.command(CommandName.START_TASK, {"task": TRIAL_RUN, **who})
+
+    def _follow(self, state: Mapping[str, Any]) -> None:
+        before = replace(self.status, elapsedS=0.0)
+        self._said, self._saidAt = readStatus(state), self._clock()
+        self._showScene()
+        if before != replace(self.status, elapsedS=0.0):
+            self.changed.emit()
+
+    def forgetScene(self) -> None:
+        self._shownTrial = ""
+        self._showScene()
+        self.changed.emit()
+
+    def _showScene(self) -> None:
+        """Have the scene of the open trial shown, unless it is."""
+        if self._said.isOpen:
+            self.learner = ""
+            if self._said.trialId != self._shownTrial:
+                self._shownTrial = self._said.trialId
+                forgetStoredTouches(self._scene)
+                self._link.send(CommandName.LIST_TASKS, {}, self._showTrialScene)
+
+    def _showTrialScene(self, reply: Reply) -> None:
+        """Show head and fiducials of the trial that runs, so that touches appear on them."""
+        if not self._said.isOpen:
+            return
+        if not reply.ok:
+            self._shownTrial = ""
+            return
+        try:
+            scenario = self._findScenario(str(reply.data.get("scenario", "")))
+            task, method = self._said.task, method_of(self._said.method)
+        except InputError as error:
+            self.answered.emit(str(error))
+            return
+        showScenario(self._scene, scenario, self._later)
+        self._later(partial(self._showTask, scenario, task, method))
+
+    def _showTask(self, scenario: Scenario, task: str, method: RegistrationMethod) -> None:
+        try:
+            fixed = showTask(self._scene, scenario, task, method)
+        except InputError as error:
+            self.answered.emit(str(error))
+            return
+        self._total = fixed.GetNumberOfControlPoints()
+        noteTouchedTask(self._scene, scenario.name, task, method)
+        showPlannedPlace(self._scene, scenario, capturedPointsNode(self._scene), fixed)
+        self.sceneShown.emit(scenario)
+        self.changed.emit()
+
+
+def tutorialSentence(trainee: str) -> str:
+    return _(
+        "{trainee} does the tutorial first, at the simulator: about two minutes. Then start the "
+        "trial run here, or let the trainee start it."
+    ).format(trainee=trainee)

@@ -1,0 +1,267 @@
+"""Slicer's views: slices at the next point, the tool or an instrument, and a temporary layout."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+import slicer
+from numpy.typing import ArrayLike
+
+from rastrainer import transforms
+from rastrainer.protocol import DeviceName, Phase
+from rastrainer.sections.training_logic import TrainingLogic
+from rastrainer.slicer.background_work import CallLater, callNow
+from rastrainer.slicer.scene.nodes import (
+    CONTENT_ATTRIBUTE,
+    TASK_ATTRIBUTE,
+    Role,
+    findNode,
+    labelsOf,
+    nodesOfClass,
+    worldPoints,
+)
+
+LAYOUT_TAG = "vtkMRMLLayoutNode"
+WITH_TABLE = slicer.vtkMRMLLayoutNode.SlicerLayoutFourUpTableView
+WITH_PLOT = slicer.vtkMRMLLayoutNode.SlicerLayoutConventionalPlotView
+
+
+def jumpTo(scene: Any, position: Sequence[float], later: CallLater = callNow) -> None:
+    """Move all slice views to a point, RAS mm, each by `later`: it cuts the images and surfaces."""
+    for view in nodesOfClass(scene, "vtkMRMLSliceNode"):
+        later(partial(view.JumpSliceByOffsetting, *position))
+
+
+PROBES_EYE, IN_LINE, ACROSS = "Red", "Green", "Yellow"
+"""Names of the slice views that show the plane across an instrument, and the two along it."""
+LEAST_ACROSS = 0.3
+"""An instrument that goes along the patient's left-right axis leaves less of it across itself."""
+
+
+class AlongInstrument:
+    """Slice views that are temporarily aligned with an instrument, and then restored.
+
+    Attributes:
+        former: how the aligned views were before, by the ID of their nodes.
+    """
+
+    def __init__(self, scene: Any) -> None:
+        self.former: dict[str, np.ndarray] = {}
+        self._scene = scene
+
+    def show(self, tip: np.ndarray, direction: np.ndarray) -> None:
+        """Align the views with an instrument, through its tip.
+
+        The probe's-eye view is across it, seen from outside, the other two are along it, with the
+        instrument coming from above; as far as possible, the patient's right is on the left.
+
+        Args:
+            tip: (3,) float, RAS mm.
+            direction: (3,) float, RAS, unit vector into the head.
+        """
+        outward, left, front = -direction, np.array([-1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
+        across = left - (left @ outward) * outward
+        if np.linalg.norm(across) < LEAST_ACROSS:
+            across = front - (front @ outward) * outward
+        across /= np.linalg.norm(across)
+        upward = np.cross(across, outward)
+        # Right, up and normal of the view, with the handedness of Slicer's axial, coronal and
+        # sagittal views.
+        axes = {
+            PROBES_EYE: (across, upward, outward),
+            IN_LINE: (across, outward, upward),
+            ACROSS: (-upward, outward, across),
+        }
+        for view in nodesOfClass(self._scene, "vtkMRMLSliceNode"):
+            if view.GetName() in axes:
+                matrix = view.GetSliceToRAS()
+                self.former.setdefault(view.GetID(), slicer.util.arrayFromVTKMatrix(matrix))
+                aligned = transforms.rigid(np.column_stack(axes[view.GetName()]), tip)
+                slicer.util.updateVTKMatrixFromArray(matrix, aligned)
+                view.UpdateMatrices()
+
+    def giveBack(self) -> None:
+        for viewId, former in self.former.items():
+            view = self._scene.GetNodeByID(viewId)
+            if view is not None:
+                slicer.util.updateVTKMatrixFromArray(view.GetSliceToRAS(), former)
+                view.UpdateMatrices()
+        self.former.clear()
+
+
+class BorrowedLayout:
+    """Tables and plots are visible only in a layout that has a view for them."""
+
+    def __init__(self, scene: Any) -> None:
+        self._scene = scene
+        self._purpose = ""
+        self._shown = self._former = 0
+
+    @property
+    def purpose(self) -> str:
+        """Purpose of the shown layout; empty if the user's own layout is shown."""
+        node = self._node()
+        isShown = node is not None and node.GetViewArrangement() == self._shown
+        return self._purpose if isShown else ""
+
+    def show(self, purpose: str, layout: int) -> None:
+        """Show a layout, one of `vtkMRMLLayoutNode`'s; without a main window nothing happens."""
+        node = self._node()
+        if node is None:
+            return
+        if not self.purpose:
+            self._former = node.GetViewArrangement()
+        self._purpose, self._shown = purpose, layout
+        node.SetViewArrangement(layout)
+
+    def giveBack(self, purpose: str = "") -> None:
+        """Show the user's layout again, if ours is shown (for this purpose, if one is given).
+
+        A layout that the user has chosen meanwhile stays.
+        """
+        node = self._node()
+        if node is not None and self.purpose and purpose in ("", self._purpose):
+            node.SetViewArrangement(self._former)
+            self._purpose = ""
+
+    def _node(self) -> Any | None:
+        return self._scene.GetSingletonNode(LAYOUT_TAG, LAYOUT_TAG)
+
+
+TRANSFORM, FIDUCIALS = "vtkMRMLLinearTransformNode", "vtkMRMLMarkupsFiducialNode"
+LEAST_MOVE_MM = 0.5
+PERIOD_S = 0.09
+"""Shortest time between two jumps after the tool: each renders all slice views."""
+LEAST_TURN = 0.01
+"""Smallest turn of the tool, in rad, that the views along it follow."""
+DEVICES = {
+    Phase.ALIGNING.value: DeviceName.TOOL_TIP_TO_WORLD,
+    Phase.DRILLING.value: DeviceName.INSTRUMENT_TIP_TO_WORLD,
+    Phase.INSERTING.value: DeviceName.INSTRUMENT_TIP_TO_WORLD,
+}
+"""Whose pose the views along the instrument follow, by the phase of a procedure."""
+
+
+class SliceFollower:
+    """Moves the slices just enough to go through a point; their orientation stays.
+
+    While the guide of a procedure is aligned, and drill and instrument are in it, they may lie
+    along it instead: one across the instrument (probe's-eye view), two along it.
+
+    Attributes:
+        showsNextPoint: whether they jump to each point that is to be touched next.
+        followsTool: whether they stay at the tip of the tool, in the place of the next point.
+        liesAlong: whether they lie along the instrument of a procedure.
+    """
+
+    def __init__(
+        self,
+        scene: Any,
+        training: TrainingLogic,
+        clock: Callable[[], float] = time.monotonic,
+        later: CallLater = callNow,
+    ) -> None:
+        """`later` has the views moved one after the other, where they need not follow the tool."""
+        self.showsNextPoint = True
+        self.followsTool = False
+        self.liesAlong = True
+        self._along = AlongInstrument(scene)
+        self._pose: np.ndarray | None = None
+        self._scene = scene
+        self._training = training
+        self._clock = clock
+        self._later = later
+        self._shownPoint: tuple[str, ...] = ()
+        self._place: np.ndarray | None = None
+        self._lastJump = -PERIOD_S
+
+    def show(self, place: ArrayLike) -> None:
+        """Show a point, (3,) float, RAS mm."""
+        self._jump(place, self._later)
+
+    def _jump(self, place: ArrayLike, later: CallLater = callNow) -> None:
+        self._place = np.array(place, dtype=float)
+        self._lastJump = self._clock()
+        jumpTo(self._scene, self._place.tolist(), later)
+
+    def showAgain(self) -> None:
+        if self._place is not None:
+            self.show(self._place)
+
+    def forgetScene(self) -> None:
+        self._shownPoint, self._place, self._pose = (), None, None
+        self._along.former.clear()
+
+    @property
+    def needsPoses(self) -> bool:
+        return self.followsTool or self._device is not None
+
+    @property
+    def _device(self) -> str | None:
+        """Device whose pose the views along the instrument follow; None if they do not."""
+        return DEVICES.get(self._training.status.phase) if self.liesAlong else None
+
+    def process(self) -> None:
+        device = self._device
+        if device is None and self._along.former:
+            if self._training.status.phase == Phase.PAUSED.value:
+                return
+            self._along.giveBack()
+            self._pose = None
+            self.showAgain()
+        if device is not None or self.followsTool:
+            self._shownPoint = ()
+            pose = poseOnHead(self._scene, device or DeviceName.TOOL_TIP_TO_WORLD)
+            if pose is not None and self._clock() >= self._lastJump + PERIOD_S:
+                self._follow(pose, isAlong=device is not None)
+        elif self.showsNextPoint:
+            self._showNextPoint()
+
+    def _follow(self, pose: np.ndarray, isAlong: bool) -> None:
+        tip, axis = pose[:3, 3], pose[:3, 2]
+        if not isAlong:
+            if self._place is None or np.linalg.norm(tip - self._place) >= LEAST_MOVE_MM:
+                self._jump(tip)
+            return
+        if self._pose is not None:
+            moved = float(np.linalg.norm(tip - self._pose[:3, 3]))
+            turned = float(np.linalg.norm(axis - self._pose[:3, 2]))
+            if moved < LEAST_MOVE_MM and turned < LEAST_TURN:
+                return
+        self._pose, self._lastJump = pose, self._clock()
+        self._along.show(tip, axis)
+
+    def _showNextPoint(self) -> None:
+        status, fixed = (
+            self._training.status,
+            findNode(self._scene, FIDUCIALS, Role.FIXED_FIDUCIALS),
+        )
+        point: tuple[str, ...] = ()
+        task = "" if fixed is None else fixed.GetAttribute(TASK_ATTRIBUTE) or ""
+        # The fiducials of a trial that has just started come a moment later than its first point.
+        if fixed and status.isOpen and status.nextPoint and task.endswith(f"/{status.task}"):
+            point = (task, fixed.GetAttribute(CONTENT_ATTRIBUTE) or "", status.nextPoint)
+        if point == self._shownPoint:
+            return
+        self._shownPoint = point
+        if point and status.nextPoint in labelsOf(fixed):
+            self.show(worldPoints(fixed)[labelsOf(fixed).index(status.nextPoint)])
+
+
+def poseOnHead(scene: Any, device: str) -> np.ndarray | None:
+    """Return the pose of a device on the head, (4, 4) float, RAS mm; z is the tool's axis.
+
+    None if its pose, or the pose of the head, is not known.
+    """
+    pose = findNode(scene, TRANSFORM, device)
+    toHead = findNode(scene, TRANSFORM, Role.WORLD_TO_HEAD)
+    if pose is None or toHead is None:
+        return None
+    toWorld = slicer.util.arrayFromTransformMatrix(pose)
+    if np.array_equal(toWorld, np.eye(4)):
+        return None  # No pose has come yet.
+    return slicer.util.arrayFromTransformMatrix(toHead) @ toWorld

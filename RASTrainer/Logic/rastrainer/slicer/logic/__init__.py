@@ -1,1 +1,0 @@
-"""What each section of the module does, without Qt."""

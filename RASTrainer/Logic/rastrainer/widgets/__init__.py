@@ -1,0 +1,1 @@
+"""Qt widgets as all sections of the module use them."""

@@ -1,0 +1,154 @@
+"""Run the tests marked `soak` in parts of at most 20 minutes each: see `make soak`.
+
+python -m Testing.soak            runs all parts, one after the other
+python -m Testing.soak list       prints them
+python -m Testing.soak 3          runs the third
+"""
+
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+
+
+@dataclass(frozen=True)
+class Part:
+    """Some of the tests, and what they prove.
+
+    Attributes:
+        places: folders and files below Testing. A test file belongs to the part that names it, or
+            the nearest folder that holds it.
+        minutes: as last measured on two cores; None before the first measurement.
+    """
+
+    name: str
+    proves: str
+    places: tuple[str, ...]
+    minutes: float | None = None
+
+
+PARTS = (
+    Part(
+        "formulas",
+        "the registration's formulas and intervals hold for thousands of drawn trials",
+        ("domain/registration", "error_rates/test_method_errors.py", "icp_peers"),
+    ),
+    Part(
+        "study",
+        "a study on PostgreSQL and with many writers stores everything exactly once",
+        ("domain", "slicer", "simulator/board"),
+    ),
+    Part(
+        "error rates",
+        "warnings and limits err as rarely as documented",
+        ("error_rates", "simulator/statistics"),
+    ),
+    Part(
+        "cohorts",
+        "played cohorts resume after kills, and give the same trials on every engine",
+        ("simulator/virtual",),
+    ),
+    Part(
+        "trainees",
+        "trainees who only see the screen finish a trial, and cheating never helps",
+        (
+            "simulator/virtual/test_cheating_trainees.py",
+            "simulator/virtual/test_seeing_and_reading.py",
+            "simulator/training",
+        ),
+    ),
+    Part(
+        "simulator",
+        "collision, views, scenarios and flow hold on many heads, poses and languages",
+        ("simulator",),
+    ),
+    Part(
+        "attacks",
+        "attacked links, streams and decoders stay up and within their limits",
+        ("security", "."),
+    ),
+    Part(
+        "headset",
+        "whole trials, procedures and traces in an emulated headset",
+        (
+            "web/test_headset.py",
+            "web/test_headset_panels.py",
+            "web/test_procedure_in_headset.py",
+            "web/test_trace_in_headset.py",
+        ),
+    ),
+    Part(
+        "page",
+        "the page works in a browser, without keys, on a bad network and for spectators",
+        ("web",),
+    ),
+    Part(
+        "devices",
+        "whole sessions by gamepad, keyboard and mouse, also of a procedure and a trace",
+        (
+            "end_to_end/test_gamepad_session.py",
+            "end_to_end/test_keyboard_session.py",
+            "end_to_end/test_mouse_session.py",
+            "end_to_end/test_procedure_by_hand.py",
+            "end_to_end/test_surface_by_hand.py",
+        ),
+    ),
+    Part(
+        "kills",
+        "killed simulators, sides of Slicer and databases lose and double nothing",
+        (
+            "end_to_end/test_kills.py",
+            "end_to_end/test_many_seats.py",
+            "end_to_end/test_study_through_crashes.py",
+            "end_to_end/test_delivery.py",
+        ),
+    ),
+    Part(
+        "long run",
+        "two hours of training leak no memory, at eight times the speed; a crowd is served",
+        ("end_to_end/test_long_run.py", "end_to_end/test_crowd.py"),
+    ),
+    Part(
+        "end to end",
+        "scenarios, real heads, packages, exports and the tour of the module",
+        ("end_to_end",),
+    ),
+)
+
+
+def part_of(file: Path) -> Part:
+    """Return the part of a test file."""
+    inside = file.relative_to(ROOT / "Testing")
+    above = [inside.as_posix(), *(folder.as_posix() for folder in inside.parents)]
+    return next(part for place in above for part in PARTS if place in part.places)
+
+
+def files_of(part: Part) -> list[str]:
+    found = sorted((ROOT / "Testing").rglob("test_*.py"))
+    return [str(file.relative_to(ROOT)) for file in found if part_of(file) is part]
+
+
+def run(part: Part) -> int:
+    """Run a part and return its exit status."""
+    print(f"{part.name}: {part.proves}.", flush=True)
+    command = [sys.executable, "-m", "pytest", "-m", "soak", "-q", *files_of(part)]
+    return subprocess.run(command, cwd=ROOT, check=False).returncode
+
+
+def main(words: list[str]) -> int:
+    if words == ["list"]:
+        for number, part in enumerate(PARTS, start=1):
+            minutes = "not yet measured" if part.minutes is None else f"{part.minutes:g} min"
+            print(f"{number:2}  {part.name}: {part.proves} ({minutes}).")
+        return 0
+    names = {name: part for n, part in enumerate(PARTS, 1) for name in (str(n), part.name)}
+    if not set(words) <= set(names):
+        print("PART is a number or a name of `make soak PART=list`.", file=sys.stderr)
+        return 2
+    return max([run(part) for part in ([names[word] for word in words] or PARTS)])
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
