@@ -233,36 +233,33 @@ def copy_with_plan(
 MAKE_HEAD = "rastrainer_headless.make_head"
 
 
+@dataclass(frozen=True)
 class HeadProcess:
     """A process that makes the head, and then its skull while the head is already used."""
 
-    def __init__(self, process: subprocess.Popen[str], errors: TextIO, folder: Path) -> None:
-        self._process = process
-        self._errors = errors
-        self._folder = folder
+    process: subprocess.Popen[str]
+    errors: TextIO
+    folder: Path
 
     def head(self, progress: Progress, warn: Warn) -> HeadDraft:
         """Wait for the head, and return its draft without a skull; `progress` may cancel."""
-        assert self._process.stdout is not None  # It is a pipe.
-        for line in self._process.stdout:
+        assert self.process.stdout is not None  # It is a pipe.
+        for line in self.process.stdout:
             if line.rstrip() == HEAD_MADE:
-                return read_draft(self._folder)
+                return read_draft(self.folder)
             report_line(line.rstrip(), progress, warn)
-        raise self._failure()
+        return self.whole()
 
     def whole(self) -> HeadDraft:
-        """Wait for the skull too, where one is wanted, and return the whole draft."""
-        assert self._process.stdout is not None  # It is a pipe.
-        self._process.stdout.read()
-        if self._process.wait() != 0:
-            raise self._failure()
-        return read_draft(self._folder)
-
-    def _failure(self) -> InputError:
-        status = self._process.wait()
-        self._errors.seek(0)
-        lines = self._errors.read().strip().splitlines()
-        return InputError(lines[-1] if lines else f"The head's process ended with {status}.")
+        """Wait for the skull too, if one is wanted, and return the whole draft."""
+        assert self.process.stdout is not None  # It is a pipe.
+        self.process.stdout.read()
+        status = self.process.wait()
+        if status != 0:
+            self.errors.seek(0)
+            lines = self.errors.read().strip().splitlines()
+            raise InputError(lines[-1] if lines else f"The head's process ended with {status}.")
+        return read_draft(self.folder)
 
 
 @contextmanager

@@ -15,7 +15,7 @@ import json
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -154,7 +154,7 @@ def _play(
             procedure = PROCEDURES.get(name, "")
             trial = play_trial(
                 *(client, scenario, name, TRAINEE, seed + number),
-                on_progress=_Bar(title),
+                on_progress=_progress_bar(title),
                 procedure=procedure,
             )
             print()
@@ -170,22 +170,22 @@ def _play(
     return states, records[-1]
 
 
-class _Bar:
-    """A progress bar of the touches, printed again when it changes."""
+def _progress_bar(title: str) -> Callable[[dict[str, Any]], None]:
+    """Return a function that shows how many points are touched, whenever that changes."""
+    shown = ""
 
-    def __init__(self, title: str) -> None:
-        self._title = title
-        self._shown = ""
-
-    def __call__(self, state: dict[str, Any]) -> None:
+    def show(state: dict[str, Any]) -> None:
+        nonlocal shown
         point = state["nextPoint"]
         touched = FIDUCIAL_COUNT if point is None else int(point) - 1
         filled = BAR_WIDTH * touched // FIDUCIAL_COUNT
         bar = "█" * filled + "·" * (BAR_WIDTH - filled)
-        line = f"  {self._title:<10} {bar} {touched:2d}/{FIDUCIAL_COUNT} touched"
-        if line != self._shown:
-            self._shown = line
+        line = f"  {title:<10} {bar} {touched:2d}/{FIDUCIAL_COUNT} touched"
+        if line != shown:
+            shown = line
             print(line, end="\r" if sys.stdout.isatty() else "\n", flush=True)
+
+    return show
 
 
 def _draw_pictures(

@@ -227,22 +227,20 @@ def _situations(
     situation = _Situation(training, Proximity.FREE, camera)
     situations = []
     for event in track.events:
-        situation = _after(situation, event, labels)
+        match event.entry:
+            case ProximityChange(to=proximity):
+                situation = replace(situation, proximity=proximity)
+            case CameraChange(camera=chosen):
+                situation = replace(situation, camera=chosen)
+            case _:
+                changed = _training_after(situation.training, event, labels)
+                situation = replace(situation, training=changed)
         training = situation.training
         if plan is not None and training.procedure is not None:
             procedure = procedure_after(training.procedure, event, plan)
             situation = replace(situation, training=replace(training, procedure=procedure))
         situations.append(situation)
     return situations
-
-
-def _after(before: _Situation, event: RecordedEvent, labels: tuple[str, ...]) -> _Situation:
-    match event.entry:
-        case ProximityChange(to=proximity):
-            return replace(before, proximity=proximity)
-        case CameraChange(camera=camera):
-            return replace(before, camera=camera)
-    return replace(before, training=_training_after(before.training, event, labels))
 
 
 def _training_after(

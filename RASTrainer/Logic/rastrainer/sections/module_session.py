@@ -133,7 +133,7 @@ class ModuleSession:
         self.scenarioFiles = ScenarioFiles(self.simulator, cache, places.library)
         self.scenarioMaker = ScenarioMaker(scene, self.scenarioFiles, run)
         self.training = TrainingLogic(scene, self.link, cache.find, later=self.work.changeScene)
-        self.slices = SliceFollower(scene, self.training, later=self.work.later)
+        self.slices = SliceFollower(scene, self.training, self.settings, later=self.work.later)
         self.study = StudyLogic(self.trainees, self.training, self.link)
         self.curriculum = CurriculumLogic(self.trainees, self.link)
         services = TrialServices(
