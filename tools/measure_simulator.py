@@ -3,8 +3,8 @@
     python tools/measure_simulator.py
 
 Downloads the wheels of the simulator's lock for the Python of Slicer, once a platform, and adds up
-their sizes. What is kept after trimming is measured by installing, so only for the platform this
-runs on; elsewhere it is what the wheels hold, less what is never opened. Writes
+their sizes. The size after trimming is measured by installing, so only for the platform this runs
+on; elsewhere it is the content of the wheels, less the files that are never opened. Writes
 RASTrainer/Resources/RASTrainerSimulator/sizes.json, which the module shows.
 """
 
@@ -60,7 +60,7 @@ def requirements(system: str, machine: str) -> str:
 
 
 def measure(system: str, machine: str, tags: Sequence[str]) -> dict[str, int]:
-    """Return the megabytes of the wheels and of what is in them, less what is never opened."""
+    """Return the megabytes of the wheels and of their files, less those never opened."""
     with tempfile.TemporaryDirectory() as temporary:
         lock = Path(temporary, "requirements.lock")
         lock.write_text(requirements(system, machine), encoding="utf-8")
@@ -79,7 +79,7 @@ def _kept(wheel: Path) -> int:
     kept = 0
     with zipfile.ZipFile(wheel) as archive:
         for file in archive.infolist():
-            # What pip puts beside the packages stands below `….data/purelib` or `platlib`.
+            # Files that pip puts next to the packages are below `….data/purelib` or `platlib`.
             inside = file.filename.split(".data/purelib/")[-1].split(".data/platlib/")[-1]
             never = any(inside.startswith(f"{folder}/") for folder in trim_packages.NEVER_OPENED)
             never = never or trim_packages.TESTS in Path(inside).parts[:-1]

@@ -1,6 +1,6 @@
-"""Build the simulator's wheel and put it beside the module, which sets the simulator up from it.
+"""Build the simulator's wheel and put it next to the module, which sets the simulator up from it.
 
-With it comes its SHA-256, by which the module checks it. Neither is kept in git: a release builds
+The module checks it by its SHA-256, in a file next to it. Neither is kept in git: a release builds
 them, and CMake refuses to package the extension without them.
 """
 
@@ -36,7 +36,7 @@ def copy_beside_module(wheel: Path, folder: Path = RESOURCES) -> Path:
 
 
 def main() -> None:
-    """Build the wheel, put it beside the module and print its path."""
+    """Build the wheel, put it next to the module and print its path."""
     with tempfile.TemporaryDirectory() as temporary:
         try:
             wheel = copy_beside_module(build_wheel(Path(temporary)))

@@ -1,4 +1,4 @@
-"""Install the system packages that a make target needs, or name the missing ones.
+"""Install the system packages that a make target needs, or name the missing packages.
 
 Only Linux needs any: the wheels for Windows and macOS are complete. On a
 system other than Debian, or without root, the missing packages are only named.

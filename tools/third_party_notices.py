@@ -1,6 +1,6 @@
 """Write build/third-party-notices.txt: the packages that come with RASTrainer, and their licenses.
 
-It is made from what is installed: the packages that requirements/base.lock names, with their
+It describes the installed packages: those that requirements/base.lock names, with their
 metadata and license files, and the packages that go into the browser page.
 """
 
@@ -18,7 +18,7 @@ WEB = ROOT / "RASTrainerSimulatorServer" / "web"
 OUTPUT = ROOT / "build" / "third-party-notices.txt"
 LONGEST_FILE = 200_000
 MAX_FILES = 24
-"""Of one package; those nearest to its top have its license."""
+"""Per package; the files nearest to its top have its license."""
 RULE = "=" * 100
 INTRODUCTION = """RASTrainer is under the MIT license (LICENSE.txt).
 It is installed with the packages below, each under its own license; none is in its repository.
@@ -43,9 +43,9 @@ class Notice:
         return "\n\n".join((RULE + "\n" + head.rstrip(), *self.texts)) + "\n"
 
 
-def python_notices(lock: Path = LOCK) -> Iterator[Notice]:
-    """Yield the notice of each package of a lock that is installed here, by name."""
-    for name in sorted(set(_LOCKED.findall(lock.read_text(encoding="utf-8")))):
+def python_notices() -> Iterator[Notice]:
+    """Yield the notice of each package of the lock that is installed here, by name."""
+    for name in sorted(set(_LOCKED.findall(LOCK.read_text(encoding="utf-8")))):
         try:
             package = importlib.metadata.distribution(name)
         except importlib.metadata.PackageNotFoundError:
@@ -64,11 +64,11 @@ def python_notices(lock: Path = LOCK) -> Iterator[Notice]:
         yield Notice(metadata["Name"], package.version, _license(metadata), home, texts)
 
 
-def page_notices(web: Path = WEB) -> Iterator[Notice]:
+def page_notices() -> Iterator[Notice]:
     """Yield the notice of each package that goes into the page, not of what only builds it."""
-    lock = json.loads((web / "package-lock.json").read_text(encoding="utf-8"))
+    lock = json.loads((WEB / "package-lock.json").read_text(encoding="utf-8"))
     for place, entry in sorted(lock["packages"].items()):
-        folder = web / place
+        folder = WEB / place
         if not place or entry.get("dev") or not folder.is_dir():
             continue
         files = sorted(path for path in folder.iterdir() if _LEGAL.search(path.name))

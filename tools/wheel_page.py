@@ -1,6 +1,6 @@
 """Build hook of the wheel: the browser page comes with it, as rastrainer_simulator/web.
 
-With it come the notices of what the page is made of. Python's packages are not in the wheel: each
+The notices of the page's packages come with it. Python's packages are not in the wheel: each
 brings its own when it is installed.
 """
 

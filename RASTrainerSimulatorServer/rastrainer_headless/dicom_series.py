@@ -63,7 +63,6 @@ class _Slice:
 
 
 def isDicom(path: Path) -> bool:
-    """Return whether a file looks like DICOM, with or without a preamble."""
     with path.open("rb") as file:
         begin = file.read(_MAGIC_AT + len(_MAGIC))
     return begin[_MAGIC_AT:] == _MAGIC or begin[:2] in _FIRST_GROUPS

@@ -81,17 +81,13 @@ class PeerSocket:
                 peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
                 self._socket = peer
                 self._changed(True)
-                with contextlib.suppress(OSError, CrashError):
-                    self._receive(peer)
+                with contextlib.suppress(OSError, CrashError), peer.makefile("rb") as stream:
+                    while not self._stopped.is_set() and (message := _readMessage(stream)):
+                        self._received(*message)
                 self._socket = None
                 if not self._stopped.is_set():
                     self._changed(False)
             self._stopped.wait(RETRY_PERIOD_S)
-
-    def _receive(self, peer: socket.socket) -> None:
-        with peer.makefile("rb") as stream:
-            while not self._stopped.is_set() and (message := _readMessage(stream)) is not None:
-                self._received(*message)
 
 
 def _readMessage(stream) -> tuple[wire.Header, bytes] | None:

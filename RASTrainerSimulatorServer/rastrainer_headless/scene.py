@@ -114,7 +114,6 @@ def adoptOrCreateNode(scene: Any, messageType: str, deviceName: str) -> Any:
 
 
 def updateNode(node: Any, message: Message) -> None:
-    """Put the content of a message and its metadata into its node."""
     content = message.content
     if isinstance(content, Transform):
         matrix = vtk.vtkMatrix4x4()

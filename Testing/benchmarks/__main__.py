@@ -1,9 +1,9 @@
 """`make bench`: run every benchmark, print one table, write build/bench.json.
 
 A benchmark is a file `bench_*.py` here with a function `rows(quick: bool) -> list[dict]`; each row
-has the keys of `COLUMNS`, with None where there is nothing to compare with. What takes minutes is
-in a function `long_rows() -> list[dict]`, which `--long` adds. Before each stands
-how busy and how fast the machine is.
+has the keys of `COLUMNS`, with None if there is no peer. Measurements that take minutes are in a
+function `long_rows() -> list[dict]`, which `--long` adds. Before each stands how busy and how fast
+the machine is.
 """
 
 import argparse

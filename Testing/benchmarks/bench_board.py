@@ -1,4 +1,4 @@
-"""A teacher's board with 30 recorded seats and two real ones, watched in two browsers."""
+"""A teacher's board with 30 recorded and two real seats, watched in two browsers."""
 
 from __future__ import annotations
 

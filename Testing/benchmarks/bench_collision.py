@@ -1,4 +1,5 @@
-"""All clearances of a tick, beside coal's on the same shapes; and how deep a thousand rams get."""
+"""All clearances of a tick, compared with coal on the same shapes; and how deep a thousand rams
+get."""
 
 import gc
 import time

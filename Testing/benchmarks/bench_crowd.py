@@ -23,7 +23,7 @@ from Testing.end_to_end.simulator_process import ViewedSimulator
 
 CLIENTS, VIEWS = 100, 20
 PROBE_PERIOD_S = 0.5
-"""Between two probes of one client: all of them together send 200 in a second."""
+"""The pause between two probes of one client: all of them together send 200 in a second."""
 SETTLE_S = 4.0
 TIMEOUT_S = 30.0
 """For the echoes of the last probes."""
@@ -36,7 +36,7 @@ NUMBER_AT = HEADER_BYTES + 12 + 44
 
 @dataclass(frozen=True)
 class Served:
-    """What a crowd got; times in s.
+    """The service of a crowd; times in s.
 
     Attributes:
         echoes: of each client, the delay of each probe that came back.

@@ -1,4 +1,5 @@
-"""From the gamepad's stick to the picture in the window, and what the window does to the loop.
+"""The delay from the gamepad's stick to the picture in the window, and the window's effect on the
+loop.
 
 The window is on a display in memory, so the processor draws: the worst case. It is opened as
 `rastrainer simulator --desktop` opens it. Pictures are counted, and the browser's processor time
@@ -31,12 +32,12 @@ SEED = 5
 PUSH = 0.8
 REST_S = (0.4, 0.6)
 MIDDLE_M = 0.6
-"""Above it the stick is pushed down, below it up."""
+"""The stick is pushed down above it, and up below it."""
 LOOK_S = 0.2
 """Time between two checks of the arm's position."""
 TIMEOUT_S = 20.0
 SETTLED_PICTURES = 40
-"""By then all that draws is compiled."""
+"""Everything that draws is compiled by then."""
 TICKS_A_S = os.sysconf("SC_CLK_TCK")
 # As a dragged mouse turns the view.
 TURN = """() => {
@@ -47,7 +48,7 @@ TURN = """() => {
 
 
 class Delay(NamedTuple):
-    """From a push of the stick, s, until the stream and until a picture shows it."""
+    """The time from a push of the stick until the stream and until a picture shows it, s."""
 
     streamed: float
     shown: float
@@ -70,7 +71,7 @@ class Drawn(NamedTuple):
 def rows(quick: bool) -> list[dict]:
     """Return the rows `desktop.*`, and `loop.on_time.*` with and without the window.
 
-    Beside each of these two is a loop that does nothing, at the same time on the same machine.
+    A loop that does nothing runs at the same time as each of these two on the same machine.
     """
     seconds, pushes = (5, 8) if quick else (15, 40)
     with (

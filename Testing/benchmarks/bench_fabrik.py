@@ -1,4 +1,4 @@
-"""FABRIK beside pin-pink and a damped-least-squares loop, on the same seeded targets.
+"""FABRIK, pin-pink and a damped-least-squares loop on the same seeded targets.
 
 Cold starts go from the home pose to targets anywhere in reach; tracking follows a path of 1 mm
 steps around the head. A time is the median of the runs of one target; Pinocchio judges success:
@@ -70,7 +70,7 @@ class Ours:
 
 
 def rows(quick: bool = True) -> list[dict]:
-    """Return `ik.<mode>.cold` and `ik.<mode>.track` beside each peer, and the joints' steps."""
+    """Return `ik.<mode>.cold` and `ik.<mode>.track` with each peer, and the joints' steps."""
     sizes = Sizes(3_000, 200, 3) if quick else Sizes(100_000, 2_000, 5)
     robot, ours = Pinocchio(), Ours()
     peers = (PinPink(robot), LeastSquares(robot))

@@ -1,4 +1,4 @@
-"""The link's delay beside pyigtl's, and what the server's process costs."""
+"""The link's delay compared with pyigtl's, and the cost of the server's process."""
 
 import socket
 import subprocess
@@ -18,7 +18,8 @@ from Testing.end_to_end.simulator_process import SimulatorProcess
 
 PROBE = Message("Echo", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 10, 20, 30)))
 PAUSE_S = 0.013
-"""Between two probes: about the period of a tracker, and no divisor of any server's rate."""
+"""The pause between two probes: about the period of a tracker, and no divisor of any server's
+rate."""
 TIMEOUT_S = 1.0
 
 PYIGTL_ECHO = """

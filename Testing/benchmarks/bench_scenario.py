@@ -1,4 +1,4 @@
-"""From a volume to a scenario: time the head of a phantom, and whole scenarios of real heads."""
+"""Making scenarios of volumes: the head of a phantom, and whole scenarios of real heads."""
 
 import subprocess
 import sys
@@ -27,8 +27,8 @@ def rows(quick: bool) -> list[dict]:
 def long_rows() -> list[dict]:
     """Return the rows `scenario.build.mri` and `.ct`: `rastrainer scenario build`, all of it.
 
-    The heads are those of Debian's `mricron-data` and `invesalius-examples`; one that is not
-    installed has no row.
+    The heads come from Debian's `mricron-data` and `invesalius-examples`; a missing head has no
+    row.
     """
     with tempfile.TemporaryDirectory() as temporary:
         folder, timed = Path(temporary), []

@@ -29,7 +29,7 @@ BURST = 1000
 
 
 class Cost:
-    """What a second costs, again and again.
+    """The cost of each second.
 
     Attributes:
         renders: renderings a second.

@@ -108,7 +108,7 @@ def rows(quick: bool) -> list[dict]:
 
 
 def _load_rows(step: str, load: SceneLoad) -> list[dict]:
-    """Return what one turn has handed over at most, beside all turns of the step."""
+    """Return the most that one turn has handed over, among all turns of the step."""
     most, total = asdict(load.most), asdict(load.total)
     return [
         row(f"handed.{step}.{kind}", [most[kind]], UNITS[kind], IN_ALL, [total[kind]])
@@ -118,7 +118,7 @@ def _load_rows(step: str, load: SceneLoad) -> list[dict]:
 
 
 def _import_rows() -> list[dict]:
-    """Return what a turn costs at most that imports a part of the module, beside all turns."""
+    """Return the largest cost of a turn that imports a part of the module, among all turns."""
     found = subprocess.run(
         [sys.executable, "-c", IMPORTS], capture_output=True, check=True, text=True
     )

@@ -35,7 +35,7 @@ ABOVE = np.array([0.0, 0.0, 165.0])
 
 
 def rows(quick: bool) -> list[dict]:
-    """Return the rows `tick.60k` and `tick.200k`, those of a procedure, and of the loop.
+    """Return the rows `tick.60k` and `tick.200k`, a procedure's rows, and the loop's.
 
     See `procedure_rows` and `_on_time`.
     """
@@ -173,7 +173,8 @@ def _jog_for_a_second(client: Client) -> None:
 
 @contextmanager
 def _clients(port: int) -> Iterator[tuple[Client, Client]]:
-    """Connect the clients that behave well; return the one that jogs and one that does not."""
+    """Connect the clients that behave well; return a client that jogs and a client that does
+    not."""
     clients = [Client(port=port) for _ in range(GOOD_CLIENTS)]
     try:
         for client in clients:
@@ -187,7 +188,8 @@ def _clients(port: int) -> Iterator[tuple[Client, Client]]:
 
 @contextmanager
 def _annoyed(port: int) -> Iterator[None]:
-    """Keep a client that never reads and one that sends garbage, each back as soon as dropped."""
+    """Keep a client that never reads and a client that sends garbage, each back as soon as
+    dropped."""
     is_over = threading.Event()
 
     def never_read() -> None:

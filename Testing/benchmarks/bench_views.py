@@ -1,4 +1,4 @@
-"""What a view costs: the stream, the scene, and the simulator's process while one watches."""
+"""The costs of a view: the stream, the scene, and the simulator's process while one watches."""
 
 import tempfile
 import time

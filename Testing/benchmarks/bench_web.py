@@ -1,4 +1,5 @@
-"""What the browser page costs: bytes, triangles, draw calls, memory, and the delay to the pixel."""
+"""The costs of the browser page: bytes, triangles, draw calls, memory, and the delay to the
+pixel."""
 
 import tempfile
 import time
@@ -143,7 +144,7 @@ def _delay(place: Place, page: Page, count: int) -> dict:
 
 
 def _heaps(playwright: Playwright, seconds: int) -> list[dict]:
-    """Return by how much heaps grow: the trend of what is left after each collection."""
+    """Return the growth of heaps: the trend after each collection."""
     with (
         _page(playwright, "", UNCOMPILED) as (_place, page),
         _page(playwright, HEADSET, UNCOMPILED) as (_other, headset),
@@ -157,7 +158,7 @@ def _heaps(playwright: Playwright, seconds: int) -> list[dict]:
 
 
 def _heap_sizes(pages: Mapping[str, Page], seconds: int) -> dict[str, list[float]]:
-    """Return what is left after each of `SAMPLES` collections, kB."""
+    """Return the size of the heap after each of `SAMPLES` collections, kB."""
     sessions = {name: page.context.new_cdp_session(page) for name, page in pages.items()}
     sizes: dict[str, list[float]] = {name: [] for name in pages}
     pages["page"].wait_for_timeout(1000 * WARM_UP_S)

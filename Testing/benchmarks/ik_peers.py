@@ -1,4 +1,4 @@
-"""What users would pick instead of FABRIK, set up to solve the same problems."""
+"""Alternatives to FABRIK, set up to solve the same problems."""
 
 import numpy as np
 import pink
@@ -31,7 +31,7 @@ class Pinocchio:
         return pin.updateFramePlacement(self.model, self.data, self.frame)
 
     def errors(self, q: np.ndarray, target: pin.SE3, mode: str) -> tuple[float, float]:
-        """Return how far the tip is from a target, m and rad; rad is 0 where turns do not count."""
+        """Return how far the tip is from a target, m and rad; rad is 0 if turns do not count."""
         tip = self.tip(q)
         turn = pin.log3(tip.rotation.T @ target.rotation)
         if mode == "direction":

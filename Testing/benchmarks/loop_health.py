@@ -17,7 +17,7 @@ TIMEOUT_S = 60.0
 
 @dataclass(frozen=True)
 class Punctuality:
-    """Of a stretch of time.
+    """The ticks in a stretch of time.
 
     Attributes:
         shares: of ticks that were on time in each second, percent.
@@ -69,8 +69,8 @@ def undisturbed(
 ) -> Punctuality | None:
     """Return the punctuality in those seconds in which the machine took nothing away.
 
-    That is where of the loops beside it, which do nothing, none was late. None where there is no
-    such second.
+    That is where of the loops beside it, which do nothing, none was late. None if there is no such
+    second.
 
     Args:
         healths: each with the time of its arrival (`time.monotonic`, s).

@@ -21,10 +21,10 @@ def row(
     n: int | None = None,
     worst: int = 99,
 ) -> dict:
-    """Return the row of what was measured, with the keys of `__main__.COLUMNS`.
+    """Return the row of a measurement, with the keys of `__main__.COLUMNS`.
 
-    `others` are the values of the `peer`; without them both its figures are left out. What is NaN
-    was not measured. `worst` is the percentile at the bad end, 1 where more is better.
+    `others` are the values of the `peer`; without them both its figures are left out. NaN stands
+    for a missing value. `worst` is the percentile at the bad end, 1 where more is better.
     """
     return row_of_figures(
         name,
@@ -73,7 +73,7 @@ def host_row(name: str) -> dict:
     """Return the row `host.NAME`: how long plain Python takes for a fixed sum, before a benchmark.
 
     A virtual machine whose host is busy runs at half speed for minutes; absolute figures of two
-    runs can be compared only where this row is the same.
+    runs can be compared only if this row is the same.
     """
     return row(f"host.{name}", [1e3 * _sum_time() for _ in range(LOOPS)], "ms")
 

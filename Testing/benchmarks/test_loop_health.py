@@ -1,4 +1,4 @@
-"""What the bench reports about the control loop belongs to the right seconds."""
+"""The bench's numbers about the control loop belong to the right seconds."""
 
 import numpy as np
 import pytest

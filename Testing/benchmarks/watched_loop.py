@@ -34,7 +34,7 @@ MAX_PROCESSORS = 8
 class BareLoop:
     """A process for each of the machine's processors while the `with` statement lasts.
 
-    What takes one processor away may leave the others alone, and ours runs on any of them. After
+    A load on one processor may leave the others alone, and ours runs on any of them. After
     the statement `punctuality` covers all together, and `was_never_late` any stretch of time.
     """
 
@@ -91,9 +91,7 @@ def _loop(pipe: Connection, processor: int | None) -> None:
     is_late = bytearray()
     with precise_timing(is_first_in_line=True):
         if hasattr(os, "SCHED_FIFO"):
-            raise_thread_priority(
-                FIRST + 1
-            )  # To wait for the machine alone, not for the loop beside it.
+            raise_thread_priority(FIRST + 1)  # It waits for the machine alone, not for the loop.
         pipe.send("ready")
         due = pipe.recv()
         while not pipe.poll():
@@ -112,8 +110,8 @@ class WatchedLoop:
         measured: how punctual the simulator's loop was.
         bare: the same of a loop on each processor that does nothing: none can do better there and
             then.
-        undisturbed: of the simulator's, in those seconds in which none of these was late; None
-            where there was no such second.
+        undisturbed: of the simulator's, in those seconds in which none of these was late; None if
+            there was no such second.
     """
 
     def __init__(self, client: Client) -> None:

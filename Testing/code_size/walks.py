@@ -48,7 +48,7 @@ def print_walks() -> None:
 
 @contextlib.contextmanager
 def recording() -> Iterator[None]:
-    """Have all processes note what they call meanwhile."""
+    """Have all processes note the functions that they call meanwhile."""
     switch = Path(os.environ[CALLED], "recording")
     switch.touch()
     time.sleep(0.1)

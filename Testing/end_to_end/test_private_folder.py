@@ -113,11 +113,11 @@ def test_the_simulator_and_its_window_use_nothing_from_slicers_folder_and_end_to
 
             def window():
                 lines.extend(child.takeLines())
-                assert child.exitStatus is None, lines
-                return [pid for pid in started_by(child._process.pid) if has_drawn(pid)]
+                assert child.process.poll() is None, lines
+                return [pid for pid in started_by(child.process.pid) if has_drawn(pid)]
 
             wait_until(window, lambda: None, LONG_S)
-            pids = started_by(child._process.pid)
+            pids = started_by(child.process.pid)
             # The real Python, and at least its window.
             assert len(pids) >= 2
             name = f"Pinocchio {metadata.version('pin')}"

@@ -12,7 +12,7 @@ from slicer.util import arrayFromMarkupsControlPoints
 from rastrainer import transforms
 from rastrainer.igtl.client import Client
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.sections.scenario_cache import ScenarioCache
+from rastrainer.sections.scenario_files import ScenarioCache
 from rastrainer.sections.trial_logic import TrialLogic
 from rastrainer.sections.trial_services import TrialServices
 from rastrainer.slicer.background_work import BackgroundWork

@@ -1,8 +1,8 @@
-"""The surface match beside the ICP of VTK, Open3D and small_gicp, from the same starts.
+"""The surface match compared with the ICP of VTK, Open3D and small_gicp, from the same starts.
 
-`compared.csv` holds what was compared, a row for each head, seed and peer. `python -m
-Testing.icp_peers.compare SEEDS` compares what it lacks of so many seeds; it can be stopped at any
-time. Open3D and small_gicp are in `.venv/icp` (`make soak` puts them there).
+`compared.csv` holds the comparisons, a row for each head, seed and peer. `python -m
+Testing.icp_peers.compare SEEDS` adds the missing comparisons of so many seeds; it can be stopped at
+any time. Open3D and small_gicp are in `.venv/icp` (`make soak` puts them there).
 """
 
 from __future__ import annotations
@@ -176,7 +176,7 @@ def table() -> str:
 
 
 LOWER_MM2 = 1e-4
-"""Of some 50 mm²; less is where a fit ends for its tolerance."""
+"""The cost is some 50 mm²; a smaller difference comes from a fit's tolerance."""
 
 
 def compare_missing(seeds: int) -> None:

@@ -14,7 +14,7 @@ import open3d
 import small_gicp
 
 SPACING_MM = 1.0
-"""Of the points on the skin."""
+"""Spacing of the points on the skin."""
 REACH_MM = 60.0
 """No point of a trace is this far off."""
 STEPS = 500

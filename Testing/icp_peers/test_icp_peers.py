@@ -1,4 +1,4 @@
-"""The surface match beside VTK, Open3D and small_gicp: the documented figures, and new ones."""
+"""The surface match compared with VTK, Open3D and small_gicp: documented and new figures."""
 
 from pathlib import Path
 

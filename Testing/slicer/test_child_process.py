@@ -93,8 +93,8 @@ def begun(python, folder):
 
 def test_killing_only_the_launcher_would_leave_the_real_python_alive(python, tmp_path):
     child = begun(python, tmp_path)
-    os.kill(child._process.pid, signal.SIGTERM)
-    wait_until(lambda: child.exitStatus is not None, lambda: None, LONG_S)
+    os.kill(child.process.pid, signal.SIGTERM)
+    wait_until(lambda: child.process.poll() is not None, lambda: None, LONG_S)
     assert runs(number(tmp_path / "pid"))
     wait_until(child.poll, lambda: None, LONG_S)
     ends(tmp_path / "pid")
@@ -218,8 +218,8 @@ def test_a_crash_of_slicer_leaves_the_simulator_alone(tmp_path):
     )
     child = ChildProcess([sys.executable, "-c", slicer, SIMULATOR, tmp_path])
     wait_until(lambda: "It has said all." in child.takeLines(), lambda: None, LONG_S)
-    kill(child._process.pid)
-    wait_until(lambda: child.exitStatus is not None, lambda: None, LONG_S)
+    kill(child.process.pid)
+    wait_until(lambda: child.process.poll() is not None, lambda: None, LONG_S)
     try:
         assert runs(number(tmp_path / "pid"))
         assert runs(number(tmp_path / "window"))

@@ -47,8 +47,8 @@ print(json.dumps({"at_start": at_start, "started": started, "imported": imported
                   "opened": ours(), "errors": errors, "counts": counts}))
 """
 HEAVY = ("numpy", "scipy", "vtk", "vtkmodules")
-"""Slicer imports numpy and scipy when they are first used, and each of VTK's modules with the first
-of its classes; `import vtk` alone is nothing, then."""
+LAZY = ("scipy", "vtk")
+"""Alone, these import next to nothing: their parts come with the first use."""
 ONLY_WHEN_NEEDED = ("head.head_draft", "slicer.head", "study.study_data")
 """Below `rastrainer`: what a button needs that most users never press, or a separate process. Here
 scipy may be imported, and VTK's."""
@@ -74,7 +74,7 @@ def heavy(imported, *packages):
             (importer, name)
             for importer, names, is_at_file_scope in imported
             for name in names[:1]
-            if is_at_file_scope and name.split(".")[0] in packages and name != "vtk"
+            if is_at_file_scope and name.split(".")[0] in packages and name not in LAZY
         }
     )
 

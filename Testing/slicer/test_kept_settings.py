@@ -39,7 +39,7 @@ def test_choices_are_kept_across_a_restart(start, tmp_path):
     host.press("importScenarioButton")
     host.choose("scenarioComboBox", "Colin27")
     host.choose("scenarioComboBox", "A ball")
-    host.choose("taskComboBox", "Task 2")
+    host.choose("taskComboBox", "Task-2")
     host.choose("kindComboBox", "Affine")
     host.check("headColoredCheckBox")
     host.check("slicesNextPointCheckBox", False)
@@ -60,15 +60,14 @@ def test_choices_are_kept_across_a_restart(start, tmp_path):
     assert host.find("modeComboBox").currentText == "Headset"
     assert not host.find("tutorialCheckBox").checked
     assert host.find("scenarioComboBox").currentText == "A ball"
-    assert host.find("taskComboBox").currentText == "Task 2"
+    assert host.find("taskComboBox").currentText == "Task-2"
     assert host.text("indexLineEdit") == "https://wheels.example.org/simple"
     assert host.find("kindComboBox").currentText == "Affine"
     assert host.widget.logic.session.registration.kind == "affine"
     assert host.find("headColoredCheckBox").checked
-    slices = host.widget.logic.session.slices
-    assert not slices.showsNextPoint
-    assert slices.followsTool
-    assert not slices.liesAlong
+    assert not host.find("slicesNextPointCheckBox").checked
+    assert host.find("slicesToolCheckBox").checked
+    assert not host.find("slicesAlongCheckBox").checked
     assert host.find("studyPathLineEdit").currentPath == str(tmp_path / "mine.db")
     assert host.find("wheelsPathLineEdit").currentPath == str(tmp_path / "wheels")
     assert host.find("programPathLineEdit").currentPath == str(tmp_path / "rastrainer")

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.sections.scenario_logic import compareMethods
+from rastrainer.sections.scenario_files import compareMethods
 from rastrainer.sections.simulator_logic import SimulatorLogic
 from Testing.end_to_end.module.story import Story
 from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)

@@ -12,7 +12,7 @@ from rastrainer.head.trial_head import Perturbation
 from rastrainer.scenario.library import pack, unpack, user_library
 from rastrainer.scenario.setup import SetUp
 from rastrainer.scenario.writer import new_folder, write_scenario
-from rastrainer.sections import new_scenario_logic, scenario_logic
+from rastrainer.sections import new_scenario_logic, scenario_files, scenario_logic
 from rastrainer.sections.new_scenario_logic import editedHead
 from rastrainer.slicer.head.extraction import findHead
 from rastrainer.slicer.head.volume import HeadSettings, Volume, forSegment, volumeOfSegment
@@ -88,7 +88,7 @@ def test_adding_a_zip_file_may_be_canceled_and_leaves_nothing(host, package, mon
         finally:
             ended.set()
 
-    monkeypatch.setattr(scenario_logic, "unpack", unpack_when_told)
+    monkeypatch.setattr(scenario_files, "unpack", unpack_when_told)
     unfold(host, "shareGroupBox")
     host.answer("Add a scenario", package)
     with cancels(host, "importScenarioButton", begun.is_set):
@@ -173,7 +173,7 @@ def test_a_draft_is_hidden_once_a_scenario_is_made_and_shown_when_it_is_found_ag
 ):
     made = host.widget.logic.session.scenarios.find("colin27")
     monkeypatch.setattr(new_scenario_logic, "planScenario", lambda *_arguments: [])
-    monkeypatch.setattr(scenario_logic, "load_scenario", lambda _folder: made)
+    monkeypatch.setattr(scenario_files, "load_scenario", lambda _folder: made)
     monkeypatch.setattr(new_scenario_logic, "findSkin", found_once(scenario_logic.findSkin))
     volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "phantom")
     rendering = host.scene.AddNode(slicer.vtkMRMLCPURayCastVolumeRenderingDisplayNode())
@@ -289,7 +289,7 @@ def test_a_plan_in_the_scene_is_included_in_the_scenario(host):
     assert not wishes.hasSkull
     assert not wishes.hasVolume
     assert (wishes.source, wishes.license) == ("The Head Study", "CC BY 4.0")
-    assert scenario_logic.planArguments(wishes.targets, wishes.trajectory) == [
+    assert scenario_files.planArguments(wishes.targets, wishes.trajectory) == [
         *("--target", "Tumor", "1.0", "2.0", "3.0", "--target", "Cyst", "4.0", "5.0", "6.0"),
         *("--trajectory", "Biopsy", "0.0", "0.0", "90.0", "1.0", "2.0", "3.0"),
     ]

@@ -67,14 +67,6 @@ def test_the_work_is_done_by_another_process(tmp_path, monkeypatch):
     assert runHere("anywhere:work", ignore) == os.getpid()
 
 
-def test_where_the_process_lacks_a_package_the_work_is_done_here(tmp_path, monkeypatch, caplog):
-    (tmp_path / "only_here.py").write_text(WHOSE)
-    monkeypatch.syspath_prepend(tmp_path)
-    with caplog.at_level(logging.WARNING):
-        assert OwnProcess(PYTHON)("only_here:work", ignore) == os.getpid()
-    assert "lacks only_here: only_here:work runs in Slicer." in caplog.text
-
-
 def test_where_no_process_can_be_started_the_work_is_done_here(tmp_path, monkeypatch, caplog):
     (tmp_path / "only_here.py").write_text(WHOSE)
     monkeypatch.syspath_prepend(tmp_path)

@@ -253,18 +253,7 @@ def test_without_a_point_or_a_registration_the_message_says_what_is_missing(room
         room.logic.read(room.target(TUMOR))
 
 
-def test_clicks_place_the_plan(room):
-    node = room.logic.points.newTarget()
-    startPlacing(room.scene, node)
-    selection = room.scene.GetNodeByID("vtkMRMLSelectionNodeSingleton")
-    interaction = room.scene.GetNodeByID("vtkMRMLInteractionNodeSingleton")
-    assert selection.GetActivePlaceNodeID() == node.GetID()
-    assert interaction.GetCurrentInteractionMode() == interaction.Place
-    stopPlacing(room.scene)
-    assert interaction.GetCurrentInteractionMode() == interaction.ViewTransform
-
-
-def test_a_click_while_a_scenario_is_shown_still_places_the_plan(room, scenario):
+def test_clicks_place_the_plan_even_while_a_scenario_is_shown(room, scenario):
     markups = slicer.vtkSlicerMarkupsLogic()
     markups.SetMRMLScene(room.scene)
     removeNode(room.scene, "vtkMRMLMarkupsFiducialNode", Role.FIXED_FIDUCIALS)
@@ -272,7 +261,11 @@ def test_a_click_while_a_scenario_is_shown_still_places_the_plan(room, scenario)
     startPlacing(room.scene, node)
     showTask(room.scene, scenario, "task-1")
     selection = room.scene.GetNodeByID("vtkMRMLSelectionNodeSingleton")
+    interaction = room.scene.GetNodeByID("vtkMRMLInteractionNodeSingleton")
     assert selection.GetActivePlaceNodeID() == node.GetID()
+    assert interaction.GetCurrentInteractionMode() == interaction.Place
+    stopPlacing(room.scene)
+    assert interaction.GetCurrentInteractionMode() == interaction.ViewTransform
 
 
 def test_slices_jump_to_a_place_without_moving_in_their_plane(room):

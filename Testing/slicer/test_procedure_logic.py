@@ -12,7 +12,6 @@ from rastrainer.protocol import DeviceName
 from rastrainer.scenario.points import LABELS
 from rastrainer.sections.procedure_logic import ProcedureLogic
 from rastrainer.sections.trial_services import TrialServices
-from rastrainer.sections.trial_status import readStatus
 from Testing.slicer.simulator_double import run_until_received
 from Testing.slicer.training_room import TRIAL, Room
 
@@ -126,7 +125,3 @@ def test_a_trial_with_a_procedure_is_started_with_its_name(theater):
     theater.logic.start("T001", "task-1", "desktop", procedure="dbs")
     theater.run_until(lambda: theater.sent("StartTask"))
     assert theater.sent("StartTask")[0]["procedure"] == "dbs"
-
-
-def test_a_trial_with_touches_only_has_no_procedure():
-    assert not readStatus({"phase": "running", "procedure": None}).isProcedureUnderWay

@@ -11,6 +11,7 @@ from rastrainer import transforms
 from rastrainer.igtl.content import String
 from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.protocol import DeviceName
+from rastrainer.slicer.settings import SLICES_LIE_ALONG
 from rastrainer.trial.procedure_outcome import ProcedureMeasures, ProcedureOutcome, score_procedure
 from Testing.domain.procedure.made_up_procedure import made_up_meshes, made_up_procedure
 from Testing.domain.procedure.procedure_records import recorded
@@ -163,4 +164,4 @@ def test_the_errors_are_shown_with_the_shares_of_registration_and_hand(host):
     red = host.scene.GetNodeByID("vtkMRMLSliceNodeRed").GetSliceToRAS()
     assert red.GetElement(2, 3) == pytest.approx(procedure.trajectories[1].target_ras[2])
     host.check("slicesAlongCheckBox", False)
-    assert not session.slices.liesAlong
+    assert not session.settings.get(SLICES_LIE_ALONG)

@@ -26,7 +26,6 @@ from rastrainer.slicer.scene.trial_scene import (
     movingNode,
     setApplied,
 )
-from rastrainer.transforms import MM_PER_M
 from Testing.slicer.shown_scenario import show_whole
 from Testing.slicer.work_at_once import WorkAtOnce
 
@@ -151,41 +150,6 @@ def test_a_touch_that_is_deselected_in_slicer_is_left_out_until_it_is_selected(t
             node.SetNthControlPointSelected(row, True)
     table.logic.process()
     assert table.logic.comparison.shown.fre_mm == before
-
-
-def test_swapped_touches_are_put_in_order_by_one_click(table):
-    order = [0, 1, 3, 2, *range(4, 15)]
-    table.touch(table.touched[order])
-    remedy = table.warn("order")
-    assert remedy.title == "Put in order"
-    table.logic.change(remedy.choices)
-    assert table.logic.comparison.remedies == ()
-    assert table.logic.comparison.shown.fre_mm < 2.0
-    table.logic.undo()
-    assert table.logic.comparison.shown.fre_mm > 5.0
-
-
-def test_of_two_touches_at_one_place_the_later_is_excluded(table):
-    twice = table.touched.copy()
-    twice[9] = twice[4]
-    table.touch(twice)
-    remedy = table.warn("duplicate")
-    assert remedy.warning.points == ("5", "10")
-    assert remedy.title == "Leave out 10"
-
-
-@pytest.mark.parametrize(
-    ("change", "code"),
-    [
-        (lambda points: points * [1.0, 1.0, -1.0], "mirrored"),
-        (lambda points: points / MM_PER_M, "scale"),
-    ],
-)
-def test_a_problem_that_only_new_points_can_fix_has_a_message_and_no_button(change, code, table):
-    table.touch(change(table.touched))
-    remedy = table.warn(code)
-    assert remedy.title == ""
-    assert len(remedy.warning.message) > 40
 
 
 def test_any_fiducial_may_be_left_out_until_too_few_are_left(table):
@@ -425,17 +389,6 @@ def test_with_turns_each_part_of_a_registration_is_shown_in_a_separate_turn(
     np.testing.assert_array_equal(
         arrayFromTransformMatrix(logic.transform), logic.comparison.shown.matrix
     )
-
-
-def test_with_turns_the_result_is_the_same_as_at_once(table, logic_in_turns, work):
-    table.touch()
-    logic_in_turns.process()
-    in_turns(work)
-    at_once, in_parts = table.logic.comparison, logic_in_turns.comparison
-    for kind in KINDS:
-        np.testing.assert_array_equal(in_parts.fits[kind].matrix, at_once.fits[kind].matrix)
-        assert in_parts.errors[kind] == at_once.errors[kind]
-    np.testing.assert_array_equal(in_parts.leaveOneOut[RIGID], at_once.leaveOneOut[RIGID])
 
 
 def test_lists_that_are_deleted_between_two_turns_are_not_shown(table, logic_in_turns, work):

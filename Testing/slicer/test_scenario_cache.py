@@ -9,7 +9,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.scenario.library import list_folder, user_library
 from rastrainer.scenario.writer import new_folder, write_scenario
-from rastrainer.sections.scenario_cache import ScenarioCache
+from rastrainer.sections.scenario_files import ScenarioCache
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
 
 
@@ -38,7 +38,7 @@ def test_listing_reads_only_the_scenarios_whose_files_have_changed(tmp_path, mon
         read.append(folder.name)
         return list_folder(folder)
 
-    monkeypatch.setattr("rastrainer.sections.scenario_cache.list_folder", watched)
+    monkeypatch.setattr("rastrainer.sections.scenario_files.list_folder", watched)
     for name in ("ball", "egg"):
         build(tmp_path / name, name.title())
     cache = ScenarioCache(tmp_path)

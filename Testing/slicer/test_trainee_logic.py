@@ -1,7 +1,6 @@
 """Trainees are created, archived, exported and deleted; their history is a table and a plot."""
 
 import csv
-import json
 import uuid
 from dataclasses import replace
 
@@ -25,8 +24,7 @@ from rastrainer.slicer.scene.score_tables import (
 )
 from rastrainer.slicer.scene.tables import showCalibration, showHistory, showLearningCurve
 from rastrainer.study.database.study import Study
-from rastrainer.study.tidy_csv import write_histories, write_history
-from rastrainer.study.trainee_data import export_trainee
+from rastrainer.study.tidy_csv import write_histories
 from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.ctps import CTPS_WARNING, Trial
 from rastrainer.trial.scoring import score_trial
@@ -109,14 +107,6 @@ def test_a_trainee_deleted_by_another_slicer_is_no_longer_chosen(logic, tmp_path
         other.delete_trainee("a")
     assert logic.chosenTrainee() is None
     assert logic.history() == ()
-
-
-def test_one_trainee_is_exported_as_json_and_as_a_table(logic, add_trial, tmp_path):
-    add_trial(1, trainee="a")
-    logic.choose("a")
-    assert export_trainee(logic.study, "a", tmp_path / "a.json") == 1
-    assert json.loads((tmp_path / "a.json").read_text())["trainee"]["pseudonym"] == "a"
-    assert write_history(logic.study, ["a"], tmp_path / "a.csv") == 1
 
 
 def test_a_table_of_everyone_has_only_those_who_consented_to_research(logic, add_trial, tmp_path):

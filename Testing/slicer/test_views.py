@@ -9,6 +9,12 @@ from rastrainer.sections.views import LEAST_MOVE_MM, PERIOD_S, SliceFollower, ju
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, prepareNodes
 from rastrainer.slicer.scene.scenario_nodes import showTask
 from rastrainer.slicer.scene.trial_scene import showPlannedPlace
+from rastrainer.slicer.settings import (
+    SLICES_FOLLOW_TOOL,
+    SLICES_LIE_ALONG,
+    SLICES_SHOW_NEXT_POINT,
+    Settings,
+)
 from Testing.slicer.head.placed import vtk_matrix
 
 TRANSFORM = "vtkMRMLLinearTransformNode"
@@ -18,7 +24,7 @@ UP = np.array([0.0, 0.0, 20.0])
 
 @pytest.fixture
 def follower(room):
-    return SliceFollower(room.scene, room.logic, lambda: room.now)
+    return SliceFollower(room.scene, room.logic, Settings(), lambda: room.now)
 
 
 def place(scene):
@@ -83,10 +89,10 @@ def test_the_first_point_of_another_task_is_shown_once_its_fiducials_are(room, f
 
 def test_the_slices_stay_where_they_are_on_request_or_without_a_trial(room, follower):
     jumpTo(room.scene, (1.0, 2.0, 3.0))
-    follower.showsNextPoint = False
+    follower.settings.set(SLICES_SHOW_NEXT_POINT, False)
     play(room, follower, "1")
     np.testing.assert_allclose(place(room.scene), [1, 2, 3])
-    follower.showsNextPoint = True
+    follower.settings.set(SLICES_SHOW_NEXT_POINT, True)
     room.tell(phase="idle", nextPoint="1")
     room.run_until(lambda: room.logic.status.phase == "idle")
     follower.process()
@@ -111,11 +117,11 @@ def test_the_tool_tip_is_where_the_registration_places_it_on_the_head(room, scen
 def test_the_slices_follow_the_tool_instead_of_the_next_point(room, follower, scenario):
     stand(room, scenario)
     put_tool(room.scene, TIP)
-    follower.followsTool = True
+    follower.settings.set(SLICES_FOLLOW_TOOL, True)
     play(room, follower, "1")
     on_head = pose_of_tool(room)[:3, 3]
     np.testing.assert_allclose(place(room.scene), on_head, atol=1e-3)
-    follower.followsTool = False
+    follower.settings.set(SLICES_FOLLOW_TOOL, False)
     follower.process()
     np.testing.assert_allclose(place(room.scene), scenario.task("task-1").fiducials[0], atol=1e-3)
 
@@ -123,7 +129,7 @@ def test_the_slices_follow_the_tool_instead_of_the_next_point(room, follower, sc
 def test_following_is_rate_limited_and_needs_motion(room, follower, scenario):
     stand(room, scenario)
     put_tool(room.scene, TIP)
-    follower.followsTool = True
+    follower.settings.set(SLICES_FOLLOW_TOOL, True)
     follower.process()
     first = place(room.scene)
     put_tool(room.scene, TIP + UP)
@@ -140,7 +146,7 @@ def test_following_is_rate_limited_and_needs_motion(room, follower, scenario):
 
 def test_the_views_jump_one_in_a_turn_but_follow_the_tool_at_once(room, scenario):
     turns, scene = [], room.scene
-    follower = SliceFollower(scene, room.logic, lambda: room.now, turns.append)
+    follower = SliceFollower(scene, room.logic, Settings(), lambda: room.now, turns.append)
     follower.show((10.0, 20.0, 30.0))
     for moved in range(1, 4):
         turns.pop(0)()
@@ -148,7 +154,7 @@ def test_the_views_jump_one_in_a_turn_but_follow_the_tool_at_once(room, scenario
     assert turns == []
     stand(room, scenario)
     put_tool(scene, TIP)
-    follower.followsTool = True
+    follower.settings.set(SLICES_FOLLOW_TOOL, True)
     room.now += PERIOD_S
     follower.process()
     tip = poseOnHead(scene, DeviceName.TOOL_TIP_TO_WORLD)[:3, 3]
@@ -175,7 +181,7 @@ def test_a_scene_cleared_and_shown_again_at_once_gets_its_next_point(room, follo
 
 
 def test_in_a_cleared_scene_the_slices_go_to_a_stationary_tool(room, follower, scenario):
-    follower.followsTool = True
+    follower.settings.set(SLICES_FOLLOW_TOOL, True)
     stand(room, scenario)
     put_tool(room.scene, TIP)
     follower.process()
@@ -233,7 +239,7 @@ def test_the_slices_align_with_drill_and_instrument_and_are_then_restored(room, 
 def test_views_do_not_align_with_the_instrument_unless_wanted(room, follower, scenario):
     stand(room, scenario)
     put_instrument(room.scene, TIP, np.array([0.0, 0.0, -1.0]))
-    follower.liesAlong = False
+    follower.settings.set(SLICES_LIE_ALONG, False)
     before = axes_of(room.scene, "Red")
     room.tell(phase="inserting")
     room.run_until(lambda: room.logic.status.phase == "inserting")

@@ -27,7 +27,7 @@ def base(segments: int) -> dict[str, trimesh.Trimesh]:
         [moved(part, turn_z_deg=angle) for angle in LUG_ANGLES] for part in (pocket, bolt)
     )
     recess = _plate(PANEL_X - 1.0, PANEL_X + 1.5, 0.0)
-    # The panel's connectors: three large and two small round ones, and a flat one.
+    # The panel's connectors: five round, three large and two small, and a flat connector.
     places = [(y, 38.0, 11.0) for y in (-27.0, 0.0, 27.0)] + [
         (y, 112.0, 8.0) for y in (-17.0, 17.0)
     ]

@@ -9,8 +9,8 @@ from solids import Station
 
 ARM_RADIUS = 68.0
 
-# From the pan joint's round end up the bend to the tilt joint's face: links 1 and 3; turned over,
-# also links 2 and 4.
+# The arm from the pan joint's round end up the bend to the tilt joint's face: links 1 and 3; turned
+# over, also links 2 and 4.
 ARM = (
     Station((66.5, -164.0), (-70.5, -164.0), 66.0, 0.54, 1.95, 1.95),
     Station((61.0, -147.0), (-74.5, -147.0), 63.0, 0.54, 1.90, 2.00),

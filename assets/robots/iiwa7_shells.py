@@ -60,7 +60,7 @@ def plain_shells(rings: int, segments: int) -> dict[int, trimesh.Trimesh]:
 
 
 def _shell(link: int, rings: int, segments: int, enclosing: bool = False) -> trimesh.Trimesh:
-    """Return the shell of link 1 to 6 about its tilt joint; those of 2 and 4 are turned over."""
+    """Return the shell of link 1 to 6 about its tilt joint; links 2 and 4 are turned over."""
     stations = {5: WRIST, 6: HAND}.get(link)
     if stations is None:
         end = Station((ARM_RADIUS, ARM_ENDS[link]), (-ARM_RADIUS, ARM_ENDS[link]), ARM_RADIUS)
@@ -96,7 +96,7 @@ def _covered(
     offset = float(normal @ (0.0, y0, z0))
     low, high = offset - SEAM_GAP / 2, offset + SEAM_GAP / 2
     behind, before = trim(shell, -normal, -low), trim(shell, normal, high)
-    # Between the two a recessed seam.
+    # A recessed seam separates the two.
     slab = trim(trim(shell, normal, low), -normal, -high).vertices
     across = slab - np.outer(slab @ normal, normal)
     spokes = across - across.mean(axis=0)

@@ -20,7 +20,7 @@ HEADER = "<!-- KUKA LBR iiwa 7 R800 with a pointer tool. Written by make_iiwa7.p
 
 @dataclass(frozen=True)
 class LinkBody:
-    """What a link is made of: mesh files (relative to the URDF), mass and its distribution.
+    """The parts of a link: mesh files (relative to the URDF), mass and its distribution.
 
     `visuals` pairs a mesh file with a color's name. `center_of_mass` is in meters in the link's
     frame; `inertia` is (xx, xy, xz, yy, yz, zz) in kg·m² about the center of mass.

@@ -44,7 +44,7 @@ MESH_DECIMALS = 6
 
 
 def main() -> None:
-    """Write `iiwa7.urdf`, `meshes` and `prepared.json` into a folder, in place of older ones."""
+    """Write `iiwa7.urdf`, `meshes` and `prepared.json` into a folder, in place of older files."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--output", type=Path, default=Path(__file__).parent / "iiwa7")
     folder = parser.parse_args().output
@@ -118,7 +118,7 @@ def model_json(bodies: Mapping[str, LinkBody], tip_file: str) -> dict[str, Any]:
 
 
 def shifted(x: float, y: float, z: float) -> np.ndarray:
-    """Return a frame (4, 4) that is parallel to the one before, m."""
+    """Return a frame (4, 4) that is parallel to the frame before, m."""
     pose = np.eye(4)
     pose[:3, 3] = x, y, z
     return pose

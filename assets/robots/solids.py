@@ -43,7 +43,7 @@ def difference(solid: trimesh.Trimesh, *tools: trimesh.Trimesh) -> trimesh.Trime
 
 
 def trim(solid: trimesh.Trimesh, normal: Sequence[float], offset: float) -> trimesh.Trimesh:
-    """Keep what lies on the side of a plane that its unit `normal` points to, and close the cut.
+    """Keep the part on the side of a plane that its unit `normal` points to, and close the cut.
 
     The plane holds the points p with normal · p = offset.
     """
@@ -89,10 +89,10 @@ def loft(
 ) -> trimesh.Trimesh:
     """Return a closed shell through `stations`, its two flat ends chamfered; in mm.
 
-    The corners of each section lie on its outline; those of an `enclosing` shell lie so far outside
-    that its sides touch the outline.
+    The corners of each section lie on its outline; the corners of an `enclosing` shell lie so far
+    outside that its sides touch the outline.
 
-    Between the stations every number of a section follows a monotone cubic, so that the shell
+    Every number of a section follows a monotone cubic between the stations, so that the shell
     neither overshoots nor kinks. Rings are spread evenly over the mean of both outlines' lengths.
     """
     rows = np.array([np.hstack(astuple(station)) for station in stations])

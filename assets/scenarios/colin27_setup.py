@@ -19,7 +19,7 @@ CLOSE_UP_MM = np.array([480.0, -600.0, 440.0])
 """The eye of the default view, in World."""
 
 WINDOW, LEVEL = 188.0, 94.0
-"""Of the volume's values, as make_colin27.py determines them."""
+"""The display range of the volume's values, as make_colin27.py determines it."""
 
 LANDMARKS = {
     "Nasion": (1.0, 84.4, -40.0),

@@ -3,8 +3,8 @@
     python assets/scenarios/make_colin27.py            writes head, skull and volume of colin27
     python assets/scenarios/make_colin27.py --check    only compares with the committed files
 
-The same MRI gives the same bytes with the library versions of requirements/base.lock. Of the volume
-the voxels are compared, since other versions of zlib pack the same voxels otherwise.
+The same MRI gives the same bytes with the library versions of requirements/base.lock. The volumes'
+voxels are compared, since other versions of zlib pack the same voxels otherwise.
 """
 
 import argparse

@@ -19,14 +19,9 @@ from colin27_setup import write_table
 
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import write_json
-from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
+from rastrainer.head.mesh import HeadMesh, mesh_crossings, read_head_mesh, write_head_mesh
 from rastrainer.procedure.checks import distances_to_no_go, planned_bone
-from rastrainer.procedure.geometry import (
-    axis_distance_mm,
-    mesh_crossings,
-    segment_distances_mm,
-    skull_angle_deg,
-)
+from rastrainer.procedure.geometry import axis_distance_mm, segment_distances_mm, skull_angle_deg
 from rastrainer.procedure.plan import (
     Checkpoint,
     NoGoStructure,
@@ -110,7 +105,7 @@ DIRECTIONS = {
     "Left parietal": (-0.8, -0.45, 0.7),
     "Occiput": (0.0, -1.0, 0.25),
 }
-"""In which checkpoints are looked for, from the head's center."""
+"""Checkpoints are sought in these directions from the head's center."""
 
 CANDIDATES = 4000
 STEEPEST_COST, AWAY_COST, LENGTH_COST = 1.0, 1.0, 0.15

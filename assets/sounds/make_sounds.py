@@ -27,7 +27,7 @@ class Note:
     Attributes:
         timbre: partials as (multiple of the pitch, strength, share of the length).
         is_struck: whether it dies away from its start on; else it is held.
-        strength: loudness beside the other notes.
+        strength: loudness, relative to the other notes.
     """
 
     pitch: float

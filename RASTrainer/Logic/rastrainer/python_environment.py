@@ -26,26 +26,14 @@ LEVEL = "APPLAUNCHER_LEVEL"
 SAVED = "APPLAUNCHER_0_"
 """Before the name of a variable: its value before the first launcher."""
 HOME = "SLICER_HOME"
-SEARCHED = {
-    "LD_LIBRARY_PATH": "shared libraries, on Linux",
-    "DYLD_LIBRARY_PATH": "shared libraries, on macOS",
-    "DYLD_FRAMEWORK_PATH": "shared libraries, on macOS",
-    "LibraryPaths": "shared libraries, on Windows",
-    "PYTHONPATH": "packages of Python",
-    "PYTHONHOME": "the standard library of Python",
-    "PYTHONNOUSERSITE": "whether the user's own packages count",
-    "PYTHONUTF8": "how Python reads text",
-    "QT_PLUGIN_PATH": "plugins of Qt",
-    "QT_QPA_PLATFORM_PLUGIN_PATH": "plugins of Qt",
-    "QML_IMPORT_PATH": "plugins of Qt",
-    "QML2_IMPORT_PATH": "plugins of Qt",
-    "QTWEBENGINE_DISABLE_SANDBOX": "how Qt shows pages",
-    "ITK_AUTOLOAD_PATH": "plugins of ITK",
-    "SSL_CERT_FILE": "certificates, which Slicer brings along",
-    "PIP_REQUIRE_VIRTUALENV": "how pip behaves",
-    HOME: "Slicer itself",
-}
-"""The variables that Slicer's launchers set, and their use."""
+SEARCHED = (
+    *("LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "DYLD_FRAMEWORK_PATH", "LibraryPaths"),
+    *("PYTHONPATH", "PYTHONHOME", "PYTHONNOUSERSITE", "PYTHONUTF8"),
+    *("QT_PLUGIN_PATH", "QT_QPA_PLATFORM_PLUGIN_PATH", "QML_IMPORT_PATH", "QML2_IMPORT_PATH"),
+    *("QTWEBENGINE_DISABLE_SANDBOX", "ITK_AUTOLOAD_PATH", "SSL_CERT_FILE"),
+    *("PIP_REQUIRE_VIRTUALENV", HOME),
+)
+"""The variables that Slicer's launchers set."""
 
 
 def clean_environment(environment: Mapping[str, str]) -> dict[str, str]:

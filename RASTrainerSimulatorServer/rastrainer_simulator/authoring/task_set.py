@@ -20,8 +20,7 @@ from rastrainer_simulator.authoring.task_proposal import (
     places_seen_from,
 )
 from rastrainer_simulator.authoring.touch_order import shortest_path_mm
-from rastrainer_simulator.scene.skin import Skin
-from rastrainer_simulator.scene.skin_marks import place_marks
+from rastrainer_simulator.scene.skin_marks import Skin, place_marks
 
 ABOVE_BASE_MM = 25.0
 SMOOTH_WITHIN_MM = 12.0

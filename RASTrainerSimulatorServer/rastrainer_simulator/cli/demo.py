@@ -42,7 +42,7 @@ PROCEDURES = {"task-1": "dbs"}
 TRAINEE = "virtual-01"
 TOUCHES, FIDUCIALS = "touches.csv", "fiducials.csv"
 BAR_WIDTH = 30
-SLICER_TIMEOUT_S = 60.0
+SLICER_TIMEOUT_S = 600.0
 
 
 def play_demo(arguments: argparse.Namespace) -> int:

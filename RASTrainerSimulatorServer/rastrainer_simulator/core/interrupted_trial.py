@@ -64,7 +64,7 @@ def seed_of(header: JournalHeader) -> int:
     if header.seed is None:
         raise InputError(
             "The journal of a trial that was not ended does not tell where the head was: keep the "
-            f"file of the same name with the ending {SEED_SUFFIX} next to it."
+            f"file of the same name with the ending {SEED_SUFFIX} beside it."
         )
     return header.seed
 
@@ -120,7 +120,7 @@ _EFFECTS: Mapping[str, frozenset[str]] = {
 
 @dataclass(frozen=True)
 class InterruptedTrial:
-    """Where a trial is to be resumed, by what was recorded last.
+    """The point at which a trial resumes, by its last records.
 
     `steps` are the commands that were carried out, each with its moment; the last one pauses.
     `q` are joint angles in rad, None before the first sample.

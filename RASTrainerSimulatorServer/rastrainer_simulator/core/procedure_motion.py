@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.head.mesh import HeadMesh, mesh_crossings, read_head_mesh
 from rastrainer.journal.entries import FeedChange
 from rastrainer.procedure.checks import planned_bone
-from rastrainer.procedure.geometry import BoneAhead, bone_ahead, mesh_crossings
+from rastrainer.procedure.geometry import BoneAhead, bone_ahead
 from rastrainer.protocol import Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.touch_planner import PlanReach
@@ -107,16 +107,16 @@ class ProcedureMotion:
         if phase not in FEED_PHASES:
             return NOT_FED
         before = self.feed
-        way = self.drive.way(dt, phase, operator_input)
-        if way.distance == 0.0:
+        way, is_by_stick = self.drive.way(dt, phase, operator_input)
+        if way == 0.0:
             return NOT_FED
-        self.feed = before.moved(phase, way.distance)
+        self.feed = before.moved(phase, way)
         layer = self.feed.layer(phase)
         has_moved = self.feed.depth != before.depth
         if layer is before.layer(phase):
-            return Fed(has_moved, way.is_by_stick)
+            return Fed(has_moved, is_by_stick)
         entry = FeedChange(phase, layer.value, MM_PER_M * self.feed.depth)
-        return Fed(has_moved, way.is_by_stick, (Event(sim_time, entry),))
+        return Fed(has_moved, is_by_stick, (Event(sim_time, entry),))
 
     def way(
         self, guide: GuideAxis, procedure: ProcedureState | None, stand_off_mm: float

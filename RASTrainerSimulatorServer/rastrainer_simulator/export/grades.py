@@ -8,8 +8,6 @@ from rastrainer.protocol import RegistrationMethod
 from rastrainer.study.tidy_csv import csv_text
 from rastrainer.trial.trial_feedback import PastTrial
 
-PLATFORMS = ("moodle", "canvas")
-RULES = ("best", "latest")
 GRADE_COLUMN = "RASTrainer"
 FULL_GRADE = 100
 CANVAS_COLUMNS = ("Student", "ID", "SIS User ID", "SIS Login ID", "Section", GRADE_COLUMN)
@@ -43,7 +41,7 @@ def grade(
 
 
 def grades_csv(grades: Mapping[str, float], platform: str) -> str:
-    """Return grades by pseudonym as a file for one of `PLATFORMS`."""
+    """Return grades by pseudonym as a file for "moodle" or "canvas"."""
     rows = [(name, f"{score:.2f}") for name, score in sorted(grades.items())]
     if platform == "moodle":
         return csv_text(("ID number", GRADE_COLUMN), rows)

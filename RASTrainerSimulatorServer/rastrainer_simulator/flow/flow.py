@@ -278,9 +278,9 @@ class Flow:
             if training.task == TRIAL_RUN and learned is not None:
                 self._control_loop.note_display(learned)
             session.view.begin(session.control_loop.setup, truth, session.state)
-            session.places.forget()
-            if training.trace is not None and guidance is not Guidance.NONE:
-                session.places.begin(training.trial_id, session.control_loop.setup, truth)
+            is_led = training.trace is not None and guidance is not Guidance.NONE
+            traced = training.trial_id, session.control_loop.setup, truth
+            session.places.begin(traced if is_led else None)
             begin_ghost(session, truth.head_to_world)
             session.trainee = training.trainee
             session.mode = training.mode

@@ -45,8 +45,11 @@ class TutorialScreen(ArmScreen):
     def __init__(self, session: TrainingSession, arm: ArmEvents) -> None:
         super().__init__(session, arm)
         self._seen: Tutorial | None = None
-        self._homing: Homing | None = None
         self._has_paused = False
+        # Where the tip still has to go on its way to the start, World, m.
+        self._way: list[Vector] = []
+        self._is_commanded = False
+        self._left_s = 0.0
 
     @property
     def _tutorial(self) -> Tutorial:
@@ -76,13 +79,15 @@ class TutorialScreen(ArmScreen):
     def advance(self, dt: float) -> None:
         session, tutorial = self._session, self._tutorial
         if tutorial is not self._seen:
-            self._seen, self._has_paused = tutorial, False
-            homing = Homing(session)
-            self._homing = homing if homing.way else None
-        if self._homing is not None:
-            self._homing.advance(dt)
-            if not self._homing.way:
-                self._homing = None
+            self._seen, self._has_paused, self._is_commanded = tutorial, False, False
+            start_height = session.control_loop.setup.settings.start_height
+            tip, goal = session.tip, start_tip(session.scenario, start_height)
+            high = max(tip[2], goal[2])
+            is_near = distance(tip, goal) < NEAR_M
+            self._way = [] if is_near else [(*tip[:2], high), (*goal[:2], high), goal]
+            self._left_s = LONGEST_S
+        if self._way:
+            self._move_to_start(dt)
             return
         tutorial.use(session.operator.learned(session.mode))
         tutorial.practice.training.end_refusal(session.state.sim_time)
@@ -106,6 +111,21 @@ class TutorialScreen(ArmScreen):
             if not is_heard_anyway:
                 session.happened(FeedbackEvent.STEP)
 
+    def _move_to_start(self, dt: float) -> None:
+        """Move the tip up, then across, and down to the start; using the sticks ends it."""
+        session = self._session
+        self._left_s -= dt
+        is_taken_over = max(map(abs, session.controls.held.translation)) > TAKEN_OVER
+        if self._left_s < 0.0 or is_taken_over:
+            self._way.clear()
+        while self._way and distance(session.tip, self._way[0]) < NEAR_M / 4.0:
+            del self._way[0]
+            self._is_commanded = False
+        if self._way and not self._is_commanded:
+            self._is_commanded = True
+            place = [MM_PER_M * value for value in self._way[0]]
+            session.do(CommandName.MOVE_TIP_TO, {"positionMm": place, "speedMmS": SPEED_MM_S})
+
     def pressed(self, control: ControlName) -> None:
         session, tutorial = self._session, self._tutorial
         if control is ControlName.CAMERA:
@@ -126,7 +146,7 @@ class TutorialScreen(ArmScreen):
     def _instruction(self) -> ScreenMessage:
         session, tutorial = self._session, self._tutorial
         say = session.texts.say
-        if self._homing is not None:
+        if self._way:
             return ScreenMessage(say("tutorial.homing"))
         if self._is_refused:
             sentence = session.texts.again(tutorial.practice.training.state.instruction)
@@ -222,36 +242,3 @@ class TutorialScreen(ArmScreen):
 def _banner(error_mm: float) -> Tone:
     """Return the tone of a sentence about a touch: a mediocre one is no alarm."""
     return Tone.GOOD if error_tone(error_mm) is Tone.GOOD else Tone.WARNING
-
-
-class Homing:
-    """Moves the tip up, then across, and down to the start; using the sticks ends it.
-
-    Attributes:
-        way: where the tip still has to go, World, m; empty once it has arrived or was taken over.
-    """
-
-    def __init__(self, session: TrainingSession) -> None:
-        self._session = session
-        goal = start_tip(session.scenario, session.control_loop.setup.settings.start_height)
-        tip = session.tip
-        high = max(tip[2], goal[2])
-        self.way: list[Vector] = [(*tip[:2], high), (*goal[:2], high), goal]
-        self._is_commanded = False
-        self._left_s = LONGEST_S
-        if distance(tip, goal) < NEAR_M:
-            self.way.clear()
-
-    def advance(self, dt: float) -> None:
-        session = self._session
-        self._left_s -= dt
-        is_taken_over = max(map(abs, session.controls.held.translation)) > TAKEN_OVER
-        if self._left_s < 0.0 or is_taken_over:
-            self.way.clear()
-        while self.way and distance(session.tip, self.way[0]) < NEAR_M / 4.0:
-            del self.way[0]
-            self._is_commanded = False
-        if self.way and not self._is_commanded:
-            self._is_commanded = True
-            place = [MM_PER_M * value for value in self.way[0]]
-            session.do(CommandName.MOVE_TIP_TO, {"positionMm": place, "speedMmS": SPEED_MM_S})

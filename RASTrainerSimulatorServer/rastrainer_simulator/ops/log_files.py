@@ -34,7 +34,7 @@ _OURS = ("rastrainer", "rastrainer_simulator")
 _log = logging.getLogger(__name__)
 _crashes = logging.getLogger("rastrainer.crash")
 LONGEST_MESSAGE = 8000
-"""Most characters of a message or a traceback; longer ones are cut."""
+"""Most characters of a message or a traceback; the rest is cut."""
 MAX_WAITING = 1000
 CLOSE_TIMEOUT_S = 1.0
 
@@ -145,8 +145,8 @@ class BackgroundHandler(logging.Handler):
     A pipe whose reader has stopped, a terminal in which text is being selected and a disk that is
     asleep all make a write wait, and a waiting server answers no one. Records that the other
     handler cannot take in time are lost; a line in their place says how many. The standard
-    library's QueueHandler and QueueListener neither count what they lose nor give up when the
-    program ends, and they drop tracebacks.
+    library's QueueHandler and QueueListener neither count lost records nor give up when the program
+    ends, and they drop tracebacks.
     """
 
     def __init__(self, handler: logging.Handler) -> None:

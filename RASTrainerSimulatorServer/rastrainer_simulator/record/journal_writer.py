@@ -44,14 +44,14 @@ class RecordError(RASTrainerError):
 class Journal:
     """One trial's journal file.
 
-    Entries that could not be written are kept and written with the next ones, in order: nothing is
+    Entries that could not be written are kept, and written in order with later entries: nothing is
     lost while the program runs, and the chain has no gap. Not safe for several threads.
     """
 
     def __init__(self, path: Path, seed: int | None = None) -> None:
         """Prepare a new file, which the first `write` creates and never overwrites.
 
-        The seed of the head's pose is kept beside it until an entry reveals it.
+        A file next to it keeps the seed of the head's pose until an entry reveals the seed.
         """
         self.path = path
         self._seed = seed
@@ -67,7 +67,7 @@ class Journal:
     def reopened(cls, reading: JournalReading) -> Journal:
         """Return the journal of an existing file that was not altered, to append to it.
 
-        What follows its last complete line was never acknowledged: the first `write` removes it.
+        The first `write` removes an incomplete last line, which was never acknowledged.
         """
         journal = cls(reading.path)
         journal._is_new = False

@@ -59,24 +59,28 @@ _AFTER_THE_TRIAL = frozenset(
 
 @dataclass(frozen=True)
 class ArchivedTrial:
-    """A registered trial; its truth and seed are revealed with the registration.
+    """A registered or aborted trial.
 
-    `registration` and `scored` are the arguments of SubmitRegistration and TrialScored; None before
-    those.
+    Attributes:
+        truth: revealed with the registration, like the seed; None of an aborted trial, for which
+            they are never revealed.
+        registration: the arguments of SubmitRegistration, None before.
+        scored: the arguments of TrialScored, None before.
     """
 
-    record: TrialRecord
-    truth: Truth
-    seed: int
+    record: TrialRecord | AbortedTrial
+    truth: Truth | None = None
+    seed: int | None = None
     registration: Mapping[str, Any] | None = None
     scored: Mapping[str, Any] | None = None
     acknowledged: bool = False
 
     def summary(self) -> dict[str, Any]:
         """Return the data of GetTrial: with the truth if a registration was submitted."""
+        phase = "registered" if self.scored is None else "scored"
         data: dict[str, Any] = {
             "trialId": self.record.trial_id,
-            "phase": "registered" if self.scored is None else "scored",
+            "phase": "aborted" if self.truth is None else phase,
             "record": record_to_json(self.record),
             "acknowledged": self.acknowledged,
         }
@@ -86,10 +90,10 @@ class ArchivedTrial:
 
     def revealed(self) -> dict[str, Any]:
         """Return the data that SubmitRegistration reveals."""
-        if self.registration is None:
+        if self.registration is None or self.truth is None:
             raise InputError("No registration of the trial was submitted.")
         matrix = np.array(self.registration["matrix"], dtype=np.float64).reshape(4, 4)
-        touches = zip(self.record.labels, self.record.positions_mm, strict=True)
+        touches = ((point.label, point.position_mm) for point in self.record.points)
         return self.truth.revealed(matrix, touches)
 
     def after(
@@ -111,23 +115,6 @@ class ArchivedTrial:
             if self.scored != arguments:
                 return Scored, replace(self, scored=arguments)
         return None, self
-
-
-@dataclass(frozen=True)
-class ArchivedAttempt:
-    """An aborted trial, and whether a client has acknowledged its record."""
-
-    record: AbortedTrial
-    acknowledged: bool = False
-
-    def summary(self) -> dict[str, Any]:
-        """Return the data of GetTrial; the head's pose in an aborted trial is never revealed."""
-        return {
-            "trialId": self.record.trial_id,
-            "phase": "aborted",
-            "record": record_to_json(self.record),
-            "acknowledged": self.acknowledged,
-        }
 
 
 def interrupted_attempt(reading: JournalReading) -> AbortedTrial | None:
@@ -158,7 +145,7 @@ def _aborted(header: JournalHeader, lines: tuple[Line, ...]) -> AbortedTrial:
     )
     phases = [line.entry.phase for line in lines if isinstance(line.entry, PhaseChange | Continued)]
     stage = next((phase for phase in reversed(phases) if phase is not Phase.PAUSED), None)
-    # A procedure that is paused is aborted in what it was paused in.
+    # A paused procedure is aborted in the phase before the pause.
     phase = stage if stage in PROCEDURE_PHASES else phases[-1]
     if phase is Phase.COMPLETE:
         elapsed_s = trajectory.intended[-1].time_s
@@ -201,26 +188,26 @@ class TrialArchive:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._kept: dict[str, tuple[ArchivedTrial | ArchivedAttempt, Journal]] = {}
+        self._kept: dict[str, tuple[ArchivedTrial, Journal]] = {}
         self.problems: list[str] = []
         self.arrivals = 0
         for path in find_unacknowledged(folder):
             self._load(path)
 
     def unacknowledged(self) -> tuple[AbortedTrial | TrialRecord, ...]:
-        """Return the records that no client has acknowledged: aborted trials, then finished ones.
+        """Return the records that no client has acknowledged: aborted trials, then finished trials.
 
-        Of each kind the oldest come first.
+        The oldest of each kind come first.
         """
         waiting = [trial for trial, _ in list(self._kept.values()) if not trial.acknowledged]
-        waiting.sort(key=lambda trial: isinstance(trial, ArchivedTrial))
+        waiting.sort(key=lambda trial: trial.truth is not None)
         return tuple(trial.record for trial in waiting)
 
     def was_played(self, seed: int) -> bool:
         revealed = f'"seed":{seed},'.encode()
         return any(revealed in _end(path) for path in self._folder.glob(f"*{SUFFIX}"))
 
-    def add(self, trial: ArchivedTrial | ArchivedAttempt, journal: Journal) -> None:
+    def add(self, trial: ArchivedTrial, journal: Journal) -> None:
         self._kept[trial.record.trial_id] = trial, journal
         self.arrivals += 1
 
@@ -241,7 +228,7 @@ class TrialArchive:
         except RASTrainerError as error:
             self.problems.append(str(error))
         else:
-            self.add(ArchivedAttempt(record), journal)
+            self.add(ArchivedTrial(record), journal)
 
     def answer(
         self, command: str, arguments: Mapping[str, Any], at: Stamp, sender: str = ""
@@ -261,7 +248,7 @@ class TrialArchive:
             if not trial.acknowledged:
                 journal.append(at, Acknowledged(sender))
                 trial = replace(trial, acknowledged=True)
-        elif isinstance(trial, ArchivedTrial):
+        elif trial.truth is not None:
             kind, changed = trial.after(command, arguments)
             if kind is not None:
                 journal.append(at, kind(sender, arguments))
@@ -269,16 +256,16 @@ class TrialArchive:
         elif command != CommandName.GET_TRIAL:
             raise InputError(f"The trial {trial_id} was aborted; it has no score.")
         # A trial is kept in memory until nothing more is expected.
-        is_scored = isinstance(trial, ArchivedAttempt) or trial.scored is not None
+        is_scored = trial.truth is None or trial.scored is not None
         if trial.acknowledged and is_scored:
             del self._kept[trial_id]
         else:
             self._kept[trial_id] = trial, journal
         if command == CommandName.GET_TRIAL:
             return trial.summary()
-        if isinstance(trial, ArchivedTrial) and command == CommandName.GET_JOURNAL:
+        if command == CommandName.GET_JOURNAL:
             return self._journal_piece(trial, arguments["start"])
-        if isinstance(trial, ArchivedTrial) and command == CommandName.SUBMIT_REGISTRATION:
+        if command == CommandName.SUBMIT_REGISTRATION:
             return {"trialId": trial_id, **trial.revealed()}
         return {"trialId": trial_id}
 
@@ -296,7 +283,7 @@ class TrialArchive:
             raise InputError(f"{path.name} cannot be read: {error.strerror}.") from None
         return {"text": piece.decode("ascii"), "next": start + len(piece) if is_more else None}
 
-    def _found(self, trial_id: str) -> tuple[ArchivedTrial | ArchivedAttempt, Journal]:
+    def _found(self, trial_id: str) -> tuple[ArchivedTrial, Journal]:
         if trial_id not in self._kept:
             for path in journals_of(self._folder, trial_id):
                 self._load(path)
@@ -307,11 +294,7 @@ class TrialArchive:
     def _load(self, path: Path) -> None:
         try:
             reading = read_journal(path)
-            trial: ArchivedTrial | ArchivedAttempt | None = archived_trial(reading)
-            aborted = reading.of_kind("attempt")
-            if trial is None and aborted:
-                record = record_from_json(AbortedTrial, aborted[-1].get("record"))
-                trial = ArchivedAttempt(record, bool(reading.of_kind("acknowledged")))
+            trial = archived_trial(reading)
         except InputError as error:
             self.problems.append(str(error))
         else:
@@ -320,13 +303,17 @@ class TrialArchive:
 
 
 def archived_trial(reading: JournalReading) -> ArchivedTrial | None:
-    """Return the trial of a journal, None if it was never registered."""
+    """Return the trial of a journal, None if it was neither registered nor aborted."""
     if reading.integrity is Integrity.ALTERED:
         raise InputError(f"{reading.path} is {reading.sentence}; the trial is not delivered.")
-    kinds = ("registered", "registration", "scored", "acknowledged")
-    registered, registrations, scores, acknowledged = map(reading.of_kind, kinds)
-    if not registered:
+    kinds = ("registered", "attempt", "registration", "scored")
+    registered, aborted, registrations, scores = map(reading.of_kind, kinds)
+    acknowledged = bool(reading.of_kind("acknowledged"))
+    if not registered and not aborted:
         return None
+    if not registered:
+        attempt = record_from_json(AbortedTrial, aborted[-1].get("record"))
+        return ArchivedTrial(attempt, acknowledged=acknowledged)
     try:
         values = registered[-1]
         record = record_from_json(TrialRecord, values.get("record"))
@@ -336,7 +323,7 @@ def archived_trial(reading: JournalReading) -> ArchivedTrial | None:
             seed=values["seed"],
             registration=registrations[0]["arguments"] if registrations else None,
             scored=scores[-1]["arguments"] if scores else None,
-            acknowledged=bool(acknowledged),
+            acknowledged=acknowledged,
         )
         # Check that the data of GetTrial and SubmitRegistration can be computed.
         replace(trial, registration=trial.registration or {"matrix": np.eye(4)}).summary()

@@ -199,7 +199,7 @@ class TrialEntries:
             self._append(at, self._sample(state))
         if not is_registered:
             return None
-        # Of the whole tick: the tip may have touched the head after the command in it.
+        # The record covers the whole tick: the tip may have touched the head after the command.
         record = self.records.registered(state)
         return UnmeasuredRecord(record, self._seed, self._recording.trajectory())
 
@@ -245,7 +245,7 @@ class TrialEntries:
         if command.name == CommandName.START_TASK:
             arguments["trialId"] = self.trial_id
             arguments.pop(DRAWN_SEED, None)
-            # Of a trial of touches of fiducials alone, they say nothing.
+            # They say nothing about a trial of fiducials alone.
             for later in ("procedure", "skin"):
                 if not arguments.get(later):
                     arguments.pop(later, None)

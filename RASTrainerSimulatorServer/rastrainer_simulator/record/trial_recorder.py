@@ -25,7 +25,6 @@ from rastrainer.protocol import AbortReason, Phase
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_archive import (
     SUFFIX,
-    ArchivedAttempt,
     ArchivedTrial,
     TrialArchive,
 )
@@ -240,7 +239,7 @@ class TrialRecorder:
             try:
                 journal.write_lines(lines, sync=True)
             finally:
-                self._archive.add(ArchivedAttempt(record), journal)
+                self._archive.add(ArchivedTrial(record), journal)
 
         written = Written(self._writer.submit(write), is_awaited=False)
         self._end(trial.journal.close)

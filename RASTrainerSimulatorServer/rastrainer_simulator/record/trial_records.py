@@ -51,7 +51,7 @@ if TYPE_CHECKING:
 
 
 class TrialRecords:
-    """Makes the records of a trial from its state and from what is recorded with it.
+    """Makes the records of a trial from its state and its journal.
 
     Attributes:
         dates: when a point was touched or traced, by its simulated time.
@@ -75,7 +75,7 @@ class TrialRecords:
         return AbortedTrial(
             aborted_utc=utc,
             elapsed_s=before.elapsed,
-            # A procedure that is paused is aborted in what it was paused in.
+            # A paused procedure is aborted in the phase before the pause.
             phase=(stage if stage in PROCEDURE_PHASES else training.phase).value,
             reason=reason,
             traced=0 if training.trace is None else len(training.trace.points),
@@ -132,7 +132,7 @@ class TrialRecords:
 class UnmeasuredRecord:
     """Work that the tick of Register leaves to another thread.
 
-    A long trial's motion metrics take longer than a tick. `seed` is that of the head's pose.
+    A long trial's motion metrics take longer than a tick. `seed` gives the head's pose.
     """
 
     record: TrialRecord
@@ -193,7 +193,7 @@ class _Feeding:
 
 
 class FeedRecording:
-    """Collects the samples of drill and instrument; `metrics` are those of a trajectory so far."""
+    """Collects the samples of drill and instrument; `metrics` describe a trajectory so far."""
 
     def __init__(self) -> None:
         self._trajectory = 0

@@ -99,7 +99,7 @@ def light_room(renderer: vtkRenderer, shadows: Shadows = Shadows.FULL) -> None:
 
 
 def _passes(shadows: Shadows) -> vtkRenderPass:
-    """Return the steps of a picture: shadows and what is seen through, shaded corners, edges."""
+    """Return the steps of a picture: shadows, transparent surfaces, shaded corners, edges."""
     cast = vtkShadowMapPass()
     cast.GetShadowMapBakerPass().SetResolution(shadows.value)
     steps = vtkRenderPassCollection()

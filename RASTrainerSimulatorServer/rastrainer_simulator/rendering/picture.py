@@ -51,8 +51,8 @@ def frames(
 ) -> Generator[np.ndarray]:
     """Yield a renderer's pictures, made in memory, one for each camera and size (width, height).
 
-    They are (height, width, 3) uint8, the top row first. `shots` may change what is rendered
-    before each of them. The graphics resources are freed after the last one.
+    They are (height, width, 3) uint8, the top row first. `shots` may change the scene before each
+    picture. The graphics resources are freed after the last one.
     """
     window = vtkRenderWindow()
     window.SetOffScreenRendering(True)
@@ -64,7 +64,7 @@ def frames(
         for camera, size in shots:
             vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
             window.SetSize(*size)
-            # The scenario's cameras are in mm, what is rendered in meters.
+            # The scenario's cameras are in mm, the scene in meters.
             view = renderer.GetActiveCamera()
             view.SetPosition(*(camera.position_mm / MM_PER_M))
             view.SetFocalPoint(*(camera.focal_point_mm / MM_PER_M))
@@ -192,7 +192,7 @@ def render_picture(
 ) -> None:
     """Write a PNG of a scene at one moment, in place of an older one.
 
-    `nodes` are the scene's, as `scene_nodes` gives them, and `robot` is the one among them; the
+    `nodes` are the scene's, as `scene_nodes` gives them, and `robot` is among them; the
     cameras are a scenario's; `inset` is a second view in the upper right corner; `size` is the
     picture's width and height in pixels. Software rendering takes some seconds, half as many with
     small shadows.

@@ -87,7 +87,7 @@ LEGEND = (
 LINE_MM, BALL_MM = 0.45, 1.6
 SIZE = (1600, 1000)
 AWAY_MM, ANGLE_DEG = 420.0, 26.0
-"""Of the camera from the middle of all lines, and its opening."""
+"""The camera's distance from the middle of all lines, and its view angle."""
 INSET_SHARE, INSET_ERRORS = 0.27, 5.0
 """Size of the picture of the first target in the corner; it is so many errors high."""
 LEAST_ERROR_MM = 0.2

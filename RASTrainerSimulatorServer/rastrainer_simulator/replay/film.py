@@ -51,7 +51,7 @@ def write_film(
     """Write a trial's touches as a film (VP9 in WebM), whole or not at all.
 
     The picture is the best view of the next fiducial, with the far view in its corner. `speed` is
-    in seconds of the trial per second of the film; `progress` is told the share that is done.
+    in seconds of the trial per second of the film; `progress` gets the finished share.
     """
     if path.suffix.lower() != ".webm":
         raise InputError(f"The film {path.name} must be named *.webm.")
@@ -84,7 +84,7 @@ def filmed(
 ) -> Generator[np.ndarray]:
     """Yield pictures of a trial with touches and clock, (height, width, 3) uint8.
 
-    Each picture is `1 / RATE_HZ` s after the one before for the view, which moves gently.
+    The view moves gently, as if the pictures were `1 / RATE_HZ` s apart.
     """
     import cv2
 

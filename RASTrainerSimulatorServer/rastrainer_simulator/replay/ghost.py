@@ -32,7 +32,7 @@ class Ghost:
     """
 
     def __init__(self, track: ReplayTrack, setup: SimulationSetup, head_to_world: np.ndarray):
-        """Prepare; HeadToWorld is that of the present trial, (4, 4) float, mm."""
+        """Prepare for the HeadToWorld of the present trial, (4, 4) float, mm."""
         header, touches = track.header, track.trajectory.touches
         other = setup.difference(header)
         if other in ("scenario", "robot") or not touches:
@@ -88,7 +88,7 @@ class TrialGhost:
 
         def load(check: Callable[[], None]) -> Ghost | None:
             for journal in journals:
-                # Of another head, damaged, or deleted meanwhile: try the next best.
+                # It has another head, is damaged or was deleted meanwhile: try the next best.
                 with suppress(InputError, LookupError, TypeError, ValueError, AttributeError):
                     return Ghost(read_track(journal, check), setup, head_to_world)
             return None

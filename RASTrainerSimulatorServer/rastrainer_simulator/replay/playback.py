@@ -1,4 +1,4 @@
-"""What the views show: the live arm, the tutorial's points on the head, or recorded trials."""
+"""Sources of the states that views show: the live arm, or recorded trials."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ async def play_on(advance: Callable[[float], None]) -> None:
 
 
 class PlaybackSwitch:
-    """A `StateSource` that passes on the states of another, or those of a playback.
+    """A `StateSource` that passes on the states of another source, or of a playback.
 
     The other, such as the control loop, runs on unchanged. Subscribers are called in its or the
     playback's thread.
@@ -102,7 +102,7 @@ class PlaybackSwitch:
     Attributes:
         alter: changes a state of the other before it is shown, in any thread; None shows it as it
             is.
-        playback: what is shown; None for the other source.
+        playback: the playback that is shown; None for the other source.
     """
 
     def __init__(self, source: ControlLoop | Playback) -> None:

@@ -59,7 +59,7 @@ AFTER_S = 0.25
 
 @dataclass(frozen=True)
 class _Situation:
-    """What is visible besides the arm, from one event to the next."""
+    """The visible state besides the arm, from one event to the next."""
 
     training: TrainingState
     proximity: Proximity
@@ -171,10 +171,10 @@ T = TypeVar("T")
 
 
 class JournalLoading(Generic[T]):
-    """Reads journals in a thread, beside the control loop.
+    """Reads journals in a thread while the control loop runs.
 
     Attributes:
-        loaded: what is made of them, or an `InputError` if that cannot be.
+        loaded: the result of `load`, or its `InputError`.
     """
 
     def __init__(self, load: Callable[[Callable[[], None]], T]) -> None:
@@ -213,7 +213,7 @@ def _situations(
     camera: str,
     plan: Procedure | None,
 ) -> list[_Situation]:
-    """Return the situation after each event; `plan` is that of the trial's procedure, if any."""
+    """Return the situation after each event; `plan` is the trial's procedure, if any."""
     header, method = track.header, track.header.registration_method
     training = TrainingState(
         trainee=header.trainee,
@@ -227,22 +227,20 @@ def _situations(
     situation = _Situation(training, Proximity.FREE, camera)
     situations = []
     for event in track.events:
-        situation = _after(situation, event, labels)
+        match event.entry:
+            case ProximityChange(to=proximity):
+                situation = replace(situation, proximity=proximity)
+            case CameraChange(camera=chosen):
+                situation = replace(situation, camera=chosen)
+            case _:
+                changed = _training_after(situation.training, event, labels)
+                situation = replace(situation, training=changed)
         training = situation.training
         if plan is not None and training.procedure is not None:
             procedure = procedure_after(training.procedure, event, plan)
             situation = replace(situation, training=replace(training, procedure=procedure))
         situations.append(situation)
     return situations
-
-
-def _after(before: _Situation, event: RecordedEvent, labels: tuple[str, ...]) -> _Situation:
-    match event.entry:
-        case ProximityChange(to=proximity):
-            return replace(before, proximity=proximity)
-        case CameraChange(camera=camera):
-            return replace(before, camera=camera)
-    return replace(before, training=_training_after(before.training, event, labels))
 
 
 def _training_after(

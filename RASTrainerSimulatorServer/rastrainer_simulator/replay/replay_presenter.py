@@ -1,4 +1,4 @@
-"""What the views show and accept while a recorded trial is played."""
+"""The screen and the controls of the views while a recorded trial is played."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ SLOWLY = 0.5
 
 
 class PlayerAction(str, Enum):
-    """What can be done while a trial is shown again."""
+    """Actions of a viewer of a replay."""
 
     PLAY = "play"
     BACK = "back"
@@ -52,7 +52,7 @@ ACTIONS: Mapping[ControlName, PlayerAction] = {
     ControlName.BACK: PlayerAction.END,
     ControlName.MENU: PlayerAction.END,
 }
-"""What the controls do during a replay."""
+"""The actions of the controls during a replay."""
 
 
 class Player:
@@ -119,7 +119,7 @@ _KEYS = {
     "KeyM": PlayerAction.END,
     "Escape": PlayerAction.END,
 }
-"""W3C `KeyboardEvent.code` → what it does."""
+"""W3C `KeyboardEvent.code` → action."""
 _PAD = {
     0: PlayerAction.PLAY,
     1: PlayerAction.END,
@@ -141,7 +141,7 @@ RATE = "rate"
 _PLAY, _CAMERA = (("Space",), "hint.play"), (("KeyC",), "hint.camera")
 _SEEK = ("ArrowLeft", "ArrowRight"), "hint.seek"
 _HINTS = (_PLAY, _SEEK, (("ArrowUp",), "hint.worst"), _CAMERA, (("Escape",), "hint.end"))
-"""Keys, and the text of what they do."""
+"""Keys, and the text of their action."""
 _OF_RATERS = (_PLAY, _SEEK, _CAMERA, (("Escape",), "hint.rate"))
 
 

@@ -1,10 +1,10 @@
-"""Play a trial again from its journal and compare every number with what was recorded."""
+"""Simulate a trial again from its journal and compare every number with the recorded number."""
 
 from __future__ import annotations
 
 import json
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -39,7 +39,6 @@ from rastrainer_simulator.state import (
     NEUTRAL_STICKS,
     OperatorCommand,
     OperatorInput,
-    StepResult,
 )
 
 LONGEST_TRIAL_TICKS = 10_000_000
@@ -69,23 +68,13 @@ class ReplayReport:
     motion: Mapping[str, float]
 
 
-def replay(
-    reading: JournalReading,
-    setup: SimulationSetup,
-    watch: Callable[[StepResult], None] = lambda _result: None,
-) -> ReplayReport:
+@refusing_malformed("The journal cannot be replayed: an entry is not as it should be")
+def replay(reading: JournalReading, setup: SimulationSetup) -> ReplayReport:
     """Simulate a trial again from its recorded inputs.
 
-    The computed entries are compared with the recorded ones: events, touches, 50 postures a second,
-    and the hash over the posture of every tick. `watch` is called with each simulated step.
+    The computed entries are compared with the recorded entries: events, touches, 50 postures a
+    second, and the hash over the posture of every tick.
     """
-    with refusing_malformed(f"{reading.path} cannot be replayed: an entry is not as it should be"):
-        return _replay(reading, setup, watch)
-
-
-def _replay(
-    reading: JournalReading, setup: SimulationSetup, watch: Callable[[StepResult], None]
-) -> ReplayReport:
     header = reading.header
     start = header.before
     lines = tuple(zip(reading.lines(), reading.entries, strict=True))
@@ -95,7 +84,7 @@ def _replay(
         raise InputError(f"{reading.path} has {last - start.tick} ticks: no trial is that long.")
     simulation = Simulation(setup, seed_of(header))
     simulation.restart_from(start)
-    player = _Player(simulation, header, watch)
+    player = _Player(simulation, header)
     compared: dict[str, int] = defaultdict(int)
     # Each part was written by another server: a trial may be interrupted.
     starts = [n for n, (line, _) in enumerate(lines) if isinstance(line.entry, Continued)]
@@ -128,16 +117,10 @@ def _replay(
 class _Player:
     """Simulates the parts of one trial and computes their entries."""
 
-    def __init__(
-        self,
-        simulation: Simulation,
-        header: JournalHeader,
-        watch: Callable[[StepResult], None],
-    ) -> None:
+    def __init__(self, simulation: Simulation, header: JournalHeader) -> None:
         self._simulation = simulation
         self._dt = header.tick_s
         self._seed = seed_of(header)
-        self._watch = watch
         self._entries: TrialEntries | None = None
         self.versions: Mapping[str, str] = {}
         self.motion: Mapping[str, float] = {}
@@ -160,7 +143,6 @@ class _Player:
         for operator_input in _inputs(part, first, last, self._seed):
             before = simulation.state
             result = simulation.step(dt, operator_input)
-            self._watch(result)
             if self._entries is None:
                 self._entries = TrialEntries.started(simulation, before, result, dt)
             if self._entries.add(simulation, operator_input, result) is not None:

@@ -56,8 +56,7 @@ from rastrainer_simulator.scene.nodes import (
     painted,
 )
 from rastrainer_simulator.scene.room_nodes import room_nodes, stand_node, table_node
-from rastrainer_simulator.scene.skin import Shape
-from rastrainer_simulator.scene.skin_marks import skin_marks
+from rastrainer_simulator.scene.skin_marks import Shape, skin_marks
 from rastrainer_simulator.scene.surfaces import shaded, turned
 
 

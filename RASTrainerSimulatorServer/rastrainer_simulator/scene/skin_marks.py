@@ -1,4 +1,4 @@
-"""The trainee's guides on the skin: dots, rims, numbers and arrows that follow its curve."""
+"""The trainee's guides on the head's skin: dots, rims, numbers and arrows that follow its curve."""
 
 from __future__ import annotations
 
@@ -6,21 +6,317 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import mutable, vtkIdList
+from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkStaticCellLocator, vtkStaticPointLocator
+from vtkmodules.vtkFiltersCore import vtkTriangleFilter
+from vtkmodules.vtkFiltersModeling import vtkAdaptiveSubdivisionFilter
+from vtkmodules.vtkFiltersSources import vtkDiskSource
+from vtkmodules.vtkRenderingFreeType import vtkVectorText
 
 from rastrainer.head.mesh import HeadMesh
-from rastrainer_simulator.scene.skin import (
-    DOT_RADIUS,
-    LENGTHS,
-    RIM_RADIUS,
-    Arrow,
-    Flat,
-    Shape,
-    Skin,
-    arrow_shape,
-    arrows,
-    disk,
-    number,
-)
+from rastrainer_simulator.scene.surfaces import surface, triangles_of
+
+REACH = 25.0
+PATCH_RADIUS = 10.0
+
+
+@dataclass(frozen=True)
+class Shape:
+    """Triangles (m, 3) in the head's frame, RAS mm, counterclockwise seen from outside.
+
+    `points` are (n, 3) float, and `outward` (n, 3) the unit normals of the skin below them.
+    """
+
+    points: np.ndarray
+    triangles: np.ndarray
+    outward: np.ndarray
+
+
+class Skin:
+    """A head's surface; points and lengths in mm, RAS."""
+
+    def __init__(self, head: HeadMesh) -> None:
+        self._normals = head.vertex_normals
+        shape = surface(head.vertices, head.triangles)
+        self._cells, self._points = vtkStaticCellLocator(), vtkStaticPointLocator()
+        for locator in (self._cells, self._points):
+            locator.SetDataSet(shape)
+            locator.BuildLocator()
+
+    def outward(self, point: np.ndarray) -> np.ndarray:
+        """Return the unit normal (3,) of the skin around a point, its wrinkles smoothed away."""
+        near = vtkIdList()
+        self._points.FindPointsWithinRadius(PATCH_RADIUS, point.tolist(), near)
+        around = [near.GetId(index) for index in range(near.GetNumberOfIds())]
+        normal = self._normals[around].sum(axis=0) if around else np.asarray(point, dtype=float)
+        return normal / np.linalg.norm(normal)
+
+    def frame(self, point: np.ndarray) -> np.ndarray:
+        """Return (3, 3) float: right, up and outward at a point on the skin, as rows.
+
+        Up is the patient's superior direction along the skin; at the crown, posterior.
+        """
+        outward = self.outward(point)
+        up = np.array([0.0, 0.0, 1.0]) if abs(outward[2]) < 0.9 else np.array([0.0, -1.0, 0.0])
+        up = up - (up @ outward) * outward
+        up /= np.linalg.norm(up)
+        return np.array([np.cross(up, outward), up, outward])
+
+    def onto(self, points: np.ndarray, outward: np.ndarray) -> np.ndarray:
+        """Return where lines through `points` (n, 3) along `outward` (3,) enter the skin, (n, 3).
+
+        A point whose line misses the skin is not moved.
+        """
+        placed = points.tolist()
+        hit, along, place = [0.0] * 3, mutable(0.0), [0.0] * 3
+        part, cell = mutable(0), mutable(0)
+        starts, ends = (points + REACH * outward).tolist(), (points - REACH * outward).tolist()
+        for row, (start, end) in enumerate(zip(starts, ends, strict=True)):
+            # VTK's stubs do not know `mutable`, by which Python gets numbers back.
+            if self._cells.IntersectWithLine(  # type: ignore[call-overload]
+                start, end, 1e-6, along, hit, place, part, cell
+            ):
+                placed[row] = tuple(hit)
+        return np.array(placed)
+
+    def lay(self, flat: np.ndarray, point: np.ndarray) -> np.ndarray:
+        """Project flat points (n, 2) float around a point of the skin; return (n, 3) float."""
+        frame = self.frame(point)
+        return self.onto(point + flat @ frame[:2], frame[2])
+
+    def lay_shape(self, points: np.ndarray, triangles: np.ndarray, at: np.ndarray) -> Shape:
+        """Project a flat shape, (n, 2) float points and (m, 3) int triangles, around a point."""
+        outward = self.frame(at)[2]
+        return Shape(self.lay(points, at), triangles, np.tile(outward, (len(points), 1)))
+
+
+DOT_RADIUS = 4.0
+RIM_RADIUS = 5.2
+"""Radii of a fiducial's colored disk, and of the pale ring that reaches a little under it."""
+NUMBER_HEIGHT = 11.0
+LONGEST_EDGE = 1.5
+
+Flat = tuple[np.ndarray, np.ndarray]
+"""(n, 2) float points and (m, 3) int triangles."""
+
+
+def number(label: str) -> Flat:
+    """Return a number, its middle at the origin, in pieces small enough to bend."""
+    text = vtkVectorText()
+    text.SetText(label)
+    points, triangles = _flat(text)
+    low, high = points.min(axis=0), points.max(axis=0)
+    points = (points - (low + high) / 2.0) * NUMBER_HEIGHT / (high[1] - low[1])
+    pieces = vtkAdaptiveSubdivisionFilter()
+    upright = np.column_stack([points, np.zeros(len(points))])
+    pieces.SetInputData(surface(upright, triangles))
+    pieces.SetMaximumEdgeLength(LONGEST_EDGE)
+    pieces.Update()
+    return _counterclockwise(pieces.GetOutput())
+
+
+def disk(inner: float, outer: float) -> Flat:
+    source = vtkDiskSource()
+    source.SetInnerRadius(inner)
+    source.SetOuterRadius(outer)
+    source.SetRadialResolution(3)
+    source.SetCircumferentialResolution(32)
+    return _flat(source)
+
+
+def _flat(source: vtkDiskSource | vtkVectorText) -> Flat:
+    triangles = vtkTriangleFilter()
+    triangles.SetInputConnection(source.GetOutputPort())
+    triangles.Update()
+    return _counterclockwise(triangles.GetOutput())
+
+
+def _counterclockwise(made: vtkPolyData) -> Flat:
+    """Return VTK's flat shape with all triangles turned to the viewer: text has some of each."""
+    points = vtk_to_numpy(made.GetPoints().GetData())[:, :2].astype(float)
+    triangles = triangles_of(made)
+    (ax, ay), (bx, by) = ((points[triangles[:, i]] - points[triangles[:, 0]]).T for i in (1, 2))
+    is_turned_away = ax * by - ay * bx < 0.0
+    triangles[is_turned_away] = triangles[is_turned_away][:, ::-1]
+    return points, triangles
+
+
+STEP = 2.0
+"""Length of a step, after which the ribbon is projected onto the skin again, mm."""
+GAP = 1.3
+LENGTHS = (60.0, 26.0, 16.0, 10.0)
+"""Greatest length of arrows; shorter where numbers would otherwise find no room.
+
+The first one leads all the way to most next fiducials that are seen with this one.
+"""
+SHORTEST = 6.0
+SHAFT_WIDTH = 2.0
+HEAD_WIDTH, HEAD_LENGTH = 5.4, 5.5
+APART = 4.0
+BERTH = 4.0
+"""Margin by which an arrow passes the rim of a fiducial that it does not lead to."""
+TURNS = tuple(np.radians((0.0, 12.0, -12.0, 24.0, -24.0, 36.0, -36.0)))
+_ACROSS = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
+
+
+@dataclass(frozen=True)
+class Arrow:
+    """The middle line of an arrow; mm, RAS.
+
+    The `path` (n, 3) is on the skin, from the fiducial on, a step apart, with the skin's normals
+    `outward`. The arrow starts and ends at lengths of it, the same if there is no room for it.
+    """
+
+    path: np.ndarray
+    outward: np.ndarray
+    start: float
+    end: float
+
+    @property
+    def length(self) -> float:
+        return self.end - self.start
+
+    def half_width(self, along: np.ndarray) -> np.ndarray:
+        """Return half the arrow's width at lengths of the path (k,)."""
+        left = self.end - along
+        head = HEAD_WIDTH / 2.0 * np.clip(left / HEAD_LENGTH, 0.0, 1.0)
+        return np.where(left <= HEAD_LENGTH, head, SHAFT_WIDTH / 2.0)
+
+    def samples(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return places (k, 3) along the arrow, 1 mm apart, and its half widths (k,) there."""
+        if self.end <= self.start:
+            return np.empty((0, 3)), np.empty(0)
+        along = np.linspace(self.start, self.end, max(2, round(self.end - self.start) + 1))
+        return _at(self.path, along), self.half_width(along)
+
+
+def arrows(skin: Skin, points: np.ndarray, longest: float = LENGTHS[0]) -> list[Arrow]:
+    """Return the arrows between consecutive `points` (n, 3) float on the skin, to `longest` mm.
+
+    They keep away from all fiducials and from each other, and are shortened where needed.
+    """
+    made: list[Arrow] = []
+    for index in range(len(points) - 1):
+        start, goal = points[index], points[index + 1]
+        others = np.delete(points, (index, index + 1), axis=0)
+        made.append(_between(skin, start, goal, others, longest, made))
+    # Shorten arrows until none comes near another; very short arrows may still meet.
+    while True:
+        close = [
+            (i, j)
+            for j in range(len(made))
+            for i in range(j)
+            if _distance(made[i], made[j]) < APART
+            and max(made[i].length, made[j].length) > SHORTEST
+        ]
+        if not close:
+            return made
+        for pair in close:
+            longer = max(pair, key=lambda index: made[index].length)
+            arrow = made[longer]
+            if arrow.length > SHORTEST:
+                end = max(arrow.end - STEP, arrow.start + SHORTEST)
+                made[longer] = Arrow(arrow.path, arrow.outward, arrow.start, end)
+
+
+def arrow_shape(skin: Skin, arrow: Arrow) -> Shape:
+    """Return the arrow as a ribbon on the skin: a shaft, and a head that comes to a point."""
+    neck = max(arrow.start, arrow.end - HEAD_LENGTH)
+    shaft = np.linspace(arrow.start, neck, max(2, round((neck - arrow.start) / STEP) + 1))
+    head = np.linspace(neck, arrow.end, 4)
+    along = np.concatenate([shaft, head])
+    widths = np.concatenate([np.full(len(shaft), SHAFT_WIDTH / 2.0), arrow.half_width(head)])
+    middle, outward = _at(arrow.path, along), _unit(_at(arrow.outward, along))
+    tangents = _at(arrow.path, along + STEP / 2.0) - _at(arrow.path, along - STEP / 2.0)
+    to_left = _unit(np.cross(outward, tangents))
+    sides = np.array(_ACROSS)[:, None] * (widths[:, None] * to_left)[:, None]
+    rows = [
+        skin.onto(row, normal) for row, normal in zip(middle[:, None] + sides, outward, strict=True)
+    ]
+    # Two triangles between each two points of a row, which go from right to left.
+    columns = len(_ACROSS)
+    corner = columns * np.arange(len(along) - 1)[:, None] + np.arange(columns - 1)
+    right = corner.reshape(-1)
+    left, ahead = right + 1, right + columns
+    halves = [np.column_stack([right, ahead, left]), np.column_stack([left, ahead, ahead + 1])]
+    outward = np.repeat(outward, columns, axis=0)
+    return Shape(np.concatenate(rows), np.concatenate(halves), outward)
+
+
+def _between(
+    skin: Skin,
+    start: np.ndarray,
+    goal: np.ndarray,
+    others: np.ndarray,
+    longest: float,
+    made: list[Arrow],
+) -> Arrow:
+    """Return the arrow from one fiducial toward the next.
+
+    It goes around any of the `others` (k, 3), and if it can, past the arrows that are `made`.
+    """
+    whole: Arrow | None = None
+    best: Arrow | None = None
+    for turn in TURNS:
+        # It ends before the goal's rim, and well before others, to which it must not seem to lead.
+        first = RIM_RADIUS + GAP
+        path, outward = _walk(skin, start, goal, turn, first + longest)
+        along = np.arange(first, min(first + longest, STEP * (len(path) - 1)), 0.5)
+        places = _at(path, along)[:, None]
+        is_foreign = (np.linalg.norm(places - others, axis=2) < RIM_RADIUS + BERTH).any(axis=1)
+        is_over = is_foreign | (np.linalg.norm(places[:, 0] - goal, axis=1) < RIM_RADIUS + GAP)
+        stop = int(is_over.argmax()) if is_over.any() else len(along) - 1
+        end = float(along[stop]) if len(along) else first
+        arrow, is_whole = Arrow(path, outward, first, end), not is_foreign[: stop + 1].any()
+        if is_whole and all(_distance(arrow, each) >= APART for each in made):
+            return arrow
+        if is_whole and whole is None:
+            whole = arrow
+        if best is None or arrow.end > best.end + STEP:
+            best = arrow
+    assert best is not None  # There is at least one turn.
+    return best if whole is None else whole
+
+
+def _walk(
+    skin: Skin, start: np.ndarray, goal: np.ndarray, turn: float, longest: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Walk over the skin, `turn` (rad) off `goal`; return places a step apart, and normals."""
+    outward = skin.outward(start)
+    place = skin.onto(np.atleast_2d(start), outward)[0]
+    path, normals = [place], [outward]
+    while STEP * (len(path) - 1) < longest and np.linalg.norm(goal - place) > STEP:
+        toward = goal - place
+        along = toward - (toward @ outward) * outward
+        if np.linalg.norm(along) < 1e-6:
+            break  # The goal is straight below: on the other side of the head.
+        along = np.cos(turn) * along + np.sin(turn) * np.cross(outward, along)
+        ahead = place + STEP * along / np.linalg.norm(along)
+        place = skin.onto(ahead[None], outward)[0]
+        outward = skin.outward(place)
+        path.append(place)
+        normals.append(outward)
+    return np.array(path), np.array(normals)
+
+
+def _distance(first: Arrow, second: Arrow) -> float:
+    (a, half_a), (b, half_b) = first.samples(), second.samples()
+    if len(a) == 0 or len(b) == 0:
+        return np.inf
+    apart = np.linalg.norm(a[:, None] - b[None], axis=2)
+    return float((apart - half_a[:, None] - half_b[None]).min())
+
+
+def _at(values: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """Interpolate (n, 3) values, a step apart, at lengths of the path (k,)."""
+    steps = STEP * np.arange(len(values))
+    return np.column_stack([np.interp(along, steps, values[:, axis]) for axis in range(3)])
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
 
 DISTANCES = (11.5, 13.0, 15.0, 17.5, 20.5, 24.0)
 ANGLES = np.radians(np.arange(0, 360, 20))

@@ -58,7 +58,7 @@ async def _show_until(
     has_window: bool,
     announce: Callable,
 ) -> None:
-    """Show what is played to views, and in its own window if wanted, until it is to stop.
+    """Show a playback to views, and in its own window if wanted, until `stop` is set.
 
     `advance` plays it on by some s; `port` None is the usual one.
     """
@@ -110,7 +110,7 @@ def trials_to_show(study: Study, records: Path) -> tuple[str, ...]:
 
 
 class ReplayLoader:
-    """Loads the replays of trials; those of one set-up share it, and views load its scene once."""
+    """Loads the replays of trials; trials of one set-up share it, and views load its scene once."""
 
     def __init__(self, records: Path, scenario: Path | None) -> None:
         self._records = records

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import NamedTuple
 
 from rastrainer.journal.entries import Ahead
 from rastrainer.json_checks import Setting
@@ -122,13 +121,6 @@ NO_FEED = Feed()
 """Nothing is in the guide."""
 
 
-class FeedMotion(NamedTuple):
-    """How far to feed in a tick, m, inward above 0."""
-
-    distance: float
-    is_by_stick: bool = False
-
-
 class FeedDrive:
     """Turns the stick, or a commanded feed, into the distance of a tick."""
 
@@ -146,15 +138,16 @@ class FeedDrive:
     def stop(self) -> None:
         self._remaining = 0.0
 
-    def way(self, dt: float, phase: Phase, operator_input: OperatorInput) -> FeedMotion:
+    def way(self, dt: float, phase: Phase, operator_input: OperatorInput) -> tuple[float, bool]:
+        """Return how far to feed in a tick, m, inward above 0, and whether the stick does it."""
         up = self._response(operator_input.translation)[2]
         fastest = self._settings.fastest(phase, operator_input.fine)
         if up != 0.0:
             self.stop()
-            return FeedMotion(-up * fastest * dt, is_by_stick=True)
+            return -up * fastest * dt, True
         if self._remaining <= 1e-3 * dt:
-            return FeedMotion(0.0)
+            return 0.0, False
         time = min(dt, self._remaining)
         self._remaining -= dt
         fastest = self._settings.fastest(phase, fine=False)
-        return FeedMotion(min(max(self._velocity, -fastest), fastest) * time)
+        return min(max(self._velocity, -fastest), fastest) * time, False

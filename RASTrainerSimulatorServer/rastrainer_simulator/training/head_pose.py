@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
-from rastrainer.head.trial_head import UNMOVED, SkinShift
+from rastrainer.head.trial_head import SkinShift
 from rastrainer.journal.entries import RecordedTruth
 from rastrainer.json_records import record_to_json
 from rastrainer.registration.target_error import true_errors
@@ -26,19 +26,6 @@ if TYPE_CHECKING:
 
 class Truth(RecordedTruth):
     """True pose of the head. Hidden from clients until the trial's registration is final."""
-
-    @classmethod
-    def of(
-        cls,
-        scenario: Scenario,
-        head_to_world: np.ndarray,
-        task: Task | None = None,
-        skin: SkinShift | None = None,
-    ) -> Truth:
-        """Return the truth of a trial of a task, or without one, by the head's pose, mm."""
-        fiducials = dict(zip(task.labels, task.fiducials, strict=True)) if task else {}
-        pose = np.asarray(head_to_world, dtype=float)
-        return cls(pose, scenario.target.position_ras, fiducials, skin or UNMOVED)
 
     def in_world(self, points: np.ndarray) -> np.ndarray:
         """Return a point of the head, or n of them, (3,) or (n, 3) float, RAS mm, in World, mm."""
@@ -88,14 +75,16 @@ class PlacedHead:
     @classmethod
     def nominal(cls, scenario: Scenario) -> PlacedHead:
         """Return the head between trials, where the scenario puts it."""
-        return cls(Truth.of(scenario, scenario.head_to_world))
+        return cls(Truth(scenario.head_to_world, scenario.target.position_ras, {}))
 
     @classmethod
     def of_trial(cls, scenario: Scenario, task: Task, seed: int, skin: SkinShift) -> PlacedHead:
         """Return the head of a trial, moved and with its skin shifted by the trial's seed."""
         mesh = None if skin.is_none else read_head_mesh(scenario.head)
+        shifted = skin if skin.is_none else replace(skin, seed=seed)
+        points = dict(zip(task.labels, task.fiducials, strict=True))
         pose = scenario.perturbed_head_to_world(seed)
-        truth = Truth.of(scenario, pose, task, skin if skin.is_none else replace(skin, seed=seed))
+        truth = Truth(pose, scenario.target.position_ras, points, shifted)
         places = truth.in_world(np.array(list(truth.fiducials_ras.values()))) / MM_PER_M
         fiducials = dict(zip(truth.fiducials_ras, map(tuple, places.tolist()), strict=True))
         return cls(truth, fiducials, mesh)

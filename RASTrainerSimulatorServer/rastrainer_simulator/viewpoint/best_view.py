@@ -89,26 +89,17 @@ class HeldTool:
 
 
 @dataclass(frozen=True)
-class ViewedPoint:
-    """A fiducial to be viewed, and the skin's outward unit normal there: World, m.
+class PointViews:
+    """The views of a fiducial in any posture of the arm: World, m.
 
-    `marks` are what must be seen on the skin, a little above it: the fiducial and its number.
+    Head and table leave its `marks`, a little above fiducial and number, visible from the `eyes`
+    (k, 3), the best first. `normal` is the skin's, a unit vector. `planned` is the posture in which
+    it is to be touched, None if the robot cannot.
     """
 
     fiducial: Vector
     normal: Vector
     marks: tuple[Vector, Vector]
-
-
-@dataclass(frozen=True)
-class PointViews:
-    """The views of a fiducial in any posture of the arm.
-
-    Head and table leave fiducial and number visible from the `eyes` (k, 3), World, m, the best
-    first. `planned` is the posture in which it is to be touched, None if the robot cannot.
-    """
-
-    point: ViewedPoint
     eyes: np.ndarray
     planned: HeldTool | None
 
@@ -133,36 +124,36 @@ def best_view(views: PointViews, postures: Sequence[HeldTool]) -> BestView | Non
     The first of the postures counts most. The first of equal views is taken that also keeps a
     margin to the links.
     """
-    point, eyes = views.point, views.eyes
+    eyes = views.eyes
     if not len(eyes):
         return None
-    hidden, tight = zip(*(_hidden(point, held, eyes) for held in postures), strict=True)
+    hidden, tight = zip(*(_hidden(views, held) for held in postures), strict=True)
     order = np.lexsort((np.arange(len(eyes)), sum(tight), *reversed(hidden)))
     now = postures[0]
     is_tip_seen = (
-        not _is_near(point, now) or now.sight.is_past_head(vector(eyes[each]), now.shaft)
+        not _is_near(views, now) or now.sight.is_past_head(vector(eyes[each]), now.shaft)
         for each in order
     )
     best = next((each for each, is_seen in zip(order, is_tip_seen, strict=True) if is_seen), None)
     eye = vector(eyes[order[0] if best is None else best])
     is_whole = best is not None and not hidden[0][best]
-    return BestView(eye, point.fiducial, _beside(point, postures, eye), is_whole)
+    return BestView(eye, views.fiducial, _beside(views, postures, eye), is_whole)
 
 
-def _is_near(point: ViewedPoint, held: HeldTool) -> bool:
+def _is_near(point: PointViews, held: HeldTool) -> bool:
     return distance(held.tip, point.fiducial) <= IN_PICTURE_M
 
 
-def _must_be_seen(point: ViewedPoint, held: HeldTool) -> tuple[Vector, ...]:
+def _must_be_seen(point: PointViews, held: HeldTool) -> tuple[Vector, ...]:
     return (*point.marks, held.shaft) if _is_near(point, held) else point.marks
 
 
-def _hidden(point: ViewedPoint, held: HeldTool, eyes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _hidden(point: PointViews, held: HeldTool) -> tuple[np.ndarray, np.ndarray]:
     """Return how much of fiducial, number and tip the arm hides from each eye, (k,) int.
 
     The second count is of links that are thicker by `MARGIN_M`.
     """
-    sight, number = held.sight, np.array(point.marks[1])
+    sight, eyes, number = held.sight, point.eyes, np.array(point.marks[1])
     hidden = (sight.off_tool(eyes, number) <= 0.0).astype(int)
     if distance(held.tip, point.fiducial) > AT_POINT_M:
         hidden += sight.off_tool(eyes, np.array(point.marks[0])) <= 0.0
@@ -178,7 +169,7 @@ def _hidden(point: ViewedPoint, held: HeldTool, eyes: np.ndarray) -> tuple[np.nd
     return hidden, tight
 
 
-def _eyes(point: ViewedPoint, front: Vector) -> list[Vector]:
+def _eyes(fiducial: Vector, normal: Vector, front: Vector) -> list[Vector]:
     """Return the positions from which a touch may be viewed, the best first.
 
     `front` is the direction from the head to the usual camera: views nearer to it are better.
@@ -187,17 +178,17 @@ def _eyes(point: ViewedPoint, front: Vector) -> list[Vector]:
     for elevation, azimuth in product(ELEVATIONS_DEG, AZIMUTHS_DEG):
         turn, level = math.radians(azimuth), math.cos(math.radians(elevation))
         line = level * math.cos(turn), level * math.sin(turn), math.sin(math.radians(elevation))
-        off_normal = math.degrees(angle(line, point.normal))
+        off_normal = math.degrees(angle(line, normal))
         if off_normal > WIDEST_DEG:
             continue
         cost = abs(off_normal - LIKED_DEG) + 0.5 * abs(elevation - LIKED_ELEVATION_DEG)
         cost += 0.25 * math.degrees(angle(line, front))
         for place, away in enumerate(AWAY_M):
-            ranked.append((cost + 15.0 * place, add(point.fiducial, scale(line, away))))
+            ranked.append((cost + 15.0 * place, add(fiducial, scale(line, away))))
     return [eye for _, eye in sorted(ranked)]
 
 
-def _beside(point: ViewedPoint, postures: Sequence[HeldTool], eye: Vector) -> Vector | None:
+def _beside(point: PointViews, postures: Sequence[HeldTool], eye: Vector) -> Vector | None:
     """Return an eye that looks along the skin, level and across the best view's line if possible.
 
     None if the head is always in between.
@@ -215,7 +206,7 @@ def _beside(point: ViewedPoint, postures: Sequence[HeldTool], eye: Vector) -> Ve
     return next(free, places[0] if places else None)
 
 
-def _along_skin(point: ViewedPoint, eye: Vector) -> list[Vector]:
+def _along_skin(point: PointViews, eye: Vector) -> list[Vector]:
     """Return the positions from which one may look along the skin, the best first."""
     line = subtract(eye, point.fiducial)
     across = reject(line, point.normal)
@@ -251,7 +242,7 @@ class TouchViews:
         self._robot = setup.robot
         self._planner = TouchPlanner(setup.robot, self._collision)
         self._known: dict[bytes, tuple[np.ndarray, Placement]] = {}
-        self._points: dict[str, ViewedPoint] = {}
+        self._points: dict[str, tuple[Vector, Vector, tuple[Vector, Vector]]] = {}
         self._views: dict[str, PointViews] = {}
 
     def begin(self, task: Task, head_to_world: np.ndarray) -> None:
@@ -267,7 +258,7 @@ class TouchViews:
         )
         lifted = OFF_SKIN_M * normals
         self._points = {
-            label: ViewedPoint(vector(place), vector(normal), (vector(mark), vector(number)))
+            label: (vector(place), vector(normal), (vector(mark), vector(number)))
             for label, place, normal, mark, number in zip(
                 task.labels, places, normals, places + lifted, numbers + lifted, strict=True
             )
@@ -277,18 +268,18 @@ class TouchViews:
     def views(self, label: str) -> PointViews:
         """Return the views of a fiducial of the present task in any posture of the arm."""
         if label not in self._views:
-            point = self._points[label]
-            planned = self._planner.touch(np.array(point.fiducial), np.array(point.normal))
+            fiducial, normal, marks = self._points[label]
+            planned = self._planner.touch(np.array(fiducial), np.array(normal))
             held = None if planned is None else self._held(planned.q)
             sight = self._held(self._robot.home).sight
             camera = self._scenario.cameras["close-up"]
             front = unit(subtract(vector(camera.position_mm), vector(camera.focal_point_mm)))
             eyes = [
                 eye
-                for eye in _eyes(point, front)
-                if all(sight.is_past_head(eye, mark) for mark in point.marks)
+                for eye in _eyes(fiducial, normal, front)
+                if all(sight.is_past_head(eye, mark) for mark in marks)
             ]
-            self._views[label] = PointViews(point, np.array(eyes), held)
+            self._views[label] = PointViews(fiducial, normal, marks, np.array(eyes), held)
         return self._views[label]
 
     def best(self, label: str, q: Sequence[float]) -> BestView | None:
@@ -320,8 +311,7 @@ class TouchViews:
         key = task.fiducials.tobytes()
         if key not in self._known:
             # Here, since an idle simulator does without VTK.
-            from rastrainer_simulator.scene.skin import Skin
-            from rastrainer_simulator.scene.skin_marks import place_marks
+            from rastrainer_simulator.scene.skin_marks import Skin, place_marks
 
             normals = outward_normals(self._head, task.fiducials)
             placement = place_marks(Skin(self._head), task.fiducials, task.labels)

@@ -1,4 +1,4 @@
-"""A whole simulated study: played, stored like a real one, with the truth beside it.
+"""A whole simulated study: played, and stored like a real study, with the truth in a file.
 
 After an interruption (Ctrl-C, a full disk, a power failure) the same call resumes the study: its
 jobs follow from the seed, and only those without a stored trial are played.
@@ -52,7 +52,7 @@ def run_jobs(
     """Yield the result of each job, in their order.
 
     A job whose process is killed is repeated by another one, unless `workers` is 1 and it is this
-    process. `engine` is `processes`, or `dask` (package `distributed`); `address` is that of a Dask
+    process. `engine` is `processes`, or `dask` (package `distributed`); `address` names a Dask
     scheduler, for more than one machine; a local cluster by default.
     """
     workers = workers or os.cpu_count() or 1
@@ -92,7 +92,7 @@ def _on_dask(
             try:
                 yield future.result()
             except KilledWorker:
-                # Dask blames every job of the worker, even one that had just finished.
+                # Dask blames every job of the worker, even if it had just finished.
                 cause = " or another trial at the same worker"
                 raise WorkerDiedError(died_message(name_of(job), cause)) from None
 

@@ -1,5 +1,5 @@
-"""Trials registered by every method, side by side: played ones by each method that they allow, and
-virtual ones on one head, with stated noise and skin shift.
+"""Trials registered by every method, side by side: played trials by each method that they allow,
+and virtual trials on one head, with stated noise and skin shift.
 """
 
 from __future__ import annotations
@@ -15,9 +15,8 @@ from numpy.random import Generator
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, pair
-from rastrainer.head.mesh import HeadMesh, outward_normals, read_head_mesh
+from rastrainer.head.mesh import HeadMesh, mesh_crossings, outward_normals, read_head_mesh
 from rastrainer.head.trial_head import SkinShift
-from rastrainer.procedure.geometry import mesh_crossings
 from rastrainer.protocol import COARSE_LANDMARKS, TRACED_METHODS, RegistrationMethod
 from rastrainer.registration.localization_error import error_along_surface, isotropic_error
 from rastrainer.registration.registration import register
@@ -103,7 +102,7 @@ class MethodPoints:
     """The points that one method registers.
 
     Attributes:
-        moving_mm: (n, 3) float, World, touched points; those of a surface match give its start.
+        moving_mm: (n, 3) float, World, touched points; a surface match starts from them.
         fixed_mm: (n, 3) float, RAS, where they belong.
         normals: (n, 3) float, of the skin there, RAS; None if the error has no direction.
         cloud_mm: (k, 3) float, World, traced or scanned points; empty of touches alone.
@@ -224,7 +223,7 @@ METHODS = tuple(PUBLISHED_NOISE)
 
 @dataclass(eq=False)
 class MethodStudy:
-    """The common settings of virtual trials, and what they share; points in RAS mm.
+    """The common settings and data of virtual trials; points in RAS mm.
 
     Attributes:
         shift_mm: root mean square length of the skin's shift; each trial has its own.

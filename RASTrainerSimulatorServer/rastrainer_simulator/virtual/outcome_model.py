@@ -28,7 +28,7 @@ from rastrainer_simulator.statistics.paired import fit_differences, holm, is_sep
 
 DOF = 3 * FIDUCIAL_COUNT - 6
 REFERENCE_RMSE_MM, REFERENCE_TRE_MM = 1.4, 0.4
-"""The published study's mean RMSE over fifteen fiducials, and what it means at their center."""
+"""The published study's mean RMSE over fifteen fiducials, and the mean error at their center."""
 REFERENCE_COMMON_BIAS_MM = 0.6
 """Common bias that touches with this scatter seem to have on the tasks of Colin27, RMS."""
 
@@ -77,7 +77,7 @@ def draw_outcomes(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return times in s and RMSE in mm, both (trainees, modes, tasks) float.
 
-    `orders` are the modes in the order of each trainee; by default that of `modes` for all.
+    `orders` are the modes in the order of each trainee; by default all follow `modes`.
     """
     numbers = trial_numbers(orders or [tuple(modes)] * trainees, modes, len(model.task_times_s))
     times, errors, _, _ = draw(model, modes, random, numbers)
@@ -137,8 +137,8 @@ def expected_outcomes(model: OutcomeModel, modes: Sequence[str]) -> tuple[np.nda
     """Return the means that very many trainees have: times in s and RMSE in mm, (modes, tasks).
 
     Where practice is carried over, they are the means over all periods: what modes do apart from
-    their order. A log-normal's mean is exp(σ²/2) times its median; that of χ is
-    √2·Γ((k + 1)/2)/Γ(k/2).
+    their order. A log-normal's mean is exp(σ²/2) times its median; χ has the mean √2·Γ((k +
+    1)/2)/Γ(k/2).
     """
     times, fle = _medians(model, modes)
     # Each mode in each period; modes in the second axis make no difference here.
@@ -206,7 +206,7 @@ def rejection_rates(
 ) -> tuple[RejectionRates, ...]:
     """Return the rates for two modes, tested on trainee means as the report does it.
 
-    `orders` are the modes in the order of each trainee; by default that of `modes` for all.
+    `orders` are the modes in the order of each trainee; by default all follow `modes`.
     """
     random = np.random.default_rng(seed)
     drawn = [draw_outcomes(model, trainees, modes, random, orders) for _ in range(studies)]

@@ -125,7 +125,7 @@ PROCEDURE_STREAM = 21
 class PlaySettings:
     """How the jobs of a cohort are played; `records` is the folder for the journals.
 
-    The references are those of the score, by task; the scenario's for tasks that they leave out.
+    `references` score each task; the scenario's references score the tasks that they leave out.
     """
 
     scenario: Path | None = None

@@ -17,14 +17,14 @@ from rastrainer_simulator.virtual.scripted_trainee import Skill
 
 NAMESPACE = uuid.UUID("2b1f9c1e-52dd-5f0c-9c51-5261546f686f")
 FIRST_DAY = datetime(2000, 1, 1, 9, tzinfo=timezone.utc)
-"""Virtual trials have dates that cannot be mistaken for real ones."""
+"""Virtual trials have dates that cannot be mistaken for real dates."""
 
 
 @dataclass(frozen=True)
 class TrialJob:
     """One trial to be played, and the procedure that it continues with, if any.
 
-    The seed is that of the head's pose and of the hands.
+    The seed gives the head's pose and the hands.
     """
 
     trainee: str
@@ -99,9 +99,9 @@ class ModeEffect:
 class Population:
     """The distribution of virtual trainees.
 
-    Scatter is that of the aim, of where the tip settles beside it, and of the hand's tremor: all
-    three are scaled alike, so that the localization error is in proportion. Pace is that of speed,
-    gain and pauses, so that times are in inverse proportion, up to the robot's speed limit.
+    Scatter means the aim's, the tip's where it settles, and the hand's tremor: all three are scaled
+    alike, so that the localization error is in proportion. Pace scales speed, gain and pauses, so
+    that times are in inverse proportion, up to the robot's speed limit.
 
     Attributes:
         skill: Of the typical trainee at the first trial.

@@ -2,7 +2,7 @@
 
 It sees what a person sees (the tool tip, the numbered fiducials) and answers with `Jog`, `Capture`,
 `Undo` and `Register`, at human speed, with tremor, overshoot and one touch taken back. The demo
-lets it play over OpenIGTLink; tests and cohort simulations step it beside a simulation.
+lets it play over OpenIGTLink; tests and cohort simulations step it together with a simulation.
 """
 
 from __future__ import annotations
@@ -138,8 +138,8 @@ class ScriptedTrainee:
     def _plan(self, observation: Observation, point: int) -> None:
         """Lift off, travel around the head, come down along the skin's outward direction.
 
-        A refused touch means that not the tip but another part of the tool is at the head. From
-        above, the arm comes to the same point in another posture.
+        A refused touch means that not the tip but another part of the tool is at the head. The arm
+        comes to the same point from above in another posture.
         """
         fiducial = self._fiducials[point - 1]
         outward = self._normals[point - 1]

@@ -156,7 +156,8 @@ def play_procedure(
     """Carry out the procedure of a registered trial, and return the trial's record.
 
     The touches are registered as Slicer's side does; the robot aligns the guide by itself. Depths
-    are fed by the plan as the registration shows it. `on_progress` gets what was done, in words.
+    are fed by the plan as the registration shows it. `on_progress` gets each finished step, in
+    words.
     """
     answer = send(client, CommandName.GET_TRIAL, {"trialId": trial_id})
     registered = register_trial(GivenPoints.of_answer(answer), scenario)

@@ -1,8 +1,8 @@
 """A procedure that virtual hands carry out by a registration, for cohorts: errors without physics.
 
-The touches are played with the whole simulation; what follows is drawn. The guide is beside the
-line that the registration shows, the drill stops past the true inner table, the instrument beside
-its depth. Scatter and pace of the hands are in proportion to those of the touches.
+The touches are played with the whole simulation; what follows is drawn. The guide misses the line
+that the registration shows, the drill stops past the true inner table, the instrument misses its
+depth. Scatter and pace of the hands are in proportion to the touches.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class ProcedureHands:
         angle_sd_deg: Of its direction, about each of two axes.
         plunge_mm: Mean of how far the drill goes past the inner table (exponential).
         check_sd_mm: Of the touch of a checkpoint, along each of three axes.
-        pace: Times are those of the score's reference, divided by this.
+        pace: Divides the times of the score's reference.
     """
 
     entry_sd_mm: float = 0.4
@@ -63,7 +63,7 @@ class ProcedureHands:
 
     @classmethod
     def of(cls, skill: Skill) -> ProcedureHands:
-        """Return hands whose scatter and pace are to the typical ones as those of a skill."""
+        """Return hands with the scatter and pace of a skill, in proportion to the typical skill."""
         typical, usual = Skill(), cls()
         scatter = skill.aim_sd_mm / typical.aim_sd_mm
         return cls(

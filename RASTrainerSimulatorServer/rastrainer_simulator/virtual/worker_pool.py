@@ -33,7 +33,7 @@ def run_on_workers(
 ) -> Iterator[Any]:
     """Yield the result of each job, in their order; the processes end with the iterator.
 
-    `function` can be pickled; what it raises is raised here.
+    `function` can be pickled; its exceptions are raised here.
     """
     pool = _Pool(function, workers, name_of)
     try:
@@ -119,7 +119,7 @@ class _Pool:
                 turn += 1
 
     def _receive(self, worker: _Worker, task: _Task) -> None:
-        """Take the result, or have another process repeat the job of one that died."""
+        """Take the result; if the process died, have another process repeat its job."""
         with contextlib.suppress(EOFError, OSError):
             self._done[task.place] = worker.connection.recv()
             worker.task = None

@@ -4,13 +4,12 @@ import numpy as np
 import pytest
 import trimesh
 
-from rastrainer.head.mesh import HeadMesh
+from rastrainer.head.mesh import HeadMesh, mesh_crossings
 from rastrainer.procedure.geometry import (
     angle_deg,
     axis_distance_mm,
     bone_ahead,
     is_inside,
-    mesh_crossings,
     segment_distances_mm,
     skull_angle_deg,
 )

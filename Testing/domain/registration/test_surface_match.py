@@ -16,7 +16,6 @@ from Testing.domain.registration.traces import (
     places,
     traced,
 )
-from Testing.icp_peers.vtk_icp import vtk_match
 
 
 @pytest.fixture(scope="module")
@@ -140,16 +139,6 @@ def test_the_flat_base_attracts_no_points(head, face):
     )
     match = match_surface(np.vstack([trace, transforms.apply(pose, below)]), head, start)
     assert not match.is_inlier[-15:].any()
-
-
-def test_vtk_finds_the_same_minimum_and_none_better(head, face):
-    trace, start, _ = face(12, 0.5)
-    match = match_surface(trace, head, start, trimmed=False)
-    theirs = vtk_match(trace, head.skin, start)
-    cost = np.sum(head.skin.tree.nearest(transforms.apply(theirs, trace)).distances ** 2)
-    assert np.sum(match.residuals_mm**2) <= cost + 1e-3
-    apart = transforms.apply(theirs, trace) - transforms.apply(match.matrix, trace)
-    assert np.linalg.norm(apart, axis=1).max() < 0.05
 
 
 @pytest.mark.parametrize("seed", [3, 28])

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from rastrainer.study.database.study import Study
-from rastrainer_simulator.board.class_table import ClassReader, class_table
+from rastrainer_simulator.board.class_table import ClassReader
 from Testing.postgres_server import PostgresServer
 from Testing.simulator.board.class_study import play_class
-from Testing.simulator.board.test_class_table import NAMES, until
+from Testing.simulator.board.test_class_table import NAMES, tables, until
 
 pytestmark = pytest.mark.soak
 
@@ -27,10 +27,10 @@ def test_the_table_matches_that_of_a_file_follows_changes_and_outlives_the_serve
     for each in (place, path):
         play_class(each, NAMES, 12)
     reader = ClassReader(path)
-    tables = class_table(reader.read(), "en")
+    expected = tables(reader)
     reader.close()
     board = open_board(place)
-    assert until(board, lambda found: found["curricula"])["curricula"] == tables
+    assert until(board, lambda found: found["curricula"])["curricula"] == expected
     with Study.open(place) as study:
         study.create_trainee("T099")
     seen = until(board, lambda found: len(found["curricula"][0]["trainees"]) == 5)

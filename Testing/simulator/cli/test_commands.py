@@ -30,7 +30,6 @@ from rastrainer.study.ratings import FORMS
 from rastrainer_simulator.cli.export import FORMATS
 from rastrainer_simulator.cli.main import command_parser, main, read_commands, run_command
 from rastrainer_simulator.cli.replays import _summary
-from rastrainer_simulator.export.grades import PLATFORMS, RULES
 from rastrainer_simulator.export.xapi import HOME_PAGE
 from rastrainer_simulator.ops.instructor_pin import PIN_WORDS
 from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record, make_traced
@@ -218,8 +217,8 @@ def test_values_in_the_list_of_commands_are_those_of_the_product():
     has("register", f"--type {{{','.join(KINDS)}}} = {RIGID}  ")
     has("export", f"--format {{{','.join(FORMATS)}}} *  ")
     has("export", f"--home-page URL = {HOME_PAGE}  ")
-    has("export", f"--grades {{{','.join(PLATFORMS)}}}  ")
-    has("export", f"--rule {{{','.join(RULES)}}} = ")
+    has("export", "--grades {moodle,canvas}  ")
+    has("export", "--rule {best,latest} = ")
     has("export", f"--mode {{{','.join(each.value for each in Mode)}}}  ")
     has("export", f"--method {{{','.join(each.value for each in RegistrationMethod)}}} = ")
     has("rate", f"--form {{{','.join(FORMS)}}} *  ")

@@ -9,6 +9,7 @@ import pytest
 
 from rastrainer.commands import CommandName
 from rastrainer_simulator.texts.texts import LANGUAGES
+from Testing.simulator.flow.every_page import names_of_pages
 from Testing.simulator.flow.languages import screens_in
 
 COMMANDS = [name for key, name in vars(CommandName).items() if key.isupper()]
@@ -30,6 +31,7 @@ def texts_of(value) -> list[str]:
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_no_page_has_the_name_of_a_command(presenter, language):
     screens = screens_in(presenter, language)
+    assert names_of_pages() <= screens.keys()
     texts = [text for screen in screens.values() for text in texts_of(screen)]
     assert len(texts) > 1000
     assert [text for text in texts if OF_SEVERAL_WORDS.search(text)] == []

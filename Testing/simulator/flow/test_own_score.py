@@ -13,7 +13,6 @@ from rastrainer.protocol import FREE, Phase
 from rastrainer.study_messages import StudyStep
 from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.presentation.screen import Tone
-from rastrainer_simulator.texts.texts import LANGUAGES
 from rastrainer_simulator.trial_state import Tool
 
 OWN = "This score is the simulator's own and is not stored in a study."
@@ -130,11 +129,6 @@ def test_a_slicer_that_returns_within_seconds_finds_the_trial_unscored(trainee, 
     assert trainee.menu.name == "waiting"
     assert entries_of(outside, trial, "registration") == []
     trainee.until_menu("result")
-
-
-def test_the_page_is_shown_in_german_too():
-    for key in ("waiting.own", "waiting.problem", "result.own"):
-        assert key in LANGUAGES["de"]
 
 
 def commands_of(outside, trial_id, name):

@@ -153,7 +153,7 @@ def test_the_worst_touch_is_shown_from_where_it_is_seen_best(result):
     view = result.presenter._session.view
     view.control.reset()
     result.show_again("worst")
-    label = result.presenter.shown._playback.trial.worst[0]
+    label = result.presenter.shown.playback.trial.worst[0]
     truth = result.loop.simulation.truth
     fiducial = truth.in_world(truth.fiducials_ras[label]) / MM_PER_M
     cameras = result.loop.setup.scenario.cameras

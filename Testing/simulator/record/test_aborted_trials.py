@@ -48,7 +48,7 @@ def touch(server, count):
 
 
 def wait_for_offer(server):
-    """Return what is offered; the journal's thread has written all that came before."""
+    """Return the offered records; the journal's thread has written everything before."""
     server.loop._writer.submit(lambda: None).result()
     return server.loop.archive.unacknowledged()
 
@@ -211,7 +211,7 @@ def test_an_aborted_trial_that_a_full_disk_could_not_take_is_offered_and_written
 
 
 def test_of_two_simultaneous_commands_that_end_a_trial_only_one_takes_effect(simulation, tmp_path):
-    """A trainee registers while a client aborts: there is one record, of what came first."""
+    """A trainee registers while a client aborts: there is one record, of the first command."""
     kinds = []
     with Server(simulation, tmp_path) as server:
         for commands in (

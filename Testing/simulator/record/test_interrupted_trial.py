@@ -163,7 +163,7 @@ def test_ten_interruptions_of_one_trial_leave_one_intact_journal(simulation, any
             touched = len(server.training.touches)
             size = server.path.stat().st_size
             server.move(ticks=70)
-        # What was acknowledged is on the disk; of the rest, a kill may leave any part.
+        # Everything acknowledged is on the disk; a kill may leave any part of the rest.
         if rng.random() < 0.8:
             cut(server.path, rng.randrange(size, server.path.stat().st_size + 1))
     with Server(simulation, tmp_path) as server:

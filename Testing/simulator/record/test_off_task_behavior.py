@@ -53,7 +53,7 @@ class Meanwhile:
 
 @pytest.fixture(scope="module")
 def played(setup):
-    """Give the analysis of a trial by what is done beside it, each played once."""
+    """Give the analysis of a trial for each behavior next to it, each played once."""
     simulation = Simulation(setup, 5)
 
     @functools.cache

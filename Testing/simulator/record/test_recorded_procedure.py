@@ -202,7 +202,7 @@ def test_the_record_has_every_attempt_and_instrument(finished, planned):
     assert [touch.label for touch in accepted.touches] == list(record.labels)
     left, right = procedure.instruments
     assert (left.alignments, right.alignments) == (2, 1)
-    # How far the stick overshoots depends on the machine; what was sampled is what is recorded.
+    # How far the stick overshoots depends on the machine; the record has the last sample.
     sampled = sampled_depths(read_journal(path).entries)
     for number, instrument in enumerate(procedure.instruments):
         assert instrument.drill_depth_mm == sampled[number, "drilling"] >= 55.0

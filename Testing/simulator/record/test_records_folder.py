@@ -92,7 +92,8 @@ def journal_of_two_touches(simulation, folder):
 
 
 def resumed_while_another_server_touches(path, size, config):
-    """Start a simulator while another one adds to a journal; return what it says it resumes.
+    """Start a simulator while another one adds to a journal; return its message about the resumed
+    trial.
 
     The other one leaves the folder in the moment in which the new one takes it.
     """

@@ -53,7 +53,7 @@ def recorded(setup, tmp_path_factory) -> Path:
 
 
 def open_copy(recorded: Path, tmp_path: Path) -> Path:
-    """Return where a copy is to be cut; beside it is the seed, as of a trial that is open."""
+    """Return the path of a copy to be cut; its seed is next to it, as for an open trial."""
     seed = read_journal(recorded).header.seed
     (tmp_path / "cut").with_suffix(SEED_SUFFIX).write_text(str(seed))
     return tmp_path / "cut"

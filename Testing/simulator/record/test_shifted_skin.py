@@ -64,7 +64,7 @@ def test_points_on_shifted_skin_stay_hidden_and_survive_a_kill_and_a_replay(simu
     pose = latest.head_to_world
     in_head = (tips - 1000.0 * pose[:3, 3]) @ pose[:3, :3]
     np.testing.assert_allclose(shown, in_head, atol=0.011)
-    # The path of the tip is what is measured in millimeters from point to point.
+    # The path is measured in millimeters from point to point.
     assert np.linalg.norm(np.diff(tips, axis=0), axis=1).min() >= 1.0 - 1e-9
 
     with Server(simulation, tmp_path) as server:

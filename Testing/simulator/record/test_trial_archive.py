@@ -1,4 +1,4 @@
-"""The archive of registered trials: what has to be delivered, and the truth kept until scored."""
+"""The archive of registered trials: deliveries, and the truth kept until scored."""
 
 import gc
 import json

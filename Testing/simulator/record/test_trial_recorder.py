@@ -1,4 +1,4 @@
-"""What the first trial needs is loaded before it begins; a tick has no time to load anything."""
+"""Everything is loaded before the first trial begins; a tick has no time to load anything."""
 
 from __future__ import annotations
 

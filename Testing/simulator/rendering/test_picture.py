@@ -42,7 +42,7 @@ def ball() -> HeadMesh:
 
 @pytest.fixture(scope="module")
 def head_to_world() -> np.ndarray:
-    """A ball beside the tool, its face to the camera."""
+    """A ball next to the tool, its face to the camera."""
     pose = np.diag([-1.0, -1.0, 1.0, 1.0])
     pose[:3, 3] = 760.0, 0.0, 300.0
     return pose

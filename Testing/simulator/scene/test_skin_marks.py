@@ -5,12 +5,13 @@ from scipy.spatial import cKDTree
 
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, read_head_mesh
 from rastrainer_simulator.authoring.task_set import smooth_places
-from rastrainer_simulator.scene.skin import NUMBER_HEIGHT, RIM_RADIUS
 from rastrainer_simulator.scene.skin_marks import (
     ARROW_LIFT,
     DOT_LIFT,
+    NUMBER_HEIGHT,
     NUMBER_LIFT,
     RIM_LIFT,
+    RIM_RADIUS,
     skin_marks,
 )
 

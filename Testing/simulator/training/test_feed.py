@@ -41,32 +41,30 @@ def stick(up, fine=False):
     ],
 )
 def test_the_stick_feeds_down_into_the_head_within_the_limit(drive, phase, fine, fastest):
-    assert drive.way(DT, phase, stick(-1.0, fine)).distance == pytest.approx(fastest * DT)
-    assert drive.way(DT, phase, stick(1.0, fine)).distance == pytest.approx(-fastest * DT)
-    assert 0.0 < drive.way(DT, phase, stick(-0.5, fine)).distance < 0.5 * fastest * DT
-    assert drive.way(DT, phase, stick(0.1, fine)).distance == 0.0
+    assert drive.way(DT, phase, stick(-1.0, fine))[0] == pytest.approx(fastest * DT)
+    assert drive.way(DT, phase, stick(1.0, fine))[0] == pytest.approx(-fastest * DT)
+    assert 0.0 < drive.way(DT, phase, stick(-0.5, fine))[0] < 0.5 * fastest * DT
+    assert drive.way(DT, phase, stick(0.1, fine))[0] == 0.0
 
 
 def test_a_stick_that_reports_nan_feeds_nothing(drive):
     for up in (math.nan, math.inf):
-        assert drive.way(DT, DRILLING, stick(up)).distance == 0.0
+        assert drive.way(DT, DRILLING, stick(up))[0] == 0.0
 
 
 def test_a_commanded_feed_lasts_for_its_duration_within_the_limit(drive):
     drive.start(50.0, 0.1)
-    distances = [drive.way(DT, DRILLING, NEUTRAL_STICKS).distance for _ in range(30)]
+    distances = [drive.way(DT, DRILLING, NEUTRAL_STICKS)[0] for _ in range(30)]
     assert sum(distances) == pytest.approx(0.005 * 0.1)
     assert distances[25:] == [0.0] * 5
     drive.start(-2.0, 0.01)
-    assert sum(drive.way(DT, DRILLING, NEUTRAL_STICKS).distance for _ in range(5)) == pytest.approx(
-        -2e-5
-    )
+    assert sum(drive.way(DT, DRILLING, NEUTRAL_STICKS)[0] for _ in range(5)) == pytest.approx(-2e-5)
 
 
 def test_the_stick_overrides_a_commanded_feed(drive):
     drive.start(5.0, 2.0)
-    assert drive.way(DT, DRILLING, stick(1.0)).distance < 0.0
-    assert drive.way(DT, DRILLING, NEUTRAL_STICKS).distance == 0.0
+    assert drive.way(DT, DRILLING, stick(1.0))[0] < 0.0
+    assert drive.way(DT, DRILLING, NEUTRAL_STICKS)[0] == 0.0
 
 
 def test_the_drill_moves_from_the_guides_tip_to_its_full_length_and_its_depth_is_kept():

@@ -15,7 +15,6 @@ from rastrainer_simulator.viewpoint.best_view import (
     HeldTool,
     PointViews,
     TouchViews,
-    ViewedPoint,
     best_view,
 )
 from Testing.simulator.authoring.planned_heads import setup_of
@@ -105,7 +104,7 @@ def test_the_view_along_the_skin_rises_or_falls_by_at_most_45_degrees(normal):
     fiducial = (0.5, 0.1, 0.3)
     eyes = np.array([np.add(fiducial, 0.5 * np.array(normal))])
     mark = tuple(np.add(fiducial, 0.002 * np.array(normal)).tolist())
-    views = PointViews(ViewedPoint(fiducial, normal, (mark, mark)), eyes, None)
+    views = PointViews(fiducial, normal, (mark, mark), eyes, None)
 
     def beside(least_deg, most_deg):
         held = HeldTool((0.5, 0.1, 0.9), (0.0, 0.0, -1.0), SightFrom(least_deg, most_deg))

@@ -12,11 +12,11 @@ CENTER = np.array([0.47, 0.0, 0.215])
 """Where a head is on the stand, World, m: every trial turns and moves it a little."""
 HALF_AXES = np.array([0.08, 0.103, 0.1])
 LOWEST_M = -0.06
-"""Below its middle there is no point deeper than this."""
+"""No point is deeper than this below its middle."""
 PLACES = 3000
-"""Of the whole head: positions are 6 mm from their neighbors."""
+"""Positions on the whole head are 6 mm from their neighbors."""
 UNSURE_M = 0.012
-"""How wrong the count of one's own movements may be."""
+"""The largest error of the counted movements."""
 AROUND_M = 0.0075
 """The point is farther than this from where a touch does not count."""
 COUNTS_M = 0.01
@@ -80,7 +80,7 @@ class CandidatePoints:
         return self._last is not None and bool(np.linalg.norm(at - self._last) < COUNTS_M)
 
     def has_touched(self, at: np.ndarray, following: str) -> None:
-        """Begin to search for the point after the one that was touched there."""
+        """Begin to search for the point that follows the point touched there."""
         self._last, self._label, self._was_off = at, following, False
         self.needs_answers = False
         self._is_empty |= self._away(surface_at(at)) < AROUND_M
@@ -120,13 +120,13 @@ class CandidatePoints:
         self._keep((np.abs(self._away(at) - shown_m) < 0.0025 + UNSURE_M) & is_ahead)
 
     def is_off_path(self, at: np.ndarray) -> None:
-        """The tip is beside the path from the last point to the next."""
+        """The tip is next to the path from the last point to the next."""
         least = BACK_WITHIN if self._was_off else FARTHEST
         self._was_off = True
         self._keep(self._beside(at) > least - UNSURE_M)
 
     def is_on_path(self, at: np.ndarray) -> None:
-        """The tip is not beside that path."""
+        """The tip is not next to that path."""
         most = BACK_WITHIN if self._was_off else FARTHEST
         self._was_off = False
         if self._last is not None:

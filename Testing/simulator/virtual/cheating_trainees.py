@@ -36,7 +36,7 @@ from rastrainer_simulator.virtual.scripted_trainee import Skill
 
 DT = 0.02
 FLE_MM = 1.0
-"""Of the honest trainee: RMS length of the error of one fiducial, along the skin."""
+"""The honest trainee's RMS length of the error of one fiducial, along the skin."""
 HONEST = Skill(aim_sd_mm=FLE_MM / np.sqrt(2.0), slip_at=None)
 BIAS_MM = 2.0
 BRISK_MM_S, SLOW_MM_S = 300.0, 60.0
@@ -49,7 +49,7 @@ FOREVER = 5000
 
 @dataclass(frozen=True)
 class PlayedTrial:
-    """What a trial left behind.
+    """A played trial.
 
     Attributes:
         record: as the simulator delivers it.
@@ -76,7 +76,7 @@ def play_honestly(
 def aim_off_target(
     setup: SimulationSetup, task: str, seed: int, bias_mm: tuple[float, float, float] | None = None
 ) -> PlayedTrial:
-    """Play honestly, but aim beside every fiducial by the same vector of World, mm.
+    """Play honestly, but miss every fiducial by the same vector of World, mm.
 
     By default these are 2 mm in the direction that lies along the skin at as many fiducials as can
     be: what of it leads into the skin or off it moves no touch.
@@ -92,7 +92,7 @@ def along_skin(
     turn = setup.scenario.perturbed_head_to_world(seed)[:3, :3]
     normals = fiducial_normals(setup.scenario, task) @ turn.T
     direction = np.linalg.eigh(normals.T @ normals)[1][:, 0]
-    # An eigenvector has no sign of its own.
+    # The sign of an eigenvector is arbitrary.
     direction *= np.sign(direction[np.abs(direction).argmax()])
     return tuple((length_mm * direction).tolist())
 
@@ -100,7 +100,7 @@ def along_skin(
 def hover(setup: SimulationSetup, task: str, seed: int, by_mm: float = 9.0) -> PlayedTrial:
     """Touch in the air, off every fiducial by the same vector; every height has to count.
 
-    The vector is the one that leads off the skin at as many fiducials as can be.
+    The vector leads off the skin at as many fiducials as can be.
     """
     pilot = Pilot(within_radius(setup), task, seed)
     offset = by_mm * _most_outward(pilot.normals)
@@ -121,7 +121,7 @@ def press(setup: SimulationSetup, task: str, seed: int, depth_mm: float = 2.0) -
 
 
 def drag(setup: SimulationSetup, task: str, seed: int) -> PlayedTrial:
-    """Slide over the skin from fiducial to fiducial; lift the tip only where it is stuck."""
+    """Slide over the skin from fiducial to fiducial; lift the tip only if it is stuck."""
     pilot = Pilot(setup, task, seed)
     pilot.carry_to(pilot.fiducials[0], pilot.normals[0])
     pilot.touch()

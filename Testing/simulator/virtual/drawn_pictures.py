@@ -1,4 +1,4 @@
-"""What the two pictures of the scene show: positions that rays from their cameras reach."""
+"""The two pictures of the scene: positions that rays from their cameras reach."""
 
 from __future__ import annotations
 
@@ -15,8 +15,7 @@ from rastrainer_simulator.collision.clearance import LineOfSight
 from rastrainer_simulator.collision.collision import head_collision
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.robot.kinematics import make_kinematics
-from rastrainer_simulator.scene.skin import Skin
-from rastrainer_simulator.scene.skin_marks import place_marks
+from rastrainer_simulator.scene.skin_marks import Skin, place_marks
 from rastrainer_simulator.state import SimulationState, TouchStage
 from rastrainer_simulator.teleoperation.steering import camera_axes
 from rastrainer_simulator.vectors import Vector, vector
@@ -28,7 +27,7 @@ INSET_PX = 158
 NOISE_PX = 1.0
 """Standard deviation of where something is seen, along each side of the picture."""
 COVERED = ((0.77, 0.0, 1.0, 0.27), (0.05, 0.86, 0.95, 1.0), (0.3, 0.0, 0.7, 0.11))
-"""What lies over the main picture: the inset, the hints and the instruction; shares of its
+"""The covered parts of the main picture: the inset, the hints and the instruction; shares of its
 width and height from the upper left corner: left, top, right, bottom."""
 OFF_SKIN_M = 0.002
 """Rays end so far above the marks on the skin."""
@@ -55,7 +54,7 @@ class Picture:
 
     @property
     def level_axes(self) -> np.ndarray:
-        """What the sticks follow, (3, 3) float, rows: right, level ahead and up."""
+        """The sticks' axes, (3, 3) float, rows: right, level ahead and up."""
         axes = camera_axes(_vector(self.axes[2]), _vector(self.axes[1]))
         return np.array([axes.right, axes.forward, axes.up])
 
@@ -66,11 +65,11 @@ class Look:
 
     Attributes:
         main: the main picture.
-        beside: the small one.
+        beside: the small picture.
         is_still: whether both cameras stand where they stood at the last look.
         outward: from the skin at the fiducial, (3,) float, where the small picture looks along it:
             there its edge is seen.
-        stage: what the colors of tip, ring and frame say; None where the tip is hidden.
+        stage: what the colors of tip, ring and frame say; None if the tip is hidden.
     """
 
     main: Picture
@@ -127,7 +126,7 @@ class DrawnPictures:
         )
 
     def look(self, state: SimulationState, pictures: Pictures, label: str) -> Look:
-        """Return what is seen of a state, the next fiducial being drawn as such."""
+        """Return the pictures of a state, in which the next fiducial is marked."""
         beside = pictures.inset
         if beside is None:
             cameras = self._setup.scenario.cameras

@@ -1,4 +1,4 @@
-"""A model trainee that knows nothing but what is drawn: it looks, turns the view and steers."""
+"""A model trainee that knows only the pictures: it looks, turns the view and steers."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ OVER_M = 0.01
 SLOWLY_M_S = 0.019
 """Near the skin, as a tone and the ring tell, the tip is moved in slow motion."""
 AIM_M, COARSE_AIM_M = 0.0012, 0.002
-"""The aim on the skin, and that of hands that push one stick at a time."""
+"""The aim on the skin, also for hands that push one stick at a time."""
 GO_AROUND_M = 0.03
 """Farther from the fiducial than this, what the tip approaches is not its goal."""
 LIFT_LOOKS = 15
@@ -44,7 +44,7 @@ class NotTouchedError(AssertionError):
 
 
 class TrainedHands(Protocol):
-    """What the trainee steers with."""
+    """The trainee's hands."""
 
     def move(self, velocity: np.ndarray) -> None:
         """Move the tip, (3,) float, m/s: right, forward, up."""
@@ -57,10 +57,10 @@ class TrainedHands(Protocol):
 
 
 class LookingTrainee:
-    """Touches the fiducials of the trial that runs, by what it sees.
+    """Touches the fiducials of the trial that runs, by its pictures.
 
-    The main picture tells where the tip is beside the fiducial, the small one how far above it:
-    nothing else does. While a camera stands still, a fiducial that the tool hides is remembered.
+    Only the main picture shows the tip next to the fiducial, and only the small picture its height.
+    While a camera stands still, a fiducial that the tool hides is remembered.
 
     Args:
         trainee: at the presenter.
@@ -280,8 +280,8 @@ class LookingTrainee:
     def _way(self, look: Look, goal: str) -> np.ndarray | None:
         """Return the vector from the tip to a fiducial or to the head's middle, (3,) float, m.
 
-        Each picture tells two of its parts; what neither tells is taken as zero. None where the
-        tip or the goal is seen in none.
+        Each picture tells two of its parts; what neither tells is taken as zero. None if no picture
+        shows both the tip and the goal.
         """
         rows, values = [], []
         for picture, remembered in zip((look.main, look.beside), self._goals, strict=True):

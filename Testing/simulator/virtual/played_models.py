@@ -1,4 +1,4 @@
-"""A task played by a model that only looks, or by one that only reads, in simulated time."""
+"""A task played by a model that only looks, or only reads, in simulated time."""
 
 from __future__ import annotations
 
@@ -133,7 +133,7 @@ def play(
 ) -> Outcome:
     """Let a model (one of `MODELS`) play a task, until all is touched or its time is over.
 
-    The seed is that of the head's pose, and of the model's eyes or choices. A model that looks
+    The seed gives the head's pose, and the model's eyes or choices. A model that looks
     works one of the devices of `HANDS`.
     """
     landings = WatchedLandings()
@@ -176,7 +176,7 @@ def play(
 def _at_work(
     setup: SimulationSetup, seed: int, folder: Path, model: str, device: str
 ) -> Iterator[Trainee]:
-    """Yield a trainee with a device, at the start menu of their own simulator."""
+    """Yield a trainee with a device, at the start menu of a new simulator."""
     done: Future[Answer] = Future()
     done.set_result(Answer(0, True))
     services = FlowServices(

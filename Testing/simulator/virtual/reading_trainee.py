@@ -31,14 +31,14 @@ INWARD = 0.05
 STEEPER, FORGET = 0.12, 0.97
 """How much steeper it assumes the skin to be, and how much of that it keeps from read to read."""
 SUNK_M = 0.03
-"""This far below where the skin should be, the tip is beside the head."""
+"""The tip misses the head if it is this far below the expected skin."""
 PRESSED_M = 0.012
 """How often Touch is pressed along the skin: a refusal tells which point is there, if any."""
 STUCK_READS, CENTER_READS = 50, 80
 
 
 class ReadingTrainee:
-    """Touches the fiducials of the trial that runs by what it reads.
+    """Touches the fiducials of the trial that runs by the texts.
 
     It knows how large a head is and about where this one is, which ways the sticks move the tip,
     and how it has moved since the start. It keeps the places that agree with all that it has read:
@@ -92,7 +92,7 @@ class ReadingTrainee:
 
     @property
     def _warnings(self) -> str:
-        """What is wrong with where the arm is; "" if nothing is."""
+        """The arm's warning; "" if there is none."""
         warnings = self._trainee.presenter.screen.warnings
         return " ".join(warning.text for warning in warnings if warning.tone is not Tone.PLAIN)
 
@@ -110,7 +110,7 @@ class ReadingTrainee:
         return self._is_on_skin or self._is_away_from_point or self._is_pressing
 
     def _move(self, velocity: np.ndarray) -> None:
-        """Move for a moment, (3,) float, m/s, and note what is read then."""
+        """Move for a moment, (3,) float, m/s, and note the texts after it."""
         self._pad.move(velocity)
         self._trainee.step(READ_STEPS)
         self._at = np.array(self._trainee.tip)
@@ -165,7 +165,7 @@ class ReadingTrainee:
                 break
             self._along_skin(place - self._at, SLIDE_M_S)
             self._ask()
-        # It does not get there, or beside the head: back above the skin, and to another position.
+        # It does not get there, or misses the head: back above the skin, and to another position.
         self._places.cannot_reach(place)
         while self._goes_on and (surface_at(self._at) - self._at) @ outward(self._at) > 0.0:
             self._move(CARRY_M_S * outward(self._at))

@@ -1,4 +1,4 @@
-"""What the motion metrics and the score say of honest play and of each name to cheat."""
+"""Motion metrics and score tell honest play from each way to cheat."""
 
 import functools
 

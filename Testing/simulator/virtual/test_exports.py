@@ -1,4 +1,4 @@
-"""What leaves a study is what other programs expect, and reveals no names."""
+"""Exports of a study are as other programs expect them, and reveal no names."""
 
 import csv
 import json
@@ -98,7 +98,7 @@ def test_xapi_statements_have_what_the_specification_requires(exported):
         for iri in (statement["verb"]["id"], statement["object"]["id"]):
             assert iri.startswith(("http://", "https://"))
         score = statement["result"]["score"]
-        # A provider that sets the version must set this one, whatever patch it follows.
+        # A provider that sets the version must set this version for every patch.
         assert statement["version"] == "1.0.0"
         assert statement["result"]["completion"] is True
         assert isinstance(statement["result"]["success"], bool)

@@ -131,7 +131,7 @@ def test_the_expected_outcomes_match_those_of_very_many_trainees():
 
 
 def test_the_spread_between_trainees_is_recovered(cohort):
-    """Of the logarithms of means over tasks and modes: σ² = σ²ₜ + σ²ᵢ/2 + σ²ₑ/20."""
+    """The logarithms of means over tasks and modes have σ² = σ²ₜ + σ²ᵢ/2 + σ²ₑ/20."""
     for name, noise in (("completion_time_s", 0.12), ("rmse_mm", 1 / np.sqrt(2 * DOF))):
         own = [
             np.mean([np.log(t.values[name]) for t in cohort.trials if t.trainee == trainee])

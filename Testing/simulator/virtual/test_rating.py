@@ -332,7 +332,7 @@ class RatingProcess:
         return self._view.all_until(is_wanted)[-1]["screen"]
 
     def end(self, has_left):
-        """End it by force, or wait until it has ended by itself; return what it printed last."""
+        """End it by force, or wait until it has ended by itself; return its last line."""
         try:
             if not has_left:
                 self._process.kill()
@@ -371,7 +371,7 @@ def test_the_program_accepts_marks_and_resumes_where_it_was_even_if_killed(
     for _ in range(7):
         rating.press("Digit3")
     rating.until(titled("is rated"))
-    # From the first item over the end to the last.
+    # The focus moves from the first item over the end to the last.
     rating.press("ArrowUp")
     rating.until(lambda screen: screen["menu"]["focus"] == "leave")
     # Not released: it ends the program.

@@ -16,7 +16,7 @@ DT = 0.05
 @pytest.mark.parametrize(
     ("head", "task"),
     [
-        # From one side of the neck to the other: the direct path leads under the head.
+        # The fiducials are on both sides of the neck: the direct path leads under the head.
         ("small", "task-5"),
         # Coming from below, the arm reaches a point with its shaft at the skin.
         ("egg", "task-3"),

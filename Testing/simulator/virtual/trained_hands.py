@@ -44,7 +44,7 @@ DRAG_DEG, PINCH = 20.0, 2.0
 def stick_push(velocity: np.ndarray, is_fine: bool | None = None) -> tuple[np.ndarray, bool]:
     """Return the sticks' push, (3,) float, and whether slowly, for a velocity of the tip, m/s.
 
-    `is_fine` is whether slow motion is on, None where it can be switched at once.
+    `is_fine` is whether slow motion is on, None if it can be switched at once.
     """
     wanted = float(np.linalg.norm(velocity))
     speed = min(wanted, FASTEST_M_S)
@@ -233,4 +233,4 @@ HANDS = {
     "mouse": TrainedMouse,
     "touch screen": Thumbs,
 }
-"""By the names of the devices; a gamepad's also takes the gamepad."""
+"""The hands by device; a gamepad's hands also take the gamepad."""

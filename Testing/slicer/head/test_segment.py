@@ -18,15 +18,15 @@ from rastrainer.slicer.head.volume import (
 from rastrainer.work_progress import no_progress
 from Testing.slicer.head.placed import add_transform, vtk_matrix
 
-BASE = -40.3
-CENTER, RADIUS, NECK = np.array([0.0, 5.0, 0.0]), 30.0, 20.0
+BASE = -30.3
+CENTER, RADIUS, NECK = np.array([0.0, 5.0, 0.0]), 22.0, 15.0
 
 
 @pytest.fixture
 def found():
     """A ball on a neck, which continues below the base as `findHead` lets it."""
-    origin = np.array([-35.0, -30.0, BASE - 15.0])
-    grid = np.indices((70, 70, 95)).transpose(1, 2, 3, 0) + origin - CENTER
+    origin = np.array([-27.0, -22.0, BASE - 15.0])
+    grid = np.indices((54, 54, 72)).transpose(1, 2, 3, 0) + origin - CENTER
     ball = RADIUS - np.linalg.norm(grid, axis=3)
     neck = NECK - np.linalg.norm(grid[..., :2], axis=3)
     level = np.clip(np.maximum(ball, np.where(grid[..., 2] < 0.0, neck, -1.0)), -1.0, 1.0)
@@ -105,7 +105,7 @@ def assert_rests_on_the_whole_neck(mesh):
 @pytest.mark.parametrize("axes", [(0, 1, 2), (1, 2, 0)], ids=["axial", "sagittal"])
 def test_the_base_stays_when_an_edit_moves_the_segment_to_an_oblique_grid(node, found, axes):
     segment = showSegment(node, found)
-    lay_on_grid(node, segment, oblique(axes, [35.0, 35.0, 35.0]), (70, 70, 70))
+    lay_on_grid(node, segment, oblique(axes, [27.0, 27.0, 27.0]), (54, 54, 54))
     mesh = skin_of(node, segment)
     assert mesh.vertices[:, 2].min() == pytest.approx(BASE, abs=0.51)
     assert_rests_on_the_whole_neck(mesh)
@@ -114,17 +114,17 @@ def test_the_base_stays_when_an_edit_moves_the_segment_to_an_oblique_grid(node, 
 
 def test_a_neck_cut_by_an_oblique_scan_continues_to_a_flat_base(node, found):
     segment = showSegment(node, found)
-    lay_on_grid(node, segment, oblique((0, 1, 2), [35.0, 35.0, 23.0]), (70, 70, 58))
+    lay_on_grid(node, segment, oblique((0, 1, 2), [27.0, 27.0, 17.0]), (54, 54, 46))
     mesh = skin_of(node, segment)
     assert BASE < mesh.vertices[:, 2].min() < BASE + 5.0
     assert_rests_on_the_whole_neck(mesh)
 
 
 def test_an_erased_neck_is_not_in_the_head(node, found):
-    found.body[:, :, : round(-33.0 - found.origin[2])] = False
+    found.body[:, :, : round(-25.0 - found.origin[2])] = False
     segment = showSegment(node, found)
     mesh = skin_of(node, segment)
-    assert mesh.vertices[:, 2].min() == pytest.approx(-32.0, abs=1.0)
+    assert mesh.vertices[:, 2].min() == pytest.approx(-24.0, abs=1.0)
 
 
 def test_a_moved_segment_moves_its_head(scene, node, found):

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -277,21 +278,56 @@ def outward_normals(mesh: HeadMesh, points: Sequence[np.ndarray] | np.ndarray) -
     return np.array([normal_at(mesh, nearest_on_mesh(mesh, point)) for point in points])
 
 
+_EDGE = 1e-9
+_SAME_MM = 1e-6
+
+
+class MeshCrossing(NamedTuple):
+    """Where a line goes through a surface: at a distance from its start, in mm, and whether in."""
+
+    distance_mm: float
+    is_entering: bool
+
+
+def mesh_crossings(
+    mesh: HeadMesh, start: np.ndarray, direction: np.ndarray, length_mm: float
+) -> list[MeshCrossing]:
+    """Return where a line goes through a closed surface, in order.
+
+    The triangles are intersected as by Möller and Trumbore (1997). A line through an edge or a
+    corner crosses once. Start (3,), mm, and direction (3,), a unit vector, are in the mesh's frame.
+    """
+    centers, radii = mesh.triangle_spheres
+    to_center = centers - start
+    along = to_center @ direction
+    aside = np.einsum("ij,ij->i", to_center, to_center) - along**2
+    near = np.flatnonzero(aside <= (radii + _SAME_MM) ** 2)
+    corner, b, c = (mesh.vertices[mesh.triangles[near, k]] for k in range(3))
+    ab, ac, to_start = b - corner, c - corner, start - corner
+    across = np.cross(np.broadcast_to(direction, ac.shape), ac)
+    area = np.einsum("ij,ij->i", ab, across)
+    turned = np.cross(to_start, ab)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        u = np.einsum("ij,ij->i", to_start, across) / area
+        v = turned @ direction / area
+        distance = np.einsum("ij,ij->i", ac, turned) / area
+        is_hit = (u >= -_EDGE) & (v >= -_EDGE) & (u + v <= 1.0 + _EDGE)
+        is_hit &= (distance >= 0.0) & (distance <= length_mm)
+    found: list[MeshCrossing] = []
+    hits = np.flatnonzero(is_hit)
+    for hit in hits[np.argsort(distance[hits], kind="stable")]:
+        # A triangle turned against the line has a positive determinant.
+        crossing = MeshCrossing(float(distance[hit]), bool(area[hit] > 0.0))
+        if not found or crossing.distance_mm - found[-1].distance_mm > _SAME_MM:
+            found.append(crossing)
+    return found
+
+
 def hides(mesh: HeadMesh, eye: np.ndarray, point: np.ndarray, slack_mm: float = 1.0) -> bool:
     """Return whether the surface is between `eye` and `point`, both (3,), but for `slack_mm`.
 
-    The point is on the surface. (Ray and triangle by Möller and Trumbore 1997.)
+    The point is on the surface.
     """
-    start = np.asarray(eye, dtype=float)
-    along = point - start
-    a, b, c = mesh.corners()
-    across = np.cross(along, c - a)
-    determinant = np.einsum("ij,ij->i", b - a, across)
-    safe = np.where(np.abs(determinant) > 1e-12, determinant, np.inf)
-    from_a = start - a
-    u = np.einsum("ij,ij->i", from_a, across) / safe
-    turned = np.cross(from_a, b - a)
-    v = turned @ along / safe
-    share = np.einsum("ij,ij->i", c - a, turned) / safe
-    last = 1.0 - slack_mm / np.linalg.norm(along)
-    return bool(np.any((u >= 0) & (v >= 0) & (u + v <= 1) & (share > 0) & (share < last)))
+    along = np.asarray(point - eye, dtype=float)
+    length = float(np.linalg.norm(along))
+    return bool(mesh_crossings(mesh, eye, along / length, length - slack_mm))

@@ -18,7 +18,7 @@ from numpy.random import default_rng
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.head.mesh import HeadMesh
+from rastrainer.head.mesh import HeadMesh, nearest_vertices
 from rastrainer.json_checks import number, whole_number
 from rastrainer.protocol import SKIN_LIMIT_MM
 
@@ -123,8 +123,8 @@ class SkinShift:
         """
         if self.indentation_mm == 0.0:
             return points + self.moved(points, mesh)
-        squares = np.sum(mesh.vertices**2, axis=1) - 2.0 * points @ mesh.vertices.T
-        return self.touched(points, mesh.vertex_normals[squares.argmin(axis=1)], mesh)
+        _, nearest = nearest_vertices(mesh, points)
+        return self.touched(points, mesh.vertex_normals[nearest], mesh)
 
     def unmeasured(self, points: np.ndarray, mesh: HeadMesh) -> np.ndarray:
         """Return the points of the images that `measured` puts at points (n, 3), RAS mm."""

@@ -148,8 +148,8 @@ REAL_TIME = PlayingSession(1.0, False)
 class StartingPoint:
     """Where a simulation starts: after another one's state, or within a trial's journal.
 
-    `tick` and `sim_time_s` are those of the last step before, `revision` that of the training
-    state; `camera` is the view, None for the one at the start.
+    `tick`, `sim_time_s` and `revision` (of the training state) belong to the last step before;
+    `camera` is the view, None for the view at the start.
     """
 
     tick: Count
@@ -179,7 +179,7 @@ class RecordedMethod:
 
 @dataclass(frozen=True)
 class RecordedSetup:
-    """What identifies the setup of a trial; `settings` are the simulator's, as JSON."""
+    """Identifies the setup of a trial; `settings` are the simulator's, as JSON."""
 
     scenario: RecordedContent
     robot: Words
@@ -195,8 +195,8 @@ class JournalHeader(Entry, kind="header", own_keys_first=4):
     Attributes:
         tick_s: length of a tick.
         before: the state before the first step.
-        seed: of the head's pose. It is not written here: the line that ends the trial has it, and
-            until then the file beside the journal.
+        seed: of the head's pose. It is not written here but in the line that ends the trial, and
+            until then in the file next to the journal.
     """
 
     format: Annotated[str, one_of(FORMAT)]
@@ -376,7 +376,7 @@ class ProcedureAt:
 
 @dataclass(frozen=True)
 class Ahead:
-    """The true distances along the guide's axis; None where it misses skin or skull."""
+    """The true distances along the guide's axis; None if it misses skin or skull."""
 
     skin_mm: Millimeters | None
     outer_mm: Millimeters | None

@@ -12,14 +12,13 @@ from typing import Annotated
 
 import numpy as np
 
-from rastrainer.head.mesh import HeadMesh, nearest_on_mesh
+from rastrainer.head.mesh import HeadMesh, mesh_crossings, nearest_on_mesh
 from rastrainer.json_checks import number, text
 from rastrainer.procedure.geometry import (
     BoneAhead,
     axis_distance_mm,
     bone_ahead,
     is_inside,
-    mesh_crossings,
     segment_distances_mm,
     skull_angle_deg,
 )

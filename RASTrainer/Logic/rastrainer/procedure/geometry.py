@@ -6,19 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, normal_at
+from rastrainer.head.mesh import HeadMesh, mesh_crossings, nearest_on_mesh, normal_at
 
 DIPLOE_MM = 5.0
 """Gaps in bone up to this length belong to it: the marrow between both tables is dark in a CT."""
-_EDGE = 1e-9
-_SAME_MM = 1e-6
-
-
-class MeshCrossing(NamedTuple):
-    """Where a line goes through a surface: at a distance from its start, in mm, and whether in."""
-
-    distance_mm: float
-    is_entering: bool
 
 
 class BoneAhead(NamedTuple):
@@ -29,40 +20,6 @@ class BoneAhead(NamedTuple):
 
     outer_mm: float
     inner_mm: float | None
-
-
-def mesh_crossings(
-    mesh: HeadMesh, start: np.ndarray, direction: np.ndarray, length_mm: float
-) -> list[MeshCrossing]:
-    """Return where a line goes through a closed surface, in order.
-
-    The triangles are intersected as by Möller and Trumbore (1997). A line through an edge or a
-    corner crosses once. Start (3,), mm, and direction (3,), a unit vector, are in the mesh's frame.
-    """
-    centers, radii = mesh.triangle_spheres
-    to_center = centers - start
-    along = to_center @ direction
-    aside = np.einsum("ij,ij->i", to_center, to_center) - along**2
-    near = np.flatnonzero(aside <= (radii + _SAME_MM) ** 2)
-    corner, b, c = (mesh.vertices[mesh.triangles[near, k]] for k in range(3))
-    ab, ac, to_start = b - corner, c - corner, start - corner
-    across = np.cross(np.broadcast_to(direction, ac.shape), ac)
-    area = np.einsum("ij,ij->i", ab, across)
-    turned = np.cross(to_start, ab)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        u = np.einsum("ij,ij->i", to_start, across) / area
-        v = turned @ direction / area
-        distance = np.einsum("ij,ij->i", ac, turned) / area
-        is_hit = (u >= -_EDGE) & (v >= -_EDGE) & (u + v <= 1.0 + _EDGE)
-        is_hit &= (distance >= 0.0) & (distance <= length_mm)
-    found: list[MeshCrossing] = []
-    hits = np.flatnonzero(is_hit)
-    for hit in hits[np.argsort(distance[hits], kind="stable")]:
-        # A triangle turned against the line has a positive determinant.
-        crossing = MeshCrossing(float(distance[hit]), bool(area[hit] > 0.0))
-        if not found or crossing.distance_mm - found[-1].distance_mm > _SAME_MM:
-            found.append(crossing)
-    return found
 
 
 def bone_ahead(

@@ -1,6 +1,6 @@
-"""Quantiles of the squared length of an error, for intervals.
+"""Probabilities for tests and intervals.
 
-`import scipy` imports nearly nothing: each part of it is imported when it is first used.
+scipy is imported where it is used: opening the module in Slicer should not wait for it.
 """
 
 from __future__ import annotations
@@ -10,10 +10,16 @@ from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
-import scipy
 
 DIRECTIONS = 12
 """Nodes of a quadrature over an octant, in each direction."""
+
+
+def f_tail(value: float, numerator: float, denominator: float) -> float:
+    """Return the probability that an F variable exceeds `value`."""
+    from scipy import special
+
+    return float(special.fdtrc(numerator, denominator, value))
 
 
 def ratio_quantile(probability: float, weights: np.ndarray, dof: float) -> float:
@@ -65,6 +71,8 @@ def widened_quantile(probability: float, weights: np.ndarray, dof: float, added:
 
 def widened_distribution(weights: np.ndarray, dof: float, added: float) -> Callable[[float], float]:
     """Return the probability up to a value of the sum of `widened_quantile`, as a function."""
+    from scipy import special
+
     scales, shares = _inverse_chi_square(dof)
     squares, areas = _octant()
     # One row a direction, one column a size.
@@ -74,7 +82,7 @@ def widened_distribution(weights: np.ndarray, dof: float, added: float) -> Calla
     def probability_up_to(value: float) -> float:
         # The distribution function of χ² with 3 degrees of freedom.
         root = np.sqrt(value / (2.0 * variances))
-        up_to = scipy.special.erf(root) - 2.0 / math.sqrt(math.pi) * root * np.exp(-(root**2))
+        up_to = special.erf(root) - 2.0 / math.sqrt(math.pi) * root * np.exp(-(root**2))
         return float(np.sum(of_nodes * up_to))
 
     return probability_up_to

@@ -11,7 +11,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 
 from rastrainer.errors import InputError
 from rastrainer.registration.fits import PARAMETERS, motions
@@ -91,8 +90,10 @@ def misfit_probability(registration: Registration, fle_mm: np.ndarray) -> float:
     Σ 3|rᵢ|²/FLEᵢ² of a fit weighted by 1/FLE² is χ² with 3N − p degrees of freedom. `fle_mm` is as
     stated, (n,).
     """
+    from scipy import special
+
     value = float(np.sum(3.0 * registration.residuals_mm**2 / np.asarray(fle_mm) ** 2))
-    return float(scipy.special.chdtrc(degrees_of_freedom(registration), value))
+    return float(special.chdtrc(degrees_of_freedom(registration), value))
 
 
 def error_along_surface(registration: Registration, normals: np.ndarray) -> LocalizationError:

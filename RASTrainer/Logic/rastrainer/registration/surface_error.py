@@ -225,6 +225,9 @@ class TraceGuide:
 
     A place stays until a centimeter has been drawn within `COVERED_MM` of it, or a stroke elsewhere
     has ended: nobody could follow a place that jumps about.
+
+    Attributes:
+        away_mm: (v,) float, from each vertex of the head to the trace; infinite without points.
     """
 
     def __init__(self, mesh: HeadMesh, target: np.ndarray, eye: np.ndarray) -> None:
@@ -234,7 +237,7 @@ class TraceGuide:
         self._vertices = guided_vertices(mesh, eye)
         self._places = np.zeros((0, 3))
         self._rows = np.zeros(0, dtype=int)
-        self._away = np.full(len(self._vertices), np.inf)
+        self.away_mm = np.full(len(mesh.vertices), np.inf)
         self._told: NextPlace | None = None
         self._told_at = -1
 
@@ -253,10 +256,10 @@ class TraceGuide:
         known = len(self._places)
         if len(places) < known or not np.array_equal(places[:known], self._places):
             known, self._told_at = 0, -1
-            self._rows, self._away = self._rows[:0], np.full(len(self._vertices), np.inf)
+            self._rows, self.away_mm = self._rows[:0], np.full_like(self.away_mm, np.inf)
         new = places[known:]
         self._rows = np.concatenate([self._rows, nearest_vertices(self._mesh, new)[1]])
-        self._away = nearest_traced_mm(self._mesh.vertices[self._vertices], new, self._away)
+        self.away_mm = nearest_traced_mm(self._mesh.vertices, new, self.away_mm)
         self._places = places
 
     def _is_kept(self, is_drawing: bool) -> bool:
@@ -269,7 +272,7 @@ class TraceGuide:
         return int(np.sum(np.linalg.norm(drawn, axis=1) <= COVERED_MM)) < DAB
 
     def _best(self) -> NextPlace | None:
-        open_ = self._vertices[self._away > COVERED_MM]
+        open_ = self._vertices[self.away_mm[self._vertices] > COVERED_MM]
         if len(self._places) >= MAX_TRACE_POINTS or not len(open_):
             return None
         allowed = np.zeros(len(self._mesh.vertices), dtype=bool)

@@ -78,42 +78,19 @@ def plane_normals(
     return normals
 
 
-@dataclass(frozen=True)
-class WholeStep:
-    """The whole steps of s starts.
+def take_step(
+    points: np.ndarray,
+    mesh: HeadMesh,
+    here: SurfaceFit,
+    gate: np.ndarray,
+    is_near: np.ndarray,
+    share: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Take a share (s,) of the steps of Gauss and Newton; near their ends (s,) bool, of Newton.
 
-    Attributes:
-        shifts: (s, 3) float, mm, of the trace's center.
-        turns: (s, 3) float, rad, about it.
-        centers: (s, 3) float, RAS mm.
-        slope: (s,) float, mm², by how much the cost changes along the step, to first order.
+    Return matrices, the points' places, the longest move (s,), mm, and by how much the cost changes
+    along the whole step, to first order, (s,), mm².
     """
-
-    shifts: np.ndarray
-    turns: np.ndarray
-    centers: np.ndarray
-    slope: np.ndarray
-
-    def taken_by(
-        self, share: np.ndarray, here: SurfaceFit, points: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return matrices, the points' places, and the longest move after a share (s,) of it."""
-        turn = transforms.rotations(share[:, None] * self.turns)
-        moved = np.zeros_like(here.matrices)
-        moved[:, :3, :3] = turn @ here.matrices[:, :3, :3]
-        from_center = here.matrices[:, :3, 3] - self.centers
-        moved[:, :3, 3] = (turn @ from_center[..., None])[..., 0] + self.centers
-        moved[:, :3, 3] += share[:, None] * self.shifts
-        moved[:, 3, 3] = 1.0
-        places = transforms.apply_each(moved, points)
-        moves = places - transforms.apply_each(here.matrices, points)
-        return moved, places, np.sqrt(np.einsum("sni,sni->sn", moves, moves).max(axis=1))
-
-
-def whole_step(
-    points: np.ndarray, mesh: HeadMesh, here: SurfaceFit, gate: np.ndarray, is_near: np.ndarray
-) -> WholeStep:
-    """Return the steps of Gauss and Newton; of starts (s,) bool near their ends, of Newton."""
     places = transforms.apply_each(here.matrices, points)
     center = places.mean(axis=1)
     arms = places - center[:, None]
@@ -131,11 +108,21 @@ def whole_step(
         _add_bends(hessian, mesh, here, normals, arms, extent, gate)
     gradient = np.einsum("sni,sn->si", weighted, here.distances_mm)
     scale = np.trace(hessian, axis1=1, axis2=2) * _DAMPING + 1e-12
-    step = -np.linalg.solve(hessian + scale[:, None, None] * np.eye(6), gradient[..., None])[..., 0]
-    reach = np.linalg.norm(step[:, :3], axis=1) + np.linalg.norm(step[:, 3:], axis=1)
-    step *= np.minimum(1.0, STEP_MM / np.maximum(reach, 1e-12))[:, None]
-    slope = 2.0 * np.einsum("si,si->s", gradient, step)
-    return WholeStep(step[:, :3], step[:, 3:] / extent[:, None], center, slope)
+    whole = -np.linalg.solve(hessian + scale[:, None, None] * np.eye(6), gradient[..., None])
+    whole = whole[..., 0]
+    reach = np.linalg.norm(whole[:, :3], axis=1) + np.linalg.norm(whole[:, 3:], axis=1)
+    whole *= np.minimum(1.0, STEP_MM / np.maximum(reach, 1e-12))[:, None]
+    slope = 2.0 * np.einsum("si,si->s", gradient, whole)
+    turn = transforms.rotations(share[:, None] * (whole[:, 3:] / extent[:, None]))
+    moved = np.zeros_like(here.matrices)
+    moved[:, :3, :3] = turn @ here.matrices[:, :3, :3]
+    from_center = here.matrices[:, :3, 3] - center
+    moved[:, :3, 3] = (turn @ from_center[..., None])[..., 0] + center
+    moved[:, :3, 3] += share[:, None] * whole[:, :3]
+    moved[:, 3, 3] = 1.0
+    there = transforms.apply_each(moved, points)
+    moves = there - places
+    return moved, there, np.sqrt(np.einsum("sni,sni->sn", moves, moves).max(axis=1)), slope
 
 
 def _add_bends(
@@ -248,8 +235,8 @@ def fit_to_surface(
             widest = np.inf if number < GATE_STEPS else limit[active]
             limit[active] = np.minimum(gates(here.distances_mm), widest)
         gate = limit[active]
-        step = whole_step(points, mesh, here, gate, last[active] < BENT_MM)
-        moved, places, longest = step.taken_by(share[active], here, points)
+        near = last[active] < BENT_MM
+        moved, places, longest, slope = take_step(points, mesh, here, gate, near, share[active])
         # After a small step, all that follow are hardly longer together; after a long one, far more
         # triangles would have to be kept than are found anew.
         slack = np.where(longest < FOLLOWED_MM, longest, 0.0)
@@ -260,8 +247,9 @@ def fit_to_surface(
         better = after <= before
         # `longest` belongs to a share of the whole step.
         done = (longest < tolerance_mm * share[active]) | (share[active] < _LEAST_SHARE)
-        share[active] = _next_share(share[active], before, after, step.slope * share[active])
-        _replace(now, active[better], next_.taken(np.flatnonzero(better)))
+        share[active] = _next_share(share[active], before, after, slope * share[active])
+        for name in ("matrices", "distances_mm", "nearest_mm", "triangles"):
+            getattr(now, name)[active[better]] = getattr(next_, name)[better]
         converged[active[done]] = True
         active = active[~done]
         if not len(active):
@@ -298,13 +286,6 @@ def _placed(matrices: np.ndarray, nearest: NearestPoints) -> SurfaceFit:
         np.zeros(size, dtype=bool),
         np.zeros(size, dtype=int),
     )
-
-
-def _replace(now: SurfaceFit, rows: np.ndarray, other: SurfaceFit) -> None:
-    now.matrices[rows] = other.matrices
-    now.distances_mm[rows] = other.distances_mm
-    now.nearest_mm[rows] = other.nearest_mm
-    now.triangles[rows] = other.triangles
 
 
 def _next_share(

@@ -20,11 +20,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.registration.distributions import (
+    f_tail,
     ratio_quantile,
     widened_distribution,
     widened_quantile,
@@ -262,7 +262,7 @@ def common_bias(errors_mm: np.ndarray, normals: np.ndarray) -> CommonBias:
     dof = 2 * len(normals) - known
     ratio = explained / known * dof / left if left > 0 else np.inf if explained > 0 else 0.0
     x, y, z = (float(value) for value in bias)
-    return CommonBias((x, y, z), float(scipy.special.fdtrc(known, dof, ratio)))
+    return CommonBias((x, y, z), f_tail(ratio, known, dof))
 
 
 def bias_of_errors(normals: np.ndarray) -> np.ndarray:

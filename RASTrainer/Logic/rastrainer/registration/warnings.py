@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
-import scipy
 
 from rastrainer import transforms
 from rastrainer.json_checks import text
+from rastrainer.registration.distributions import f_tail
 from rastrainer.registration.fits import (
     AFFINE,
     RIGID,
@@ -208,7 +208,15 @@ def find_scale(moving: np.ndarray, fixed: np.ndarray) -> float | None:
     former, a wrong order the latter. A scale near 1 counts only if noise cannot explain it.
     """
     scale = symmetric_scale(moving, fixed)
-    typical = _median_distance_ratio(moving, fixed)
+    # Distances of neighbors in the lists: one bad touch hardly moves their median.
+    distances = [
+        np.linalg.norm(np.roll(points, shift, axis=0) - points, axis=1)
+        for shift in range(1, min(len(moving), WORST_POINTS))
+        for points in (moving, fixed)
+    ]
+    along, across = np.concatenate(distances[0::2]), np.concatenate(distances[1::2])
+    usable = (along > 0) & (across > 0)
+    typical = float(np.median(across[usable] / along[usable]))
     if min(scale, typical) > COARSE_SCALE or max(scale, typical) < 1 / COARSE_SCALE:
         return typical
     if not (min(scale, typical) > FINE_SCALE or max(scale, typical) < 1 / FINE_SCALE):
@@ -236,8 +244,14 @@ def find_order(moving: np.ndarray, fixed: np.ndarray) -> np.ndarray | None:
     Candidates are two exchanged points, the reversed list, and the rotated list. An order with a
     poor fit is not returned.
     """
-    exchanges, others = _exchanges(moving, fixed), _other_orders(len(moving))
-    orders = np.concatenate([exchanges, others])
+    rows = np.arange(len(moving))
+    pairs = list(itertools.combinations(_worst_points(moving, fixed, np.ones(len(rows))), 2))
+    orders = np.tile(rows, (len(pairs), 1))
+    for exchanged, (i, j) in zip(orders, pairs, strict=True):
+        exchanged[[i, j]] = j, i
+    if len(rows) <= ORDERS_LIMIT:
+        rotated = (np.roll(rows, shift) for shift in range(1, len(rows)))
+        orders = np.vstack([orders, rows[::-1], *rotated])
     squares = rigid_sums_of_squares(moving[orders], fixed, np.ones(len(moving)))
     best = int(np.argmin(squares))
     before, dof = _squares(moving, fixed), 3 * len(moving) - 6
@@ -245,7 +259,7 @@ def find_order(moving: np.ndarray, fixed: np.ndarray) -> np.ndarray | None:
         return None
     if is_poor_fit(moving[orders[best]], fixed):
         return None
-    if best < len(exchanges) and not _both_fit(moving, fixed, orders[best], squares[best]):
+    if best < len(pairs) and not _both_fit(moving, fixed, orders[best], squares[best]):
         return None
     return orders[best]
 
@@ -295,22 +309,6 @@ def _worst_subset(
     return None
 
 
-def _exchanges(moving: np.ndarray, fixed: np.ndarray) -> np.ndarray:
-    worst = _worst_points(moving, fixed, np.ones(len(moving)))
-    pairs = list(itertools.combinations(worst, 2))
-    orders = np.tile(np.arange(len(moving)), (len(pairs), 1))
-    for order, (i, j) in zip(orders, pairs, strict=True):
-        order[[i, j]] = j, i
-    return orders
-
-
-def _other_orders(count: int) -> np.ndarray:
-    if count > ORDERS_LIMIT:
-        return np.empty((0, count), dtype=int)
-    rows = np.arange(count)
-    return np.array([rows[::-1], *(np.roll(rows, shift) for shift in range(1, count))])
-
-
 def _both_fit(moving: np.ndarray, fixed: np.ndarray, order: np.ndarray, squares: float) -> bool:
     """Return whether two exchanged points fit as well as the others.
 
@@ -337,23 +335,8 @@ def _explains(
     """Return whether `parameters` more parameters reduce the squares more than noise would."""
     floor = len(fixed) * (NOISE_FLOOR * np.linalg.norm(extents(fixed))) ** 2
     ratio = max(before - after, 0.0) / parameters / ((after + floor) / dof)
-    return bool(tries * scipy.special.fdtrc(parameters, dof, ratio) < FALSE_ALARM)
+    return tries * f_tail(float(ratio), parameters, dof) < FALSE_ALARM
 
 
 def _squares(moving: np.ndarray, fixed: np.ndarray, handedness: int = 1) -> float:
     return float(rigid_sums_of_squares(moving, fixed, np.ones(len(moving)), handedness))
-
-
-def _median_distance_ratio(moving: np.ndarray, fixed: np.ndarray) -> float:
-    """Return the median of fixed over moving distances of neighbors in the lists.
-
-    One bad touch, however far off, does not move the median much.
-    """
-    distances = [
-        np.linalg.norm(np.roll(points, shift, axis=0) - points, axis=1)
-        for shift in range(1, min(len(moving), WORST_POINTS))
-        for points in (moving, fixed)
-    ]
-    along, across = np.concatenate(distances[0::2]), np.concatenate(distances[1::2])
-    usable = (along > 0) & (across > 0)
-    return float(np.median(across[usable] / along[usable]))

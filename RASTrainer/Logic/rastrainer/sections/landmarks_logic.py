@@ -18,7 +18,7 @@ from rastrainer.files.point_files import read_markups, write_markups
 from rastrainer.files.point_list import PointList
 from rastrainer.scenario.points import Landmark
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.sections.scenario_logic import ScenarioFiles
+from rastrainer.sections.scenario_files import ScenarioFiles
 from rastrainer.slicer.scene.nodes import Role, findNode, findOrAddNode
 from rastrainer.slicer.scene.plan_points import (
     LIST,

@@ -16,8 +16,8 @@ from rastrainer.sections.new_scenario_logic import ScenarioMaker
 from rastrainer.sections.procedure_logic import ProcedureLogic
 from rastrainer.sections.procedure_plan_logic import ProcedurePlanLogic
 from rastrainer.sections.registration_logic import RegistrationLogic
-from rastrainer.sections.scenario_cache import ScenarioCache
-from rastrainer.sections.scenario_logic import ScenarioFiles, ScenarioLogic
+from rastrainer.sections.scenario_files import ScenarioCache, ScenarioFiles
+from rastrainer.sections.scenario_logic import ScenarioLogic
 from rastrainer.sections.score_logic import ReplayLogic
 from rastrainer.sections.simulator_logic import SimulatorLogic
 from rastrainer.sections.study_logic import StudyLogic
@@ -27,6 +27,7 @@ from rastrainer.sections.trainees_logic import CurriculumLogic, TraineeLogic
 from rastrainer.sections.training_logic import TrainingLogic
 from rastrainer.sections.trial_logic import TrialLogic
 from rastrainer.sections.trial_services import TrialServices
+from rastrainer.sections.trial_status import readStatus
 from rastrainer.sections.views import BorrowedLayout, SliceFollower
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.connection import ConnectorKit
@@ -132,7 +133,7 @@ class ModuleSession:
         self.scenarioFiles = ScenarioFiles(self.simulator, cache, places.library)
         self.scenarioMaker = ScenarioMaker(scene, self.scenarioFiles, run)
         self.training = TrainingLogic(scene, self.link, cache.find, later=self.work.changeScene)
-        self.slices = SliceFollower(scene, self.training, later=self.work.later)
+        self.slices = SliceFollower(scene, self.training, self.settings, later=self.work.later)
         self.study = StudyLogic(self.trainees, self.training, self.link)
         self.curriculum = CurriculumLogic(self.trainees, self.link)
         services = TrialServices(
@@ -287,8 +288,8 @@ class ModuleSession:
         self._showTrainees()
 
     def _noticeNewTrial(self, state: dict[str, Any]) -> None:
-        trial = str(state.get("trialId", ""))
-        if trial != self._trial and state.get("phase") == Phase.RUNNING.value:
-            self._trial = trial
+        trial = readStatus(state)
+        if trial.trialId != self._trial and trial.phase == Phase.RUNNING.value:
+            self._trial = trial.trialId
             self.registration.reset()
             self.plan.forgetTruth()

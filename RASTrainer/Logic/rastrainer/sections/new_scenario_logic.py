@@ -21,7 +21,8 @@ from rastrainer.scenario.points import touch_order
 from rastrainer.scenario.scenario import UNKNOWN_LICENSE, Scenario
 from rastrainer.scenario.setup import SetUp
 from rastrainer.scenario.writer import HeadDraft, write_draft
-from rastrainer.sections.scenario_logic import ScenarioFiles, findSkin, planArguments
+from rastrainer.sections.scenario_files import ScenarioFiles, planArguments
+from rastrainer.sections.scenario_logic import findSkin
 from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.polydata import meshPolyData
 from rastrainer.slicer.program.child_process import Run, runChild

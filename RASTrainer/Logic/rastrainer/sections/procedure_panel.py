@@ -64,7 +64,7 @@ class ProcedurePanel(Panel):
         super().__init__(ui, session)
         self._logic = session.procedure
         bind(ui.slicesAlongCheckBox, "checked", session.settings, SLICES_LIE_ALONG)
-        ui.slicesAlongCheckBox.connect("toggled(bool)", self._laySlices)
+        ui.slicesAlongCheckBox.connect("toggled(bool)", lambda _checked: session.woken.emit())
         for step in STEPS:
             send = partial(self._logic.command, step.command, step.arguments)
             connectClick(getattr(ui, step.button), send, _("The command was not sent."))
@@ -75,7 +75,6 @@ class ProcedurePanel(Panel):
             (self._logic.answered, partial(setText, ui.procedureMessageText)),
             (self._logic.outcomeChanged, self._showOutcome),
         )
-        self._laySlices()
         self._showOutcome()
         self.showState()
 
@@ -99,10 +98,6 @@ class ProcedurePanel(Panel):
             if not isConnected:
                 reason = _("Connect to the simulator first.")
             setEnabled(getattr(ui, step.button), isConnected and isNow and isReady, reason)
-
-    def _laySlices(self, *_checked: bool) -> None:
-        self._session.slices.liesAlong = self._ui.slicesAlongCheckBox.checked
-        self._session.woken.emit()
 
     def _showOutcome(self) -> None:
         ui, outcome = self._ui, self._logic.outcome

@@ -35,7 +35,7 @@ from rastrainer.procedure.plan import (
     read_procedure_meshes,
 )
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.sections.scenario_logic import ScenarioFiles
+from rastrainer.sections.scenario_files import ScenarioFiles
 from rastrainer.slicer.scene.nodes import labelsOf, worldPoints
 from rastrainer.slicer.scene.plan_points import ENDS, placedPoints
 from rastrainer.slicer.scene.procedure_lines import instrumentOf, noGoNodes, planLines, showPlan

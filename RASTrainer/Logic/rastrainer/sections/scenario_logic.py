@@ -1,21 +1,15 @@
-"""Scenarios: in the scene, as files, plans saved in them, and methods of registration on them."""
+"""Scenarios in the scene, another head in their place, and the robot."""
 
 from __future__ import annotations
 
-import os
-import tempfile
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError
-from rastrainer.files.reading import read_json
-from rastrainer.scenario.library import unpack
-from rastrainer.scenario.scenario import Scenario, load_scenario
-from rastrainer.sections.scenario_cache import ScenarioCache
-from rastrainer.sections.simulator_logic import SimulatorLogic
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.sections.scenario_files import ScenarioCache
 from rastrainer.slicer.background_work import BackgroundWork, inBackground
 from rastrainer.slicer.polydata import meshPolyData
 from rastrainer.slicer.program.child_process import Run
@@ -24,8 +18,6 @@ from rastrainer.slicer.scene.nodes import (
     Role,
     capturedPointsNode,
     findNode,
-    labelsOf,
-    worldPoints,
 )
 from rastrainer.slicer.scene.robot import addLink, missingLinks, robotNode, setRobotVisible
 from rastrainer.slicer.scene.robot_description import READ_LINKS, LinkMesh
@@ -157,90 +149,6 @@ class ScenarioLogic:
         self._work.later(finish)
 
 
-class ScenarioFiles:
-    """Scenarios on disk, which the simulator's program writes.
-
-    `progress` is called while it works: it may let the application draw, and may raise to cancel.
-    """
-
-    def __init__(self, simulator: SimulatorLogic, cache: ScenarioCache, library: Path) -> None:
-        """Scenarios come into the folder `library`, each into a separate folder."""
-        self.simulator = simulator
-        self._cache = cache
-        self._library = library
-
-    def add(self, title: str, make: Callable[[Path], object]) -> Scenario:
-        """Return the scenario that `make` makes in the folder it is given."""
-        folder = self._library / self._cache.newName(title)
-        make(folder)
-        self._cache.refresh()
-        return load_scenario(folder)
-
-    def importScenario(self, package: Path, progress: Progress = no_progress) -> Scenario:
-        folder = inBackground(lambda report: unpack(package, self._library, report), progress)
-        self._cache.refresh()
-        return load_scenario(folder)
-
-    def drawFaceRemoval(self, name: str, picture: Path, progress: Progress = no_progress) -> str:
-        """Draw a head before and after its face is removed; return a sentence on the picture."""
-        folder = str(self._cache.find(name).folder)
-        words = ["pack", folder, os.devnull, "--picture", str(picture)]
-        return self.run(words, progress)
-
-    def exportScenario(
-        self,
-        name: str,
-        package: Path,
-        keepsFace: bool = False,
-        keepsNames: bool = False,
-        progress: Progress = no_progress,
-    ) -> str:
-        """Write a scenario as a zip file; return a sentence about removed parts.
-
-        Args:
-            keepsFace: whether the head keeps its face and skull; otherwise the user has seen what
-                `drawFaceRemoval` has drawn.
-            keepsNames: whether title, name and source stay, which may be the patient's name.
-        """
-        words = ["pack", str(self._cache.find(name).folder), str(package)]
-        words += ["--keep-face"] if keepsFace else ["--yes"]
-        words += ["--keep-names"] if keepsNames else []
-        return self.run(words, progress)
-
-    def saveWith(
-        self, plan: list[str], name: str, title: str, progress: Progress = no_progress
-    ) -> Scenario:
-        """Copy a scenario with a part replaced, and return the copy.
-
-        `plan` are arguments of `rastrainer scenario plan`, such as `--landmarks` with a file.
-        """
-        source, words = str(self._cache.find(name).folder), [f"--title={title}", *plan]
-        return self.add(
-            title, lambda folder: self.run(["plan", source, "-o", str(folder), *words], progress)
-        )
-
-    def run(self, words: list[str], progress: Progress, mayFail: bool = False) -> str:
-        """Run `rastrainer scenario`; see `SimulatorLogic.run`."""
-        return self.simulator.run(["scenario", *words], progress, mayFail)
-
-
-def planArguments(*planned: Any | None) -> list[str]:
-    """Return the arguments of `rastrainer scenario` for lists of targets, and a line."""
-    words = []
-    for node in planned:
-        if node is None:
-            continue
-        points = worldPoints(node)
-        if not node.IsA("vtkMRMLMarkupsLineNode"):
-            for name, place in zip(labelsOf(node), points, strict=True):
-                words += ["--target", name, *map(str, place.tolist())]
-        elif len(points) == 2:
-            words += ["--trajectory", node.GetName(), *map(str, points.ravel().tolist())]
-        else:
-            raise InputError(_("The trajectory needs two points: its entry and its target."))
-    return words
-
-
 FIND_SKIN = "rastrainer.slicer.head.head_draft:findSkin"
 
 
@@ -263,55 +171,3 @@ def findSkin(
         # In a cleared scene the next volume has the same ID, and would be taken for this one.
         raise InputError(_("The volume was removed before its head was found."))
     return found
-
-
-LIMIT_BYTES = 1 << 20
-
-
-@dataclass(frozen=True)
-class ComparedMethod:
-    """How a method has registered the trials; lengths in mm, root mean squares over trials.
-
-    Attributes:
-        low, high: medians of the ends of the 95 % interval of the target error.
-        residual: of the points that count; it does not show the error.
-        held: share of the intervals that hold the true error.
-    """
-
-    name: str
-    low: float
-    high: float
-    residual: float
-    expected: float
-    true: float
-    held: float
-
-
-KEYS = ("residual_mm", "expected_tre_mm", "true_tre_mm", "interval_holds_share")
-"""Keys of the last four fields above, in the program's output."""
-
-
-def compareMethods(
-    simulator: SimulatorLogic,
-    scenario: Scenario,
-    trials: int,
-    skinShiftMm: float,
-    progress: Progress = no_progress,
-) -> list[ComparedMethod]:
-    """Return how each method for which a head has the points registers simulated trials.
-
-    `skinShiftMm` is the RMS shift between imaging and operation.
-    """
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = Path(temporary) / "methods"
-        words = ["compare-methods", "--scenario", str(scenario.folder), "-o", str(folder)]
-        words += ["--trials", str(trials), "--skin-shift", str(skinShiftMm)]
-        simulator.run(words, progress)
-        compared = read_json(folder / "methods.json", LIMIT_BYTES)
-    try:
-        return [
-            ComparedMethod(name, *map(float, [*values["interval_mm"], *map(values.get, KEYS)]))
-            for name, values in compared["methods"].items()
-        ]
-    except (KeyError, TypeError, ValueError, AttributeError):
-        raise InputError(_("The simulator's program has a different version.")) from None

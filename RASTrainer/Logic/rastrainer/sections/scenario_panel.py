@@ -15,7 +15,7 @@ from rastrainer.protocol import TRIAL_RUN, RegistrationMethod
 from rastrainer.sections.application import askWhereToSave, fitSliceViews, fitThreeDViews
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, chosenScenario
-from rastrainer.sections.scenario_logic import compareMethods
+from rastrainer.sections.scenario_files import compareMethods
 from rastrainer.sections.training_panel import METHODS
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.settings import SCENARIO, TASK

@@ -11,7 +11,7 @@ from rastrainer.number_text import fixed
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, connectClick
-from rastrainer.sections.scenario_logic import planArguments
+from rastrainer.sections.scenario_files import planArguments
 from rastrainer.sections.target_plan_logic import PlanOnImages, targetsOf
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.scene.plan_points import startPlacing, whyNotRemoved

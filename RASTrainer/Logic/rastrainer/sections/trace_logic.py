@@ -12,7 +12,9 @@ from typing import Any
 import numpy as np
 
 from rastrainer.commands import CommandName
+from rastrainer.head.mesh import read_head_mesh
 from rastrainer.protocol import Phase
+from rastrainer.registration.surface_error import TraceGuide
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.sections.trial_services import Question, Steps, TrialServices
 from rastrainer.sections.trial_status import TraceStatus, readStatus
@@ -30,7 +32,12 @@ from rastrainer.slicer.scene.nodes import (
 from rastrainer.slicer.scene.scenario_nodes import requestedFile
 from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
-from rastrainer.trial.touch_registration import FollowedTrace, GivenPoints, TraceFollower
+from rastrainer.trial.touch_registration import (
+    FollowedTrace,
+    GivenPoints,
+    follow_trace,
+    trace_guide,
+)
 
 PERIOD_S = 1.0
 """Each time, the whole trace is requested, and the head is redrawn."""
@@ -54,7 +61,7 @@ class TraceLogic(Listening):
         self._services = services
         self._clock = clock
         self._scenario: Scenario | None = None
-        self._follower: TraceFollower | None = None
+        self._guide: TraceGuide | None = None
         self._wanted: Wanted | None = None
         self._shown: Wanted | None = None
         self._isAsking = False
@@ -65,7 +72,7 @@ class TraceLogic(Listening):
 
     def begin(self, scenario: Scenario) -> None:
         """Show traces on the head of a scenario, which is in the scene now."""
-        self._scenario, self._follower, self._shown = scenario, None, None
+        self._scenario, self._guide, self._shown = scenario, None, None
 
     def forgetScene(self) -> None:
         self._scenario = None
@@ -102,10 +109,10 @@ class TraceLogic(Listening):
             answer = yield Question(CommandName.GET_TRIAL, {"trialId": trialId})
 
             def follow() -> FollowedTrace:
-                if self._follower is None:
-                    self._follower = TraceFollower(scenario)
+                if self._guide is None:
+                    self._guide = trace_guide(scenario, read_head_mesh(scenario.head))
                 given = GivenPoints.of_answer(answer, least_traced=0)
-                return self._follower.follow(given, trace.on)
+                return follow_trace(self._guide, scenario, given, trace.on)
 
             followed = yield follow
         except Exception:

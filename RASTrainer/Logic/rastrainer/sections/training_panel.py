@@ -83,7 +83,7 @@ class TrainingPanel(Panel):
         bind(ui.slicesNextPointCheckBox, "checked", session.settings, SLICES_SHOW_NEXT_POINT)
         bind(ui.slicesToolCheckBox, "checked", session.settings, SLICES_FOLLOW_TOOL)
         for box in (ui.slicesNextPointCheckBox, ui.slicesToolCheckBox):
-            box.connect("toggled(bool)", self._moveSlices)
+            box.connect("toggled(bool)", lambda _checked: session.woken.emit())
         notStarted, logic = _("The trial was not started."), self._logic
         self.startTrialRun = connectClick(
             ui.startTrialRunButton, lambda: self._start(TRIAL_RUN), notStarted
@@ -109,7 +109,6 @@ class TrainingPanel(Panel):
             (session.secondPassed, self._showTime),
         )
         self._showChoices()
-        self._moveSlices()
         self.showState()
 
     def _startTask(self) -> None:
@@ -144,12 +143,6 @@ class TrainingPanel(Panel):
         box = self._ui.procedureComboBox
         offerEntries(box, entries, chosenData(box))
         self.showState()
-
-    def _moveSlices(self, *_checked: bool) -> None:
-        slices = self._session.slices
-        slices.showsNextPoint = self._ui.slicesNextPointCheckBox.checked
-        slices.followsTool = self._ui.slicesToolCheckBox.checked
-        self._session.woken.emit()
 
     def showState(self, *_arguments: Any) -> None:
         ui, trial, session = self._ui, self._logic.status, self._session

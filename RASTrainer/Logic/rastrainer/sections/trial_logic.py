@@ -25,8 +25,9 @@ from typing import Any
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_from_json
-from rastrainer.protocol import MAX_JOURNAL_BYTES, OPEN_PHASES
+from rastrainer.protocol import MAX_JOURNAL_BYTES
 from rastrainer.sections.trial_services import Question, Steps, TrialServices
+from rastrainer.sections.trial_status import TrialStatus, readStatus
 from rastrainer.slicer.scene.trial_scene import showTrial
 from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
@@ -106,7 +107,7 @@ class TrialLogic(Listening):
         self._beingScored: set[str] = set()
         self._scored: set[str] = set()
         self._unscored: deque[TrialRecord] = deque()
-        self._state: Mapping[str, Any] = {}
+        self._playing = TrialStatus()
         self._retryAt: float | None = None
         # Trials that this simulator has refused, such as trials of another simulator.
         self._refused: set[str] = set()
@@ -187,7 +188,7 @@ class TrialLogic(Listening):
         return _isIn(self._underWay, {"trialId": trialId}) or trialId in self._beingScored
 
     def _followTraining(self, state: Mapping[str, Any]) -> None:
-        self._state = state
+        self._playing = readStatus(state)
         if self._retryAt is not None and time.monotonic() >= self._retryAt:
             self._services.converse(self._resuming())
 
@@ -222,8 +223,7 @@ class TrialLogic(Listening):
 
     def _show(self, analysis: TrialAnalysis) -> None:
         """Show a trial in the scene, unless another one is being played there."""
-        isOther = self._state.get("trialId") != analysis.record.trial_id
-        if isOther and self._state.get("phase") in OPEN_PHASES:
+        if self._playing.isOpen and self._playing.trialId != analysis.record.trial_id:
             return
         scenario = self._services.findScenario(analysis.record.scenario)
         showTrial(self._services.scene, scenario, analysis, self._services.work.changeScene)

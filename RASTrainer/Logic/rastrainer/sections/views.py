@@ -24,6 +24,12 @@ from rastrainer.slicer.scene.nodes import (
     nodesOfClass,
     worldPoints,
 )
+from rastrainer.slicer.settings import (
+    SLICES_FOLLOW_TOOL,
+    SLICES_LIE_ALONG,
+    SLICES_SHOW_NEXT_POINT,
+    Settings,
+)
 
 LAYOUT_TAG = "vtkMRMLLayoutNode"
 WITH_TABLE = slicer.vtkMRMLLayoutNode.SlicerLayoutFourUpTableView
@@ -152,23 +158,20 @@ class SliceFollower:
     While the guide of a procedure is aligned, and drill and instrument are in it, they may lie
     along it instead: one across the instrument (probe's-eye view), two along it.
 
-    Attributes:
-        showsNextPoint: whether they jump to each point that is to be touched next.
-        followsTool: whether they stay at the tip of the tool, in the place of the next point.
-        liesAlong: whether they lie along the instrument of a procedure.
+    By the settings, they jump to each point that is to be touched next, stay at the tip of the tool
+    instead, and lie along the instrument of a procedure.
     """
 
     def __init__(
         self,
         scene: Any,
         training: TrainingLogic,
+        settings: Settings,
         clock: Callable[[], float] = time.monotonic,
         later: CallLater = callNow,
     ) -> None:
         """`later` has the views moved one after the other, where they need not follow the tool."""
-        self.showsNextPoint = True
-        self.followsTool = False
-        self.liesAlong = True
+        self.settings = settings
         self._along = AlongInstrument(scene)
         self._pose: np.ndarray | None = None
         self._scene = scene
@@ -198,12 +201,13 @@ class SliceFollower:
 
     @property
     def needsPoses(self) -> bool:
-        return self.followsTool or self._device is not None
+        return self.settings.get(SLICES_FOLLOW_TOOL) or self._device is not None
 
     @property
     def _device(self) -> str | None:
         """Device whose pose the views along the instrument follow; None if they do not."""
-        return DEVICES.get(self._training.status.phase) if self.liesAlong else None
+        liesAlong = self.settings.get(SLICES_LIE_ALONG)
+        return DEVICES.get(self._training.status.phase) if liesAlong else None
 
     def process(self) -> None:
         device = self._device
@@ -213,12 +217,12 @@ class SliceFollower:
             self._along.giveBack()
             self._pose = None
             self.showAgain()
-        if device is not None or self.followsTool:
+        if device is not None or self.settings.get(SLICES_FOLLOW_TOOL):
             self._shownPoint = ()
             pose = poseOnHead(self._scene, device or DeviceName.TOOL_TIP_TO_WORLD)
             if pose is not None and self._clock() >= self._lastJump + PERIOD_S:
                 self._follow(pose, isAlong=device is not None)
-        elif self.showsNextPoint:
+        elif self.settings.get(SLICES_SHOW_NEXT_POINT):
             self._showNextPoint()
 
     def _follow(self, pose: np.ndarray, isAlong: bool) -> None:

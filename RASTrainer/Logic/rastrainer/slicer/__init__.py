@@ -1,5 +1,5 @@
 """Slicer's side: what works on MRML nodes, in desktop Slicer and without it, and needs no Qt.
 
-Functions, methods and variables are in camelCase throughout, as in Slicer; what they take from the
-domain keeps its snake_case.
+Functions, methods and variables are in camelCase throughout, as in Slicer; names from the domain
+keep their snake_case.
 """

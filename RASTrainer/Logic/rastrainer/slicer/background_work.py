@@ -43,7 +43,7 @@ SWITCH_INTERVAL_S = 0.0002
 CLOSING_S = 1.0
 """How long closing waits for running work."""
 LEAVING_S = 0.2
-"""How long it then waits for the work to end what it had started."""
+"""How long it then waits for the work to end."""
 
 
 class Job(Generic[T]):
@@ -74,7 +74,6 @@ class Job(Generic[T]):
 
     @property
     def isDone(self) -> bool:
-        """Whether the thread has ended."""
         isDone = not self.thread.is_alive()
         if isDone:
             self.leave()
@@ -132,8 +131,8 @@ class BackgroundWork:
     ) -> None:
         """Run `work` in a thread once earlier results have been delivered, unless closed.
 
-        A later `process` calls `take` with its result, or `refuse` with what it has raised. What is
-        no `InputError` is then raised by `process`, too: it is a mistake of ours.
+        A later `process` calls `take` with its result, or `refuse` with its error. Errors other
+        than `InputError` are then raised by `process`, too: they are bugs.
         """
         if not self._isClosed:
             wasBusy = self.isBusy
@@ -215,7 +214,7 @@ def inBackground(work: Callable[[Progress], T], progress: Progress) -> T:
     """Return what `work` returns, calling `progress` many times a second meanwhile.
 
     `work` is called with a function to report its progress to. `progress` may let the application
-    draw, and may raise to cancel: then what is reported to raises, too.
+    draw, and may raise to cancel: then the worker's reports raise, too.
     """
     reported: list[tuple[str, float]] = [("", 0.0)]
     isCanceled = threading.Event()
@@ -241,7 +240,7 @@ class CancelableUntilBegun:
     """Lets the user cancel until the work begins to change something."""
 
     def __init__(self, progress: Progress) -> None:
-        """`progress` raises to cancel, as that of `inBackground`."""
+        """`progress` raises to cancel, as for `inBackground`."""
         self._progress = progress
         self._decision = threading.Lock()
 
@@ -251,7 +250,7 @@ class CancelableUntilBegun:
             raise AbandonedWorkError
 
     def progress(self, step: str, share: float) -> None:
-        """Report to `progress`; what it raises is passed on only before `begin`."""
+        """Report to `progress`; its errors are passed on only before `begin`."""
         try:
             self._progress(step, share)
         except Exception:

@@ -1,4 +1,4 @@
-"""What the user has chosen in the panels, kept from one start of Slicer to the next.
+"""The user's choices in the panels, kept from one start of Slicer to the next.
 
 It belongs to the user and this computer, not to the scene: a scene that is closed, or opened from
 elsewhere, changes none of it. In particular, no scene says which computer is connected to.
@@ -52,7 +52,7 @@ class Settings:
         self._kept: dict[str, Any] = {}
 
     def get(self, setting: Setting[Value]) -> Value:
-        """Return what was chosen; the default if nothing was, or it cannot be read."""
+        """Return the chosen value; the default if none was chosen, or it cannot be read."""
         kept = self._kept.get(setting.key)
         value = kept if self._store is None else self._store.value(setting.key)
         if value is None:

@@ -21,7 +21,7 @@ class Signal:
         self.listeners.append(listener)
 
     def disconnect(self, listener: Callable[..., Any]) -> None:
-        """Stop calling `listener`; one that is not connected is no error."""
+        """Stop calling `listener`, if it is connected."""
         if listener in self.listeners:
             self.listeners.remove(listener)
 

@@ -20,14 +20,13 @@ class Turns:
     def __init__(
         self, steps: Iterator[object], callSoon: Callable[[Callable[[], None]], None]
     ) -> None:
-        """Begin in the next turn, in which `callSoon` calls a function."""
         self.isOver = self._isAtWork = False
         self._steps = steps
         self._callSoon = callSoon
         callSoon(self._go)
 
     def finish(self) -> None:
-        """Do now what is left, unless a step asks for that itself."""
+        """Do the remaining steps now, unless a step asks for that itself."""
         while not (self.isOver or self._isAtWork):
             self._step()
 

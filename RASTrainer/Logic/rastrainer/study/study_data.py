@@ -9,14 +9,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.protocol import TRIAL_RUN, RegistrationMethod
+from rastrainer.protocol import TRIAL_RUN
 from rastrainer.registration.fits import RIGID
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import CurriculumStanding
 from rastrainer.study.database.cohort_store import CohortStore, IncompleteStudyError
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import StoredAbortedTrial, StoredTrial
+from rastrainer.study.database.values import StoredAbortedTrial, StoredTrial, TrialRow
 from rastrainer.study.protocol.steps import objections_to
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers, StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
@@ -26,32 +26,6 @@ from rastrainer.trial.ctps import StudyNotes, Trial, read_notes, read_trials
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore
-
-
-@dataclass(frozen=True)
-class TrialRow:
-    """One trial of a report; texts are empty if unknown.
-
-    Attributes:
-        number: Of the trainee's trials in this mode, from 1; 0 for a trial run.
-        values: Measurements by name; see `rastrainer.study.outcomes`.
-        acceptable: Whether it was within all limits of its score; False without a score.
-        procedure: None of touches alone, or if it is not scored.
-    """
-
-    trainee: str
-    mode: str
-    task: str
-    number: int
-    values: Mapping[str, float]
-    trial_id: str = ""
-    started_utc: str = ""
-    scenario: str = ""
-    score_version: str = ""
-    acceptable: bool = False
-    completed_utc: str = ""
-    procedure: ProcedureOutcome | None = None
-    method: str = RegistrationMethod.FIDUCIALS.value
 
 
 @dataclass(frozen=True)

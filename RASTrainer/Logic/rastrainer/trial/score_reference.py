@@ -54,16 +54,30 @@ def computed_once(
 
     The cache is valid while the mesh's file is unchanged.
     """
-    mesh = scenario.head
-    changed = mesh.stat().st_mtime_ns if mesh.is_file() else 0
-    return _computed(mesh, changed, compute, arguments)
+    return _computed(*_head_file(scenario), compute, arguments)
+
+
+def head_of(scenario: Scenario) -> HeadMesh:
+    """Return the scenario's head, which is read once while its file is unchanged."""
+    return _read_head(*_head_file(scenario))
+
+
+def _head_file(scenario: Scenario) -> tuple[Path, int]:
+    """Return the file of a scenario's head, and when it was changed."""
+    path = scenario.head
+    return path, path.stat().st_mtime_ns if path.is_file() else 0
+
+
+@lru_cache(maxsize=1)
+def _read_head(path: Path, _changed: int) -> HeadMesh:
+    return read_head_mesh(path)
 
 
 @lru_cache(maxsize=MAX_RESULTS)
 def _computed(
-    mesh: Path, _changed: int, compute: Callable[..., np.ndarray], arguments: tuple[Points, ...]
+    path: Path, changed: int, compute: Callable[..., np.ndarray], arguments: tuple[Points, ...]
 ) -> np.ndarray:
-    result = compute(read_head_mesh(mesh), *arguments)
+    result = compute(_read_head(path, changed), *arguments)
     result.setflags(write=False)
     return result
 

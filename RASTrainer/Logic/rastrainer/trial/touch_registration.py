@@ -12,8 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
-from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
@@ -21,7 +19,7 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, pair
-from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.head.mesh import HeadMesh
 from rastrainer.head.trial_head import SkinShift
 from rastrainer.json_checks import list_of
 from rastrainer.json_records import record_from_json
@@ -39,14 +37,13 @@ from rastrainer.registration.registration import Registration, register, registe
 from rastrainer.registration.surface_error import (
     TraceGuide,
     knowledge_of,
-    nearest_traced_mm,
     surface_target_error,
 )
 from rastrainer.registration.surface_match import SurfaceMatch, match_surface
 from rastrainer.registration.target_error import TargetError, target_error, true_errors
 from rastrainer.scenario.scenario import Scenario, task_by_method
 from rastrainer.trial.record import PlayedMethod, TracePoint, TrialRecord, trace_points
-from rastrainer.trial.score_reference import point_normals
+from rastrainer.trial.score_reference import head_of, point_normals
 from rastrainer.trial.wording import Sentence, say
 
 
@@ -110,8 +107,7 @@ class FollowedTrace:
 
     Attributes:
         places: (n, 3) float, RAS mm.
-        away_mm: (v,) float, from each vertex of the head to the nearest of them; infinite before
-            the first.
+        away_mm: as in `TraceGuide`.
         next_place: (3,) float, RAS mm, where the next points would help most; None without one.
     """
 
@@ -120,33 +116,18 @@ class FollowedTrace:
     next_place: np.ndarray | None
 
 
-class TraceFollower:
-    """Follows the trace of one trial and computes only the new part.
+def follow_trace(
+    guide: TraceGuide, scenario: Scenario, given: GivenPoints, is_drawing: bool
+) -> FollowedTrace:
+    """Return the trace so far; `is_drawing` says whether a stroke is being drawn.
 
     The true pose of the head stays unknown: the landmarks that were touched stand for it.
     """
-
-    def __init__(self, scenario: Scenario) -> None:
-        self._scenario = scenario
-        self._mesh = read_head_mesh(scenario.head)
-        self._guide = trace_guide(scenario, self._mesh)
-        self._traced = np.zeros((0, 3))
-        self._matrix = np.eye(4)
-        self._away = np.full(len(self._mesh.vertices), np.inf)
-
-    def follow(self, given: GivenPoints, is_drawing: bool) -> FollowedTrace:
-        """Return the trace so far; `is_drawing` says whether a stroke is being drawn."""
-        task = task_by_method(self._scenario, given.task, given.method)
-        labels, moving, fixed = pair(given.touches, PointList(task.labels, task.fiducials))
-        matrix, known = register(moving, fixed, RIGID, labels).matrix, len(self._traced)
-        is_longer = np.array_equal(given.trace_mm[:known], self._traced)
-        if not is_longer or not np.array_equal(matrix, self._matrix):
-            known, self._away = 0, np.full(len(self._mesh.vertices), np.inf)
-        places = transforms.apply(matrix, given.trace_mm)
-        self._away = nearest_traced_mm(self._mesh.vertices, places[known:], self._away)
-        self._traced, self._matrix = given.trace_mm, matrix
-        found = self._guide.next_place(places, is_drawing)
-        return FollowedTrace(places, self._away, None if found is None else found.position)
+    task = task_by_method(scenario, given.task, given.method)
+    labels, moving, fixed = pair(given.touches, PointList(task.labels, task.fiducials))
+    places = transforms.apply(register(moving, fixed, RIGID, labels).matrix, given.trace_mm)
+    found = guide.next_place(places, is_drawing)
+    return FollowedTrace(places, guide.away_mm, None if found is None else found.position)
 
 
 def trace_guide(scenario: Scenario, mesh: HeadMesh) -> TraceGuide:
@@ -225,17 +206,6 @@ def register_trial(
         errors[kind] = target_error(fit, scenario.target.position_ras, localization)
     pause()
     return TouchRegistration(fits, errors)
-
-
-def head_of(scenario: Scenario) -> HeadMesh:
-    """Return the scenario's head, which is read once while its file is unchanged."""
-    path = scenario.head
-    return _read_head(path, path.stat().st_mtime_ns if path.is_file() else 0)
-
-
-@lru_cache(maxsize=1)
-def _read_head(path: Path, _changed: int) -> HeadMesh:
-    return read_head_mesh(path)
 
 
 def normals_at(

@@ -49,14 +49,13 @@ class TracePlaces:
         self._place: SkinPlace | None = None
         self._since_s = 0.0
 
-    def begin(self, trial_id: str, setup: SimulationSetup, truth: Truth) -> None:
-        self._trial = trial_id, setup, truth
-
-    def forget(self) -> None:
-        self._trial = self._asked = self._found = self._place = None
+    def begin(self, trial: tuple[str, SimulationSetup, Truth] | None) -> None:
+        """Guide through another trial, by its ID; through none if it is None."""
+        self._trial = trial
+        self._asked = self._found = self._place = None
 
     def close(self) -> None:
-        self.forget()
+        self.begin(None)
         self._worker.shutdown(wait=False)
 
     def advance(self, dt: float, state: SimulationState) -> None:

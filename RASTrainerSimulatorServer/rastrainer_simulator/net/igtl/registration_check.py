@@ -59,9 +59,9 @@ def submit_checked(
         given = GivenPoints.of_answer(data) if record is None else GivenPoints.of_record(record)
         scenario = find_scenario("" if record is None else record.scenario)
         registered = register_trial(given, scenario, pause=lambda: time.sleep(_REST_S))
+        fit = registered.arguments(arguments["trialId"])
     except InputError as error:
         return Answer(0, False, str(error))
-    fit = registered.arguments(arguments["trialId"])
     own = (*fit["matrix"], fit["freMm"])
     theirs = (*arguments["matrix"], arguments["freMm"])
     tolerance = TRACE_TOLERANCE if given.method in TRACED_METHODS else TOLERANCE

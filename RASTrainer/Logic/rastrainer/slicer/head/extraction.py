@@ -91,7 +91,6 @@ def continued(level: np.ndarray, margin: int) -> np.ndarray:
 
 
 def _continueEnd(level: np.ndarray, axis: int, margin: int) -> np.ndarray:
-    """Append `margin` slices to the end of an axis."""
     slices = np.moveaxis(level, axis, 0)
     outline = _signedDistance(slices[-1])
     if outline is None:

@@ -236,7 +236,6 @@ def skullOf(volume: Volume, head: HeadBody) -> HeadMesh:
 
 
 def _bone(volume: Volume, head: HeadBody) -> np.ndarray:
-    """Return the level set of bone on the head's grid."""
     grid = onRasGrid(volume, SPACING_MM)
     smooth = ndimage.gaussian_filter(grid.values, CT_NOISE_MM / SPACING_MM, mode="nearest")
     bone = np.full(head.level.shape, -1.0, np.float32)
@@ -253,7 +252,6 @@ def _bone(volume: Volume, head: HeadBody) -> np.ndarray:
 
 
 def _belowScalp(head: HeadBody) -> np.ndarray:
-    """Return the level set of a shell between two depths below the skin."""
     outer, inner = SCALP_MM / SPACING_MM, (SCALP_MM + BONE_MM) / SPACING_MM
     depth = mask.depthInside(head.body, inner + 1.0)
     level = np.clip(depth - outer, -1.0, 1.0)

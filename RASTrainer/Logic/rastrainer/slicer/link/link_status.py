@@ -117,9 +117,11 @@ def judge(link: LinkObservation) -> LinkStatus:
     if not link.isInstalled:
         return NOT_INSTALLED
     if not link.isOpen:
-        found = link.finding and judgeFinding(link.finding, link.address)
-        isSearching = found is None or found.state is LinkState.CONNECTED
-        return lookingAt(link.address) if isSearching else found
+        status = lookingAt(link.address)
+        if link.finding is not None:
+            found = judgeFinding(link.finding, link.address)
+            status = status if found.state is LinkState.CONNECTED else found
+        return status
     if link.peerVersion not in (None, PROTOCOL_VERSION):
         return _wrongVersion(link.peerVersion)
     if link.silenceS > STALE_AFTER_S and link.hasHeartbeat:

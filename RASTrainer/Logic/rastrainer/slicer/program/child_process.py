@@ -63,7 +63,7 @@ class ChildProcess:
         self._lines: deque[str] = deque(maxlen=LINES_KEPT)
         self._killAt: float | None = None
         try:
-            self._process = subprocess.Popen(
+            self.process = subprocess.Popen(
                 [str(argument) for argument in arguments],
                 env=childEnvironment() if environment is None else dict(environment),
                 stdin=subprocess.DEVNULL,
@@ -81,18 +81,13 @@ class ChildProcess:
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
 
-    @property
-    def exitStatus(self) -> int | None:
-        """The program's exit status; None while it runs. Its child processes do not count."""
-        return self._process.poll()
-
     def poll(self) -> bool:
         """Return whether it has ended, and so has all that it started.
 
         Called again and again, this ends what the program has left behind, and kills what does not
         end within seconds.
         """
-        hasEnded = self._process.poll() is not None
+        hasEnded = self.process.poll() is not None
         # What it has started holds the other end of its output.
         if hasEnded and not self._reader.is_alive():
             return True
@@ -100,32 +95,29 @@ class ChildProcess:
             self.end()
         if self._killAt is None or time.monotonic() < self._killAt:
             return False
-        endGroup(self._process.pid, isAsked=False)
+        endGroup(self.process.pid, isAsked=False)
         # A process that has left the group may keep the output open forever.
         return hasEnded and time.monotonic() > self._killAt + LAST_OUTPUT_S
 
     def takeLines(self) -> list[str]:
-        """Return the lines that it has written since the last call."""
         return [self._lines.popleft() for _ in range(len(self._lines))]
 
     def end(self) -> None:
         """Ask the program and all that it has started to end, once; see `poll`."""
         if self._killAt is None:
             self._killAt = time.monotonic() + KILL_AFTER_S
-            endGroup(self._process.pid, isAsked=True)
+            endGroup(self.process.pid, isAsked=True)
 
     def close(self) -> None:
         """End it and all that it has started, in order where that takes half a second at most."""
         self.end()
         self._reader.join(CLOSING_S)
         if not self.poll():
-            endGroup(self._process.pid, isAsked=False)
+            endGroup(self.process.pid, isAsked=False)
             with contextlib.suppress(subprocess.TimeoutExpired):
-                self._process.wait(LAST_OUTPUT_S)
+                self.process.wait(LAST_OUTPUT_S)
 
     def abandon(self) -> None:
-        """Ask it to end, and make sure that it does, in the background."""
-
         def finish() -> None:
             while not self.poll():
                 time.sleep(PERIOD_S)
@@ -134,8 +126,8 @@ class ChildProcess:
         threading.Thread(target=finish, daemon=True).start()
 
     def _read(self) -> None:
-        assert self._process.stdout is not None
-        with self._process.stdout as output:
+        assert self.process.stdout is not None
+        with self.process.stdout as output:
             while line := output.readline(LONGEST_LINE):
                 self._lines.append(line.rstrip())
 
@@ -180,7 +172,7 @@ def runChild(command: Sequence[str | Path], progress: Progress, firstStep: str =
     except BaseException:
         child.abandon()
         raise
-    result.exitStatus = child.exitStatus
+    result.exitStatus = child.process.poll()
     return result
 
 
@@ -201,13 +193,12 @@ class OwnProcess:
     """Runs functions, each in a separate process; called in a worker, as it waits for them."""
 
     def __init__(self, python: Path) -> None:
-        """`python` runs the processes."""
         self._python = python
 
     def __call__(self, function: str, progress: Progress, *arguments: Any, **named: Any) -> Any:
         """Return what `function(*arguments, **named, progress=…)` returns in a separate process.
 
-        Where there is no such process, or it lacks a package, the function runs in this thread.
+        If no such process can be started, the function runs in this thread.
         `progress` may raise to end the process.
 
         Args:
@@ -228,9 +219,6 @@ class OwnProcess:
             kind, value = pickle.loads(outcome.read_bytes())
         if kind == "refused":
             raise InputError(value)
-        if kind == "missing":
-            logging.warning("%s lacks %s: %s runs in Slicer.", self._python, value, function)
-            return runHere(function, progress, *arguments, **named)
         return value
 
 
@@ -241,15 +229,12 @@ def runHere(function: str, progress: Progress, *arguments: Any, **named: Any) ->
 
 
 def main(folder: str) -> None:
-    """Do the task in a folder, and leave its outcome there."""
     path = Path(folder)
     try:
         function, arguments, named = pickle.loads((path / TASK).read_bytes())
         outcome = "done", runHere(function, print_progress, *arguments, **named)
     except InputError as error:
         outcome = "refused", str(error)
-    except ImportError as error:
-        outcome = "missing", str(error.name)
     except Exception:
         traceback.print_exc()
         sys.exit(1)

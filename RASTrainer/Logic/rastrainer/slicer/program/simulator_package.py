@@ -104,8 +104,8 @@ def pythonSlicer(slicerHome: Path) -> Path:
 
 ADDRESS = re.compile(r"https?://[^\s/]\S*")
 OPTIONS = (
-    # Ignore the user's pip settings and cache: the lock decides what is installed, and all
-    # downloads are removed with the private folder.
+    # Ignore the user's pip settings and cache: the lock alone counts, and all downloads are removed
+    # with the private folder.
     "--isolated",
     "--no-cache-dir",
     "--disable-pip-version-check",

@@ -63,7 +63,6 @@ class SimulatorProgram:
 
     @property
     def isRunning(self) -> bool:
-        """Whether the process, or anything that it has started, is there."""
         return self._child is not None
 
     @property
@@ -116,14 +115,14 @@ class SimulatorProgram:
         self._forwardLines(child)
         if isOver:
             self._child = None
-            self._change(*self._ended(child.exitStatus))
+            self._change(*self._ended(child.process.poll()))
             command, self._next = self._next, None
             if command is not None:
                 try:
                     self.start(command)
                 except InputError as error:
                     self._change(ProgramState.FAILED, str(error))
-        elif child.exitStatus is not None and self.state is not ProgramState.STOPPING:
+        elif child.process.poll() is not None and self.state is not ProgramState.STOPPING:
             # Its window, or the real Python of a launcher that was killed.
             self._change(ProgramState.STOPPING, _("The simulator is ending."))
 
@@ -137,7 +136,6 @@ class SimulatorProgram:
             self._change(ProgramState.STOPPED, _("The simulator was stopped."))
 
     def _ended(self, status: int | None) -> tuple[ProgramState, str]:
-        """Return state and sentence after an end with an exit status."""
         if self._isAskedToEnd:
             return ProgramState.STOPPED, _("The simulator was stopped.")
         if status == 0:

@@ -84,7 +84,6 @@ class SimulatorSetup:
 
     @property
     def isCurrent(self) -> bool:
-        """Whether the simulator that came with this module is set up."""
         mark = self._read(MARK)
         return (mark.get("version"), mark.get("origin")) == (__version__, self.package.origin())
 
@@ -122,14 +121,12 @@ class SimulatorSetup:
         self.changed.emit()
 
     def cancel(self) -> None:
-        """Cancel the set-up, which ends soon; an earlier set-up stays."""
         if self._child is not None:
             self.isCanceled = True
             self._child.end()
             self.changed.emit()
 
     def remove(self) -> None:
-        """Remove the private folder with all that was set up."""
         if self.isRunning:
             raise InputError(_("Cancel the set-up first."))
         discard(self.folder)
@@ -152,13 +149,13 @@ class SimulatorSetup:
         if not isOver:
             return
         self._child = None
-        if child.exitStatus == 0 and not self._isTrimming and not self.isCanceled:
+        if child.process.poll() == 0 and not self._isTrimming and not self.isCanceled:
             self._isTrimming = True
             self._child = ChildProcess(
                 private_command(self._python, self._partial, TRIMMER, str(self._partial))
             )
             return
-        error = self._finish(child.exitStatus)
+        error = self._finish(child.process.poll())
         self.changed.emit()
         self.finished.emit(error)
 

@@ -207,7 +207,6 @@ def simStateNode(scene: Any) -> Any:
 
 
 def drawAsPoints(node: Any) -> None:
-    """Draw a model as the points of a trace."""
     node.SetSelectable(False)
     display = node.GetDisplayNode()
     with slicer.util.NodeModify(display):

@@ -55,7 +55,6 @@ def planLines(scene: Any) -> list[Any]:
 
 
 def raiseLine(scene: Any, line: Any) -> None:
-    """Move a line of the plan up by one place."""
     lines = planLines(scene)
     place = lines.index(line)
     if place > 0:
@@ -79,7 +78,6 @@ def removeLine(scene: Any, line: Any) -> int:
 
 
 def restoreLine(scene: Any, line: Any, place: int) -> None:
-    """Restore a removed line at its place among the others."""
     lines = planLines(scene)
     scene.AddNode(line)
     line.CreateDefaultDisplayNodes()

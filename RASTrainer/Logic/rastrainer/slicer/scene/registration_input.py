@@ -205,7 +205,7 @@ class SkinNormals:
     def localizationError(self, registration: Registration) -> LocalizationError | None:
         """Return the localization error of touches on the skin, separately along and across it.
 
-        None if not all fixed points lie on the surface, or there are too few.
+        None if a fixed point is off the surface, or there are too few.
         """
         self.findNormals(registration.fixed_mm)
         normals = [self._known[point.tobytes()] for point in registration.fixed_mm]

@@ -86,7 +86,6 @@ class ArmChain:
 
 
 def readArmChain(urdf: Path) -> ArmChain:
-    """Read the chain of a robot without branches."""
     root = readUrdf(urdf)
     try:
         joints = {attribute(joint, "parent", "link"): joint for joint in root.findall("joint")}

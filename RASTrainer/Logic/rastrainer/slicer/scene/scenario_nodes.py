@@ -51,8 +51,17 @@ def showScenario(scene: Any, scenario: Scenario, later: CallLater = callNow) -> 
 
     Called again, nothing is made twice. Meshes and images come still later, by a `SceneFileLoader`.
     """
-    for show in (_showHead, _showSkull, _showPlan, requestVolume):
-        later(partial(show, scene, scenario))
+    skull, name = scenario.skull, "Skull"
+    if skull is not None and skull.kind is SkullKind.APPROXIMATION:
+        name = "Skull (approximation)"
+    opacity = 1.0 if skull is None else SKIN_OPACITY_OVER_SKULL
+    for role, title, path, color, share in (
+        (Role.HEAD_MODEL, "Head", scenario.head, SKIN_COLOR, opacity),
+        (Role.SKULL, name, None if skull is None else skull.file, SKULL_COLOR, 1.0),
+    ):
+        later(partial(_showSurface, scene, scenario, role, title, path, color, share))
+    later(partial(_showPlan, scene, scenario))
+    later(partial(requestVolume, scene, scenario))
 
 
 def showTask(
@@ -86,34 +95,28 @@ def showTask(
 
 
 def taskKey(scenarioName: str, taskName: str) -> str:
-    """Return what `TASK_ATTRIBUTE` says of a list of points that belongs to a task."""
     return f"{scenarioName}/{taskName}"
 
 
-def _showHead(scene: Any, scenario: Scenario) -> None:
-    node = findOrAddNode(scene, MODEL, Role.HEAD_MODEL, "Head")
-    opacity = 1.0 if scenario.skull is None else SKIN_OPACITY_OVER_SKULL
-    _requestMesh(node, scenario, scenario.head, SKIN_COLOR, opacity)
-
-
-def _showSkull(scene: Any, scenario: Scenario) -> None:
-    if scenario.skull is None:
-        removeNode(scene, MODEL, Role.SKULL)
+def _showSurface(
+    scene: Any,
+    scenario: Scenario,
+    role: str,
+    name: str,
+    path: Path | None,
+    color: tuple[float, float, float],
+    opacity: float,
+) -> None:
+    """Have the model of a role show a mesh of a scenario, or remove it if there is none."""
+    if path is None:
+        removeNode(scene, MODEL, role)
         return
-    node = findOrAddNode(scene, MODEL, Role.SKULL, "Skull")
-    if _requestMesh(node, scenario, scenario.skull.file, SKULL_COLOR, 1.0):
-        isApproximate = scenario.skull.kind is SkullKind.APPROXIMATION
-        node.SetName("Skull (approximation)" if isApproximate else "Skull")
-
-
-def _requestMesh(
-    node: Any, scenario: Scenario, path: Path, color: tuple[float, float, float], opacity: float
-) -> bool:
-    """Have a node show a mesh of a scenario; return whether it was not shown before."""
+    node = findOrAddNode(scene, MODEL, role, name)
     # Called before every trial: the file is read only if it is not shown yet.
     if node.GetAttribute(CONTENT_ATTRIBUTE) == _stamp(scenario, path):
-        return False
+        return
     _requestFile(node, scenario, path)
+    node.SetName(name)
     # Another scenario's head does not belong to these points.
     node.SetAndObservePolyData(None)
     display = node.GetDisplayNode()
@@ -123,7 +126,6 @@ def _requestMesh(
         display.SetOpacity(opacity)
         display.SetVisibility2D(True)
         display.SetSliceIntersectionThickness(OUTLINE_PIXELS)
-    return True
 
 
 def _showPlan(scene: Any, scenario: Scenario) -> None:

@@ -178,22 +178,22 @@ def standings(
     own = [o for o in outcomes if o.trainee == record.trainee and o is not this]
     others = [o for o in outcomes if o.trainee != record.trainee]
     # Title, unit, 1 where more is better and −1 where less is, value, group, and its values.
-    compared: list[tuple[str, str, int, float | None, str, list[float | None]]] = []
+    compared: list[tuple[str, str, int, float | None, str, Sequence[float | None]]] = []
     for group, members in ((_("own"), own), (_("others"), others)):
-        scores = [o.score for o in members if o.method == this.method]
-        times = [o.completion_time_s for o in members]
-        errors = [o.true_tre_mm for o in members]
-        compared += [
-            (_("Score"), "", 1, this.score, group, scores),
-            (_("Completion time"), "s", -1, this.completion_time_s, group, times),
-            (_("True TRE"), "mm", -1, this.true_tre_mm, group, errors),
-        ]
+        same = [o for o in members if o.method == this.method]
+        for title, unit, better, name, peers in (
+            (_("Score"), "", 1, "score", same),
+            (_("Completion time"), "s", -1, "completion_time_s", members),
+            (_("True TRE"), "mm", -1, "true_tre_mm", members),
+        ):
+            values = [o.values.get(name) for o in peers]
+            compared.append((title, unit, better, this.values.get(name), group, values))
     # The published tables call the tasks 1 to 5.
     tasks = [
         (peer, (peer.task, f"task-{peer.task}")) for peer in cohort if peer.mode == record.mode
     ]
-    peers = [peer for peer, names in tasks if record.task in names]
-    times, errors = [p.completion_time_s for p in peers], [p.rmse_mm for p in peers]
+    published = [peer for peer, names in tasks if record.task in names]
+    times, errors = [p.completion_time_s for p in published], [p.rmse_mm for p in published]
     fre = None if rigid is None else rigid.fre_mm
     compared += [
         (_("Completion time"), "s", -1, record.completion_time_s, _("reference"), times),
@@ -201,11 +201,11 @@ def standings(
     ]
     found = []
     for title, unit, better, value, group, all_ in compared:
-        values = [each for each in all_ if each is not None]
-        if value is not None and values:
-            share = float(np.mean([better * value > better * other for other in values]))
-            median = float(np.median(values))
-            found.append(GroupComparison(title, unit, value, group, len(values), median, share))
+        known = [each for each in all_ if each is not None]
+        if value is not None and known:
+            share = float(np.mean([better * value > better * other for other in known]))
+            median = float(np.median(known))
+            found.append(GroupComparison(title, unit, value, group, len(known), median, share))
     return found
 
 

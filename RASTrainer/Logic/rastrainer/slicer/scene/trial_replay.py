@@ -247,7 +247,6 @@ def _clearanceState(clearanceMm: float) -> Any:
 
 
 def _touchStates(trajectory: Trajectory) -> Iterator[tuple[float, Any]]:
-    """Yield the touches made so far, at the start and at each touch."""
     made = trajectory.touches
     for count in range(len(made) + 1):
         state = slicer.vtkMRMLMarkupsFiducialNode()

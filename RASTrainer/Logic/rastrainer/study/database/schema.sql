@@ -21,7 +21,7 @@ CREATE TABLE trials (
 );
 CREATE INDEX trials_of_trainee ON trials (trainee_id);
 -- What was computed or revealed of a trial: its registrations by their kinds, 'score',
--- 'procedure', 'truth'. The latest of a kind counts. `value` is FRE, score or true error.
+-- 'procedure', 'truth' (once). The latest of a kind counts. `value` is FRE, score or true error.
 CREATE TABLE results (
     id INTEGER PRIMARY KEY,
     trial_id TEXT NOT NULL REFERENCES trials (trial_id) ON DELETE CASCADE,

@@ -41,7 +41,7 @@ from rastrainer.study.database.values import (
     StoredRegistration,
     StoredTrial,
     Trainee,
-    TrialOutcome,
+    TrialRow,
     decoded_record,
     json_text,
     moment,
@@ -81,7 +81,7 @@ _ATTEMPTS = f"""
     FROM trials WHERE trainee_id = ({TRAINEE_ID}) AND task != ? ORDER BY started_utc, id
 """
 _OUTCOMES = f"""
-    SELECT trial_id, pseudonym, completion_time_s, {_latest("value", SCORE)}, method,
+    SELECT trial_id, pseudonym, method, completion_time_s, {_latest("value", SCORE)},
         {_latest("value", TRUTH)}
     FROM trials JOIN trainees ON trainees.id = trainee_id
     WHERE task = ? AND mode = ? ORDER BY trials.id
@@ -460,10 +460,15 @@ class Study:
         )
         return tuple(decoded_record(TrialRecord, text) for (text,) in rows)
 
-    def outcomes(self, task: str, mode: str) -> tuple[TrialOutcome, ...]:
-        """Return the outcomes of all trials of a task and mode, in order of storing."""
-        rows = self.database.rows(_OUTCOMES, task, mode)
-        return tuple(TrialOutcome(*row) for row in rows)
+    def outcomes(self, task: str, mode: str) -> list[TrialRow]:
+        """Return the time, latest score and true error of all trials of a task and mode."""
+        names = "completion_time_s", "score", "true_tre_mm"
+        rows = []
+        for trial_id, trainee, method, *results in self.database.rows(_OUTCOMES, task, mode):
+            known = zip(names, results, strict=True)
+            values = {name: value for name, value in known if value is not None}
+            rows.append(TrialRow(trainee, mode, task, 0, values, trial_id, method=method))
+        return rows
 
 
 def _trainee(pseudonym: str, consent: int, archived: int, created_utc: str) -> Trainee:

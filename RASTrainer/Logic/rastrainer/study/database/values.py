@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from functools import partial
-from typing import Annotated, Any, NamedTuple, TypeVar
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import decode_finite_json, number, numbers, plain_object, text
 from rastrainer.json_records import record_from_json, record_to_json
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.trial.aborted_trial import AbortedTrial
@@ -130,15 +131,30 @@ class StoredRegistration:
         )
 
 
-class TrialOutcome(NamedTuple):
-    """Outcomes for comparing trials: the latest score, and the true error once it is revealed."""
+@dataclass(frozen=True)
+class TrialRow:
+    """One trial of a report or a comparison; texts are empty if unknown.
 
-    trial_id: str
+    Attributes:
+        number: Of the trainee's trials in this mode, from 1; 0 for a trial run.
+        values: Measurements by name; see `rastrainer.study.outcomes`.
+        acceptable: Whether it was within all limits of its score; False without a score.
+        procedure: None of touches alone, or if it is not scored.
+    """
+
     trainee: str
-    completion_time_s: float
-    score: float | None
-    method: str
-    true_tre_mm: float | None
+    mode: str
+    task: str
+    number: int
+    values: Mapping[str, float]
+    trial_id: str = ""
+    started_utc: str = ""
+    scenario: str = ""
+    score_version: str = ""
+    acceptable: bool = False
+    completed_utc: str = ""
+    procedure: ProcedureOutcome | None = None
+    method: str = RegistrationMethod.FIDUCIALS.value
 
 
 @dataclass(frozen=True)

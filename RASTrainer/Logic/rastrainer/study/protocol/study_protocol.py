@@ -259,14 +259,11 @@ def _questions(
 def williams_design(count: int) -> tuple[tuple[int, ...], ...]:
     """Return the rows of a balanced Latin square of conditions 0 … count − 1.
 
-    Over all rows, every condition is equally often at every position and after every other one. An
-    odd count needs twice as many rows: the square and its mirror image.
+    Over all rows, every condition is equally often at every position and after every other
+    condition. An odd count needs twice as many rows: the square and its mirror image.
     """
-    first = [0]
-    low, high = 1, count - 1
-    while len(first) < count:
-        first.append(low if len(first) % 2 else high)
-        low, high = (low + 1, high) if len(first) % 2 == 0 else (low, high - 1)
+    # 0, 1, n − 1, 2, n − 2, …
+    first = [(place + 1) // 2 if place % 2 else -place // 2 for place in range(count)]
     square = [tuple((value + row) % count for value in first) for row in range(count)]
     if count % 2:
         square += [row[::-1] for row in square]

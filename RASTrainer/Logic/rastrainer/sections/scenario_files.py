@@ -1,0 +1,246 @@
+"""Scenarios on disk: found, named, and copied, packed and compared by the simulator's program."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.files.reading import read_json
+from rastrainer.scenario.library import (
+    ListedScenario,
+    list_folder,
+    list_scenarios,
+    unpack,
+    user_library,
+)
+from rastrainer.scenario.scenario import FILE_NAME, Scenario, load_scenario
+from rastrainer.scenario.writer import scenario_name
+from rastrainer.sections.simulator_logic import SimulatorLogic
+from rastrainer.slicer.background_work import inBackground
+from rastrainer.slicer.scene.nodes import labelsOf, worldPoints
+from rastrainer.slicer.translation import _
+from rastrainer.work_progress import Progress, no_progress
+
+LONGEST_STEM = 30
+"""Characters of a title to which a number is added: a name of 40 must have room for it."""
+
+
+class ScenarioCache:
+    """Reads scenarios when they are needed, and again after they were rebuilt.
+
+    Call `refresh` after one is added. May be used in any thread.
+    """
+
+    def __init__(self, *libraries: Path) -> None:
+        self._libraries = libraries
+        self._lines: dict[Path, tuple[tuple, ListedScenario]] = {}
+        self._listed: tuple[ListedScenario, ...] | None = None
+        self._scenarios: dict[str, tuple[tuple[int, int], Scenario]] = {}
+
+    def listed(self) -> tuple[ListedScenario, ...]:
+        """Return the available scenarios; an unusable one says why."""
+        if (listed := self._listed) is None:
+            self._listed = listed = tuple(list_scenarios(self._libraries, self._listOne))
+        return listed
+
+    def _listOne(self, folder: Path) -> ListedScenario:
+        """List a scenario again, which takes long, only if one of its files has changed."""
+        stamp, line = self._lines.get(folder, ((), None))
+        present = tuple((str(path), _stamp(path)) for path in sorted(folder.rglob("*")))
+        if line is None or stamp != present:
+            line = list_folder(folder)
+            self._lines[folder] = present, line
+        return line
+
+    def refresh(self) -> None:
+        """List and read again when needed next."""
+        self._listed = None
+        self._scenarios.clear()
+
+    def find(self, name: str) -> Scenario:
+        """Return the scenario of that name, which may have been added since the last look."""
+        stamp, scenario = self._scenarios.get(name, ((0, 0), None))
+        if scenario is None or stamp != _stamp(scenario.folder / FILE_NAME):
+            self._listed = None
+            folders = {entry.name: entry.folder for entry in self.listed()}
+            if name not in folders:
+                usable = [entry.name for entry in self.listed() if not entry.problem]
+                raise InputError(
+                    f"The scenario {json.dumps(name)} is not here; those that are: "
+                    f"{', '.join(usable) or 'none'}."
+                )
+            stamp = _stamp(folders[name] / FILE_NAME)
+            scenario = load_scenario(folders[name])
+            self._scenarios[name] = stamp, scenario
+        return scenario
+
+    def newName(self, title: str) -> str:
+        """Return the name of a scenario of that title, which is not here yet."""
+        name = scenario_name(title)
+        self._listed = None
+        taken = {entry.name: entry.folder for entry in self.listed()}
+        if name not in taken:
+            return name
+        titles = (f"{title[:LONGEST_STEM]} {number}" for number in count(2))
+        free = next(each for each in titles if scenario_name(each) not in taken)
+        sentence = _(
+            "There already is a scenario {name}: give this one another title, such as {free}."
+        )
+        if taken[name].parent == user_library():
+            sentence = _(
+                "There already is a scenario {name}: give this one another title, such as {free}, "
+                "or first move the folder {folder} elsewhere."
+            )
+        raise InputError(sentence.format(name=name, free=free, folder=taken[name]))
+
+
+def _stamp(path: Path) -> tuple[int, int]:
+    """Return a value that changes with a file."""
+    with contextlib.suppress(OSError):
+        status = path.stat()
+        return status.st_mtime_ns, status.st_size
+    return 0, 0
+
+
+class ScenarioFiles:
+    """Scenarios on disk, which the simulator's program writes.
+
+    `progress` is called while it works: it may let the application draw, and may raise to cancel.
+    """
+
+    def __init__(self, simulator: SimulatorLogic, cache: ScenarioCache, library: Path) -> None:
+        """Scenarios come into the folder `library`, each into a separate folder."""
+        self.simulator = simulator
+        self._cache = cache
+        self._library = library
+
+    def add(self, title: str, make: Callable[[Path], object]) -> Scenario:
+        """Return the scenario that `make` makes in the folder it is given."""
+        folder = self._library / self._cache.newName(title)
+        make(folder)
+        self._cache.refresh()
+        return load_scenario(folder)
+
+    def importScenario(self, package: Path, progress: Progress = no_progress) -> Scenario:
+        folder = inBackground(lambda report: unpack(package, self._library, report), progress)
+        self._cache.refresh()
+        return load_scenario(folder)
+
+    def drawFaceRemoval(self, name: str, picture: Path, progress: Progress = no_progress) -> str:
+        """Draw a head before and after its face is removed; return a sentence on the picture."""
+        folder = str(self._cache.find(name).folder)
+        words = ["pack", folder, os.devnull, "--picture", str(picture)]
+        return self.run(words, progress)
+
+    def exportScenario(
+        self,
+        name: str,
+        package: Path,
+        keepsFace: bool = False,
+        keepsNames: bool = False,
+        progress: Progress = no_progress,
+    ) -> str:
+        """Write a scenario as a zip file; return a sentence about removed parts.
+
+        Args:
+            keepsFace: whether the head keeps its face and skull; otherwise the user has seen what
+                `drawFaceRemoval` has drawn.
+            keepsNames: whether title, name and source stay, which may be the patient's name.
+        """
+        words = ["pack", str(self._cache.find(name).folder), str(package)]
+        words += ["--keep-face"] if keepsFace else ["--yes"]
+        words += ["--keep-names"] if keepsNames else []
+        return self.run(words, progress)
+
+    def saveWith(
+        self, plan: list[str], name: str, title: str, progress: Progress = no_progress
+    ) -> Scenario:
+        """Copy a scenario with a part replaced, and return the copy.
+
+        `plan` are arguments of `rastrainer scenario plan`, such as `--landmarks` with a file.
+        """
+        source, words = str(self._cache.find(name).folder), [f"--title={title}", *plan]
+        return self.add(
+            title, lambda folder: self.run(["plan", source, "-o", str(folder), *words], progress)
+        )
+
+    def run(self, words: list[str], progress: Progress, mayFail: bool = False) -> str:
+        """Run `rastrainer scenario`; see `SimulatorLogic.run`."""
+        return self.simulator.run(["scenario", *words], progress, mayFail)
+
+
+def planArguments(*planned: Any | None) -> list[str]:
+    """Return the arguments of `rastrainer scenario` for lists of targets, and a line."""
+    words = []
+    for node in planned:
+        if node is None:
+            continue
+        points = worldPoints(node)
+        if not node.IsA("vtkMRMLMarkupsLineNode"):
+            for name, place in zip(labelsOf(node), points, strict=True):
+                words += ["--target", name, *map(str, place.tolist())]
+        elif len(points) == 2:
+            words += ["--trajectory", node.GetName(), *map(str, points.ravel().tolist())]
+        else:
+            raise InputError(_("The trajectory needs two points: its entry and its target."))
+    return words
+
+
+LIMIT_BYTES = 1 << 20
+
+
+@dataclass(frozen=True)
+class ComparedMethod:
+    """How a method has registered the trials; lengths in mm, root mean squares over trials.
+
+    Attributes:
+        low, high: medians of the ends of the 95 % interval of the target error.
+        residual: of the points that count; it does not show the error.
+        held: share of the intervals that hold the true error.
+    """
+
+    name: str
+    low: float
+    high: float
+    residual: float
+    expected: float
+    true: float
+    held: float
+
+
+KEYS = ("residual_mm", "expected_tre_mm", "true_tre_mm", "interval_holds_share")
+"""Keys of the last four fields above, in the program's output."""
+
+
+def compareMethods(
+    simulator: SimulatorLogic,
+    scenario: Scenario,
+    trials: int,
+    skinShiftMm: float,
+    progress: Progress = no_progress,
+) -> list[ComparedMethod]:
+    """Return how each method for which a head has the points registers simulated trials.
+
+    `skinShiftMm` is the RMS shift between imaging and operation.
+    """
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary) / "methods"
+        words = ["compare-methods", "--scenario", str(scenario.folder), "-o", str(folder)]
+        words += ["--trials", str(trials), "--skin-shift", str(skinShiftMm)]
+        simulator.run(words, progress)
+        compared = read_json(folder / "methods.json", LIMIT_BYTES)
+    try:
+        return [
+            ComparedMethod(name, *map(float, [*values["interval_mm"], *map(values.get, KEYS)]))
+            for name, values in compared["methods"].items()
+        ]
+    except (KeyError, TypeError, ValueError, AttributeError):
+        raise InputError(_("The simulator's program has a different version.")) from None
