@@ -20,11 +20,12 @@ from rastrainer.journal.entries import (
     JournalHeader,
     TutorialReport,
 )
-from rastrainer.json_checks import number, whole_number
+from rastrainer.json_checks import number, one_of, whole_number
 from rastrainer.json_records import record_from_json
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
+from rastrainer_simulator.input.inputs import SourceKind
 
 PACKAGES = ("numpy", "pin", "python-fcl")
 
@@ -77,6 +78,7 @@ class TutorialOutcome(TutorialReport):
     """A finished tutorial of a trainee, as its own file keeps it."""
 
     trainee: str
+    device: Annotated[str, one_of(*(kind.value for kind in SourceKind))]
     step_times_s: Mapping[str, Annotated[float, number(0, 1e6, "s")]] = field(default_factory=dict)
     format_version: Annotated[int, whole_number(1, 1)] = 1
 
