@@ -352,7 +352,7 @@ def is_record(kind: type) -> bool:
 
 
 def records() -> dict[str, type]:
-    """Return all records of the product, whoever reads them, by name."""
+    """Return all records of the product by name."""
     found = {
         value.__name__: value
         for module in modules()
