@@ -278,7 +278,7 @@ def test_a_derived_field_is_not_in_json():
 EYE = [float(row == column) for row in range(4) for column in range(4)]
 LIKELY = [
     *(0, 1, 0.5, True, "a", "a-b", "", [], {}, None),
-    *([0.0, 0.0, 1.0], [0, 0], EYE, ["a"], "#102030"),
+    *([0.0, 0.0, 1.0], [0, 0], EYE, ["a"], "#102030", 0.01, [0.0] * 7),
     *(
         "2024-05-17T09:30:00Z",
         str(uuid.UUID(int=7)),
