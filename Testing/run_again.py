@@ -1,7 +1,7 @@
 """Runs tests that failed once more, each alone; `.ci/run` loads this plugin by `make test AGAIN=1`.
 
 A run passes if at most three tests failed and each of them passes alone. Their names and both
-outcomes are its last lines: such a test is to be mended.
+outcomes are its last lines: such a test has to be fixed.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[1]
 
 @dataclass(frozen=True)
 class Part:
-    """Some of the tests, and what they prove.
+    """Some of the tests, with a sentence about them.
 
     Attributes:
         places: folders and files below Testing. A test file belongs to the part that names it, or

@@ -1,4 +1,4 @@
-"""Who may import whom: layers of rooms (folders), read from every import, also those for types."""
+"""Allowed imports: layers of rooms (folders), read from every import, also those for types."""
 
 from __future__ import annotations
 
@@ -74,10 +74,10 @@ LAYERS = {
         rastrainer_simulator.cli
     """,
 }
-# Which tables a table's rooms may import from.
+# The tables that a table's rooms may import from.
 BELOW = {"the domain": (), "Slicer's side": ("the domain",), "the simulator": ("the domain",)}
 
-# What a part may import that is not ours; None means anything that its package requires.
+# Foreign packages that a part may import; None means anything that its package requires.
 OUTSIDE = {"the domain": {*sys.stdlib_module_names, "numpy", "scipy", "fastcrc"}}
 FORBIDDEN = {
     "rastrainer.slicer": {"qt", "ctk"},

@@ -278,9 +278,21 @@ def test_a_derived_field_is_not_in_json():
 
 EYE = [float(row == column) for row in range(4) for column in range(4)]
 LIKELY = [
-    *(0, 1, True, "a", "a-b", "", [], {}, None, [0.0, 0.0, 1.0], EYE, ["a"], "#102030"),
-    *("2024-05-17T09:30:00Z", str(uuid.UUID(int=7)), "https://example.org/a", "a.json"),
-    *("no-go/a.ply", "de", "sus", ["desktop"], ["a", "b"], "0123456789ab"),
+    *(0, 1, 0.5, True, "a", "a-b", "", [], {}, None),
+    *([0.0, 0.0, 1.0], [0, 0], EYE, ["a"], "#102030", 0.01, [0.0] * 7),
+    *(
+        "2024-05-17T09:30:00Z",
+        str(uuid.UUID(int=7)),
+        "https://example.org/a",
+        "a.json",
+        "no-go/a.ply",
+        "de",
+        "sus",
+        ["desktop"],
+        ["a", "b"],
+    ),
+    *("0123456789ab",),
+    *(15, 100, 1000),
 ]
 WRONG = [
     *(
@@ -341,7 +353,7 @@ def is_record(kind: type) -> bool:
 
 
 def records() -> dict[str, type]:
-    """Return all records of the product, whoever reads them, by name."""
+    """Return all records of the product by name."""
     found = {
         value.__name__: value
         for module in modules()

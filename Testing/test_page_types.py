@@ -1,4 +1,4 @@
-"""The page's types and constants are those of the simulator."""
+"""The page has the simulator's types and constants."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ def test_ends_its_worker():
 
 @pytest.fixture
 def run(tmp_path):
-    """Runs test files of these sources and returns the exit status and what was printed."""
+    """Runs test files of these sources and returns the exit status and the output."""
 
     def run(*sources: str):
         for i, source in enumerate(sources):

@@ -33,9 +33,9 @@ EXTRAS = {
     "supply.lock": ("supply",),
     "docs.lock": ("docs",),
 }
-"""What `make lock` makes each lock from, beside the project's own dependencies."""
+"""What `make lock` makes each lock from, besides the project's own dependencies."""
 PEERS_LOCKS = tuple(REQUIREMENTS / f"{name}.lock" for name in ("ralph", "icp"))
-"""Of peers in the tests, which have their own environments and requirements files."""
+"""Peers in the tests have their own environments and requirements files."""
 NAME = re.compile(r"^([A-Za-z0-9._-]+)(?:\[([^]]*)\])?")
 
 ENTRY = re.compile(r"^[a-z0-9][a-z0-9._-]*==[^\s\\]+(?: ; [^\\]+)? \\$")
@@ -60,7 +60,7 @@ def test_every_locked_package_is_pinned_by_hashes_and_by_no_address(lock):
 
 
 def asked_for(project: dict, extras: Iterable[str]) -> set[str]:
-    """Return the names of the packages that the project asks for, with those of some extras."""
+    """Return the names of the packages that the project and some extras ask for."""
     names = set()
     optional = project["optional-dependencies"]
     for line in [*project["dependencies"], *(line for extra in extras for line in optional[extra])]:
@@ -92,7 +92,7 @@ def asked_of(requirements: Path) -> set[str]:
 
 
 def pinned(lock: Path) -> dict[str, set[str]]:
-    """Return the hashes of each `name==version` of a lock, for whatever platform."""
+    """Return the hashes of each `name==version` of a lock, for all platforms."""
     pins: dict[str, set[str]] = {}
     for line in lock.read_text(encoding="utf-8").splitlines():
         if not line.startswith(" "):

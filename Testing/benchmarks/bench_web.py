@@ -22,7 +22,7 @@ HEADSET = "metaQuest2"
 KB = 1024.0
 WARM_UP_S = 60
 LONG_S = 600
-# The browser continues to compile what runs often for minutes, and what it compiles is in the heap,
+# The browser continues to compile frequent code for minutes, and the compiled code is in the heap,
 # too; without that, what grows is the page's own.
 UNCOMPILED = "--js-flags=--no-sparkplug --no-maglev --no-opt"
 SAMPLES = 11

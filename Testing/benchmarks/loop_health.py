@@ -69,7 +69,7 @@ def undisturbed(
 ) -> Punctuality | None:
     """Return the punctuality in those seconds in which the machine took nothing away.
 
-    That is where of the loops beside it, which do nothing, none was late. None if there is no such
+    In these seconds none of the other loops, which do nothing, was late. None if there is no such
     second.
 
     Args:

@@ -78,8 +78,8 @@ def aim_off_target(
 ) -> PlayedTrial:
     """Play honestly, but miss every fiducial by the same vector of World, mm.
 
-    By default these are 2 mm in the direction that lies along the skin at as many fiducials as can
-    be: what of it leads into the skin or off it moves no touch.
+    The default is 2 mm in the direction that lies along the skin at as many fiducials as can be:
+    parts across the skin move no touch.
     """
     bias = along_skin(setup, task, seed, BIAS_MM) if bias_mm is None else bias_mm
     return play_honestly(setup, task, seed, replace(HONEST, aim_bias_mm=bias))

@@ -64,8 +64,8 @@ class LookingTrainee:
 
     Args:
         trainee: at the presenter.
-        hands: what it steers with.
-        pictures: what it looks at.
+        hands: steer the arm.
+        pictures: show the scene.
         is_one_by_one: whether its hands push one stick at a time: it then comes down onto a
             fiducial by one of them alone, and does not follow the skin's normal.
     """

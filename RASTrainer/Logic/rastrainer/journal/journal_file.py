@@ -3,7 +3,7 @@
 A line is a JSON object with its own hash and the previous line's:
 `{"n":…,"previous":"…",…,"sha256":"…"}` and a newline. `n` counts from 1, `previous` is the `sha256`
 of the previous line (64 zeros in the first), and `sha256` is the hash of the line's bytes
-before its comma, closed by `}`. Between them are an entry and its times, see `entries`.
+before its comma, closed by `}`. An entry and its times stand between them; see `entries`.
 """
 
 from __future__ import annotations

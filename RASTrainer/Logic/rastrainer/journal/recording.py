@@ -183,7 +183,7 @@ class Recording:
             del self._touches[labels.index(entry.next_point) :]
 
     def _proximity(self, entry: ProximityChange, sim_time: float) -> None:
-        # This event is at the end of its tick, unlike those of commands.
+        # This event is at the end of its tick, unlike the events of commands.
         now = self._trial_time(sim_time)
         # An interval that begins and ends while the time stands still is left out.
         counts = self._paused_since is None
