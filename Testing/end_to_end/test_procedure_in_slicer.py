@@ -87,7 +87,7 @@ def found(leader: Leader, seen: dict) -> Leader:
     """Lose Slicer's side; note the phase before and what the next one finds, and return that."""
     other = leader.lost()
     seen["lost"].append(leader)
-    seen["found"].append((leader.status, other.status))
+    seen["found"].append((leader.session.procedure.status, other.session.procedure.status))
     return other
 
 
@@ -167,9 +167,9 @@ def test_a_slicer_lost_in_a_phase_finds_the_procedure_unchanged(led):
     phases = [before.phase for before, _after in led["found"]]
     assert phases == [phase.value for phase in PROCEDURE_PHASES]
     for before, after in led["found"]:
-        assert (after.phase, after.name) == (before.phase, before.name)
-        assert after.registrationInUse
-        assert after.feedMm >= before.feedMm
+        assert (after.phase, after.procedure.name) == (before.phase, before.procedure.name)
+        assert after.procedure.registrationInUse
+        assert after.procedure.feedMm >= before.procedure.feedMm
 
 
 def test_the_score_of_the_procedure_is_stored_beside_that_of_the_touches(led):
