@@ -87,8 +87,7 @@ def found(leader: Leader, seen: dict) -> Leader:
     """Lose Slicer's side; note the phase before and what the next one finds, and return that."""
     other = leader.lost()
     seen["lost"].append(leader)
-    statuses = (each.session.procedure.status for each in (leader, other))
-    seen["found"].append(tuple(statuses))
+    seen["found"].append((leader.session.procedure.status, other.session.procedure.status))
     return other
 
 

@@ -89,7 +89,7 @@ def test_the_reason_why_touches_were_not_registered_is_shown_once(theater):
     theater.run_until(lambda: not theater.procedure.isRegistrationFailed)
     theater.say("verifying")
     theater.run_until(lambda: len(theater.said) == 2)
-    assert "must hold touches, a list of 15" in theater.said[1]
+    assert "a list of 15 touches" in theater.said[1]
 
 
 def test_failures_after_the_procedure_has_moved_on_are_not_shown(theater):

@@ -145,7 +145,7 @@ def test_an_aborted_trial_is_played_again_only_with_a_reason(begun):
     )
     with Study.open(begun.find("studyPathLineEdit").currentPath) as study:
         study.add_aborted(record)
-    begun.widget.logic.session.aborted.kept.emit(record_from_json(AbortedTrial, record))
+    begun.widget.logic.session.trials.abortedKept.emit(record_from_json(AbortedTrial, record))
     begun.process_events()
     assert "aborted with 15 of 15 points touched" in begun.text("stepText")
     text = "Aborted: 1, of them 1 after all touches"
