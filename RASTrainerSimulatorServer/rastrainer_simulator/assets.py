@@ -32,7 +32,7 @@ NOT_BUILT = """<!doctype html>
 
 
 def page_folder() -> Path | None:
-    """Return the folder of the built page; None where there is none."""
+    """Return the folder of the built page, if there is one."""
     for folder in (_INSTALLED_PAGE, _CHECKOUT_PAGE):
         if (folder / "index.html").is_file():
             return folder

@@ -82,7 +82,8 @@ TOUCH_ERRORS = (TouchStage.TOO_DEEP, TouchStage.ELSEWHERE, TouchStage.SHAFT, Tou
 
 
 class Motion(str, Enum):
-    """What moves the tool's tip; `FEED` the instrument in the guide, while the arm is held.
+    """Source of the tip's movement; `FEED` moves the instrument in the guide, while the arm is
+    held.
 
     `JOG` and `MOVE` are clients' commands, `ALIGN` is the robot's own alignment of the guide.
     """
@@ -179,7 +180,7 @@ class TrainingState:
 
     @property
     def is_running(self) -> bool:
-        """Whether the trial's clock or that of its procedure runs."""
+        """Whether the clock of the trial or of its procedure runs."""
         return self.phase in (Phase.RUNNING, *PROCEDURE_PHASES)
 
     @property
@@ -242,7 +243,7 @@ class SimulationState:
 
     @property
     def completion_time(self) -> float:
-        """What the trial's clock shows: it stops at the last point, s."""
+        """The trial's time in s, which stops at the last point."""
         return self.training.completed_s if self.training.is_touched else self.elapsed
 
     @property

@@ -1,4 +1,4 @@
-"""What was touched, traced, registered and carried out in a trial; m, rad and s."""
+"""A trial's touches, trace, registration and procedure; m, rad and s."""
 
 from __future__ import annotations
 
@@ -186,7 +186,7 @@ class GuideAlignment:
 
 @dataclass(frozen=True)
 class TrajectoryState:
-    """What was done for one planned trajectory; depths are beyond the guide's tip, m, times in s.
+    """The work on one planned trajectory; depths are beyond the guide's tip, m, times in s.
 
     Attributes:
         line: as the registration in use shows it.
@@ -244,7 +244,7 @@ class ProcedureState:
         return self.trajectories[self.trajectory] if self.stage in TOOL_OF_PHASE else None
 
     def entering(self, stage: Phase, elapsed: float) -> ProcedureState:
-        """Return the state in another stage, the time of the one before counted.
+        """Return the state in another stage, with the time of the previous stage counted.
 
         `elapsed` is the trial's time in s.
         """

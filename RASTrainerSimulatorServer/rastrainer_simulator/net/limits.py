@@ -1,4 +1,4 @@
-"""What a site may change of what clients, views and trials may cost, and the file for it."""
+"""Limits on clients, views and trials that a site may change, and their file."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class ServerLimits:
 
 
 def read_limits(folder: Path) -> ServerLimits:
-    """Return the limits that the file in a folder sets; missing ones have their defaults."""
+    """Return the limits that the file in a folder sets, with defaults for missing limits."""
     path = folder / LIMITS_FILE
     if not path.exists():
         return ServerLimits()

@@ -45,8 +45,8 @@ def listening_socket(family: int, address: tuple) -> socket.socket:
     listening = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
     try:
         listening.setblocking(False)
-        # On Windows another program could else take over the port of one that listens. Elsewhere
-        # it could not, and a port that was left a moment ago should be free.
+        # On Windows another program could otherwise take over a port in use. Elsewhere it could
+        # not, and a port that was left a moment ago should be free.
         option = getattr(socket, "SO_EXCLUSIVEADDRUSE", socket.SO_REUSEADDR)
         listening.setsockopt(socket.SOL_SOCKET, option, 1)
         if family == socket.AF_INET6:

@@ -104,11 +104,10 @@ def target_error(
 
     The interval accounts for the direction dependence of the error and for the uncertainty of the
     estimated FLE; it is wide for few points. TRE grows with the common offset, so the lower end
-    comes from the distribution without an offset. The upper end is where, with the assumed offset,
-    the
-    error lies between both with the given confidence. A smaller offset makes that more likely: the
-    probability between two ends has a single maximum over the size of the error. An FRE of zero
-    leaves the common offset alone.
+    comes from the distribution without an offset. The upper end is chosen so that, with the assumed
+    offset, the error is between both ends with the given confidence. A smaller offset makes that
+    more likely: the probability between two ends has a single maximum over the size of the error.
+    An FRE of zero leaves the common offset alone.
 
     Args:
         target: (3,) float, in the fixed space, in mm.

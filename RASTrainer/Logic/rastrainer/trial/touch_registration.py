@@ -180,8 +180,8 @@ def register_trial(
     labels, moving, fixed = pair(given.touches, PointList(task.labels, task.fiducials))
     fits = register_all_kinds(moving, fixed, labels)
     if given.method in TRACED_METHODS:
-        # The rigid one alone: a scaled or sheared head would fit any trace. It is that of the
-        # landmarks with the matrix that fits the trace to the surface.
+        # The rigid one alone: a scaled or sheared head would fit any trace. It has the landmarks'
+        # points and the matrix that fits the trace to the surface.
         coarse = fits[RIGID]
         match = match_surface(given.trace_mm, head_of(scenario), coarse.matrix)
         pause()

@@ -122,9 +122,8 @@ def write_preferences(path: Path, preferences: Preferences) -> None:
 class InstructorLock:
     """The lock of an instructor's PIN on settings, order, and passing on the control.
 
-    It is locked wherever a PIN is set, until somebody enters it, and again when the trainee
-    changes, and when a trial or a tutorial begins: whoever trains then is not whom the instructor
-    stood beside.
+    If a PIN is set, it is locked until somebody enters the PIN, and again when the trainee changes
+    or a trial or tutorial begins: the instructor may have left by then.
     """
 
     def __init__(self, pin: InstructorPin | None) -> None:

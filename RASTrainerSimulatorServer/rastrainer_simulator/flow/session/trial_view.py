@@ -90,7 +90,7 @@ class TrialView:
         camera = scenario.cameras[state.camera]
         self.control.use(state.camera)
         label, has_searched = state.training.next_point, False
-        # The view of a point is looked for once it is next, and whenever it is wanted.
+        # The view of a point is searched when it becomes next, and on request.
         if label is not None and self._is_open(state):
             is_new = self._found is None or self._found[0] != label
             if self._search is None and (self.is_best_wanted or is_new):
