@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from rastrainer.commands import CommandName, check_arguments
+from rastrainer.journal.entries import AcceptedTouch
 from rastrainer.journal.folder import number_of
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.json_records import record_from_json
@@ -186,13 +187,18 @@ def test_nobody_sees_a_touch_before_it_is_on_disk_and_the_arm_continues_meanwhil
     assert not answer.done()
     assert before.training.touches == ()
     assert len({result.state.q for result in seen}) > 30
-    assert not any(event.entry.kind == "touch" for result in seen for event in result.events)
+    assert not any(
+        isinstance(event.entry, AcceptedTouch) for result in seen for event in result.events
+    )
     may_sync.set()
     assert answer.result(TIMEOUT_S).ok
     wait_for(lambda: len(running.loop.latest.training.touches) == 1)
     # Subscribers receive a tick after it has become the latest.
     wait_for(lambda: len(seen[-1].state.training.touches) == 1)
-    assert sum(event.entry.kind == "touch" for result in seen for event in result.events) == 1
+    assert (
+        sum(isinstance(event.entry, AcceptedTouch) for result in seen for event in result.events)
+        == 1
+    )
 
 
 def test_commands_that_arrive_meanwhile_are_carried_out_in_order(running):
