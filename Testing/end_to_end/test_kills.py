@@ -13,6 +13,7 @@ from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.database.study import Study
+from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.core.interrupted_trial import InterruptedTrial
 from rastrainer_simulator.record.trial_archive import SUFFIX, TrialArchive, find_unacknowledged
@@ -62,8 +63,8 @@ class Lab:
 
     def start_slicer(self):
         """Return Slicer's side, which waits for more trials than there are."""
-        words = ("--port", str(self.port), "--scenario", str(COLIN), "--output", str(self.output))
-        return self._slicer_nursery.fork(*words, "--trials", "100000", "--timeout", "1000")
+        words = ("--assets", str(asset_path()), "--output", str(self.output), "--trials", "100000")
+        return self._slicer_nursery.fork("--port", str(self.port), *words, "--timeout", "1000")
 
     @property
     def journals(self):

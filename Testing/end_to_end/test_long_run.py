@@ -18,6 +18,7 @@ import pytest
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.database.study import Study
+from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from Testing.benchmarks.row import resident_mb
 from Testing.end_to_end.finished_trials import COLIN, TRAINEE
@@ -84,7 +85,7 @@ def train(folder: Path, is_enough: Callable[[int], bool]) -> Run:
         slicer_says = stack.enter_context((folder / "slicer-says").open("w+"))
         slicer = SlicerProcess(
             *("--port", str(simulator.port), "--trials", "1000000", "--timeout", "100000"),
-            *("--scenario", str(COLIN), "--output", str(folder / "slicer")),
+            *("--assets", str(asset_path()), "--output", str(folder / "slicer")),
             errors=slicer_says,
         )
         stack.callback(slicer.kill)

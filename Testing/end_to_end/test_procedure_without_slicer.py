@@ -36,7 +36,7 @@ class KilledSlicer:
     def __init__(self, folder: Path, port: int):
         self._words = (
             *("--port", str(port), "--trials", "1", "--timeout", TIMEOUT_S),
-            *("--scenario", str(COLIN), "--output", str(folder / "study")),
+            *("--assets", str(asset_path()), "--output", str(folder / "study")),
         )
         self.kills: list[str] = []
         self._start()

@@ -46,7 +46,7 @@ def test_simulator_connects_to_a_listening_slicer_and_takes_its_commands(tmp_pat
         (["--speed", "0"], "--speed: must be a number from 0.001 to 1000.0"),
         (["--speed", "nan"], "--speed: must be a number from 0.001 to 1000.0"),
         (["--seed", "-1"], "--seed: must be a whole number from 0 to 9223372036854775807"),
-        (["--connect", "slicer"], "--connect: must be HOST:PORT, such as 127.0.0.1:18944"),
+        (["--connect", "slicer"], "--connect must be HOST:PORT, such as 127.0.0.1:18944"),
         (["--scenario", "nowhere"], "The scenario's folder nowhere does not exist."),
     ],
 )

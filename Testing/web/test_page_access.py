@@ -371,19 +371,14 @@ def contrast(one, other):
     return (bright + 0.05) / (dark + 0.05)
 
 
-def test_disabled_items_are_legible_over_any_picture():
+def test_disabled_items_are_legible():
     css = (WEB / "static" / "page.css").read_text(encoding="utf-8").replace("/ ", "")
     pale = bytes.fromhex(re.search(r"--pale: #(\w+);", css)[1])
-    layers = [
-        [float(number) for number in re.search(rf"--{name}: rgb\((.*)%\);", css)[1].split()]
-        for name in ("night", "row")
-    ]
-    for picture in ((255.0,) * 3, (0.0,) * 3):
-        ground = picture
-        for *color, percent in layers:
-            share = percent / 100
-            ground = [share * c + (1 - share) * g for c, g in zip(color, ground, strict=True)]
-        assert contrast(pale, ground) >= 4.5
+    night = bytes.fromhex(re.search(r"--night: #(\w+);", css)[1])
+    *color, percent = map(float, re.search(r"--row: rgb\((.*)%\);", css)[1].split())
+    share = percent / 100
+    row = [share * c + (1 - share) * n for c, n in zip(color, night, strict=True)]
+    assert contrast(pale, row) >= 4.5
     pen = (WEB / "src" / "panels" / "pen.ts").read_text(encoding="utf-8")
     pale, row = (bytes.fromhex(re.search(rf'{name}: "#(\w+)"', pen)[1]) for name in ("pale", "row"))
     assert contrast(pale, row) >= 4.5
