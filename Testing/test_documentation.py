@@ -244,3 +244,6 @@ def test_every_picture_of_the_documentation_is_small_and_shown_on_a_page():
         assert pictures
         assert [name for name in pictures if (ROOT / name).stat().st_size > MOST_BYTES] == []
         assert [name for name in pictures if Path(name).name not in shown] == []
+    (film,) = [name for name in TRACKED if name.endswith(".webm")]
+    assert (ROOT / film).stat().st_size <= MOST_FILM_BYTES
+    assert film in shown
