@@ -237,6 +237,9 @@ def test_the_table_of_commands_is_made_of_their_entries():
     assert command_table.page() == command_table.PAGE.read_text(encoding="utf-8")
 
 
+MOST_FILM_BYTES = 5_000_000
+
+
 def test_every_picture_of_the_documentation_is_small_and_shown_on_a_page():
     shown = " ".join((ROOT / page).read_text(encoding="utf-8") for page in PAGES)
     for folder in ("Screenshots", "docs/pictures"):
