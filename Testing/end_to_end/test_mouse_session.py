@@ -53,8 +53,7 @@ class WindowMouse:
 
     def click(self, item: str) -> None:
         """Click on an item of the menu or on a hint, once it is shown."""
-        wait_until(lambda: self._is_in_sight(item), f"{item} in the window")
-        self._move(*self._place(item))
+        wait_until(lambda: self._moves_onto(item), f"{item} in the window")
         self._mouse.hold(True)
         self._mouse.hold(False)
 
@@ -97,6 +96,13 @@ class WindowMouse:
 
     def _move(self, x: float, y: float) -> None:
         self._mouse.move(self._corner[0] + round(x), self._corner[1] + round(y))
+
+    def _moves_onto(self, item: str) -> bool:
+        """Move onto an item if it is in sight; a menu may be drawn anew meanwhile."""
+        place = self._place(item) if self._is_in_sight(item) else None
+        if place is not None:
+            self._move(*place)
+        return place is not None
 
     def _is_in_sight(self, item: str) -> bool:
         """Return whether an item can be clicked; one out of the menu's sight is scrolled to."""
