@@ -16,7 +16,6 @@ import rastrainer
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.files.reading import failure_reason, printable_name
 from rastrainer.home_folder import home_folder
-from rastrainer.study.database.database import study_place
 from rastrainer.work_progress import allow_any_text
 
 
@@ -65,6 +64,9 @@ def _read(name: str, limits: str, text: str) -> object:
         try:
             start, *rest = Path(text).parts or (".",)
             if name in STUDIES:
+                # Only here: its import takes longer than all others of this module.
+                from rastrainer.study.database.database import study_place
+
                 return study_place(text)
             return home_folder().joinpath(*rest) if start == "~" else Path(text)
         except InputError as error:

@@ -453,3 +453,12 @@ def test_a_curriculum_is_set_for_one_or_all_and_the_table_shows_their_progress(s
     assert "use name, title, assignments" in capsys.readouterr().err
     assert main(["curriculum", str(study), "--trainee", "N9"]) == 2
     assert "no trainee" in capsys.readouterr().err
+
+
+def test_the_parser_of_all_commands_imports_nothing_of_studies():
+    code = (
+        "import sys; from rastrainer_simulator.cli.main import command_parser; command_parser(); "
+        "print([name for name in sys.modules if name.startswith('rastrainer.study')])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
