@@ -15,7 +15,7 @@ from pathlib import Path
 
 from rastrainer.files.writing import make_private_folder, write_text
 from rastrainer.home_folder import home_folder
-from rastrainer.journal.folder import lock
+from rastrainer.journal.folder import lock, open_lock_file
 
 PROGRAMS = (
     *("google-chrome-stable", "google-chrome", "chromium", "chromium-browser"),
@@ -95,18 +95,12 @@ def remove_unused_folders(parent: Path) -> None:
     """Remove the windows' folders that killed simulators have left."""
     for file in parent.glob(f"*/{LOCK_NAME}"):
         with contextlib.suppress(OSError):
-            os.close(_locked(file))
+            descriptor = open_lock_file(file)
+            try:
+                lock(descriptor)
+            finally:
+                os.close(descriptor)
             shutil.rmtree(file.parent, ignore_errors=True)
-
-
-def _locked(path: Path) -> int:
-    descriptor = os.open(path, os.O_CREAT | os.O_RDWR, 0o600)
-    try:
-        lock(descriptor)
-    except OSError:
-        os.close(descriptor)
-        raise
-    return descriptor
 
 
 class ApplicationWindow:
@@ -132,7 +126,10 @@ class ApplicationWindow:
         make_private_folder(parent)
         remove_unused_folders(parent)
         self._folder = Path(tempfile.mkdtemp(dir=parent))
-        self._lock = _locked(self._folder / LOCK_NAME)
+        self._lock = open_lock_file(self._folder / LOCK_NAME)
+        # Without locks, as on some network disks, no folder is taken for unused.
+        with contextlib.suppress(OSError):
+            lock(self._lock)
         # A page that leads to ours: others can read a command line, but not this file.
         page = self._folder / "open.html"
         write_text(page, _REDIRECTION.format(url=self._url, code=self._code), is_private=True)
@@ -166,6 +163,7 @@ class ApplicationWindow:
                 await process.wait()
         if self._lock >= 0:
             os.close(self._lock)
+            self._lock = -1
         # A browser's other processes write until they have noticed the end of the first.
         for _ in range(round(ENDING_S / LOOK_S)):
             if self._folder is None or not self._folder.exists():

@@ -21,7 +21,7 @@ from pathlib import Path
 from rastrainer.errors import RASTrainerError
 from rastrainer.files.writing import make_private_folder, open_private
 from rastrainer.journal.entries import iso
-from rastrainer.journal.folder import lock
+from rastrainer.journal.folder import lock, open_lock_file
 
 LARGEST_FILE = 1_000_000
 OLDER_FILES = 5
@@ -100,8 +100,7 @@ def _opened(ends: contextlib.ExitStack, folder: Path, name: str) -> _LogFile | N
 def _free_name(ends: contextlib.ExitStack, folder: Path, name: str) -> str:
     """Lock and return the first name that no other program logs to."""
     for own in (name, *(f"{name}-{number}" for number in range(2, MAX_LOGS + 1))):
-        flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_CLOEXEC", 0)
-        descriptor = open_private(folder / f".{own}.lock", flags)
+        descriptor = open_lock_file(folder / f".{own}.lock")
         ends.callback(os.close, descriptor)
         with contextlib.suppress(OSError):
             lock(descriptor)

@@ -24,6 +24,7 @@ from rastrainer.journal.folder import (
     SUFFIX,
     FolderHolder,
     lock,
+    open_lock_file,
     read_open_holder,
     write_holder,
 )
@@ -196,8 +197,7 @@ class RecordsFolder:
         elsewhere = ", or choose another folder with --records" if chosen else ""
         try:
             make_private_folder(folder)
-            flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_CLOEXEC", 0)
-            self._descriptor = open_private(folder / LOCK_NAME, flags)
+            self._descriptor = open_lock_file(folder / LOCK_NAME)
         except OSError as error:
             raise InputError(
                 f"Trials cannot be recorded in {folder}: {error.strerror}. Allow writing to it"

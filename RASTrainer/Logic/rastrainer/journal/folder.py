@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Annotated
 
 from rastrainer.errors import InputError
+from rastrainer.files.writing import open_private
 from rastrainer.journal.journal_file import FIRST_BYTES, MAX_LINE_BYTES, SEED_SUFFIX
 from rastrainer.json_checks import decode_finite_json, text, whole_number
 from rastrainer.json_records import record_from_json, record_to_json
@@ -43,6 +44,11 @@ else:
     def lock(descriptor: int) -> None:
         """Lock an open file until it is closed; raise OSError if another program holds the lock."""
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+def open_lock_file(path: Path) -> int:
+    """Open a private file to be locked, made if it is missing; no child process inherits it."""
+    return open_private(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_CLOEXEC", 0))
 
 
 LOCK_NAME = ".simulator.lock"
