@@ -1,4 +1,4 @@
-"""Tasks are completed by looking, not by reading alone; the figures are in docs/views.md."""
+"""Tasks are completed by looking, not by reading alone; the figures are in `Testing/error_rates/tables.md`."""
 
 from __future__ import annotations
 
