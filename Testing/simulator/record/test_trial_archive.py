@@ -90,14 +90,6 @@ def test_a_registered_trial_is_offered_until_acknowledged_even_after_a_restart(t
     assert read_journal(path).integrity is Integrity.INTACT
 
 
-def test_an_acknowledgment_that_arrives_twice_is_written_once(tmp_path):
-    path = write_trial(tmp_path)
-    archive = TrialArchive(tmp_path)
-    for _ in range(2):
-        archive.answer(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": TRIAL_ID}, NOW)
-    assert len(read_journal(path).of_kind("acknowledged")) == 1
-
-
 def test_the_truth_of_an_older_trial_is_revealed_only_for_a_registration(tmp_path):
     path = write_trial(tmp_path)
     archive = TrialArchive(tmp_path)
@@ -120,12 +112,6 @@ def test_an_older_trial_is_not_registered_again_once_its_truth_is_revealed(tmp_p
         assert data["trueTreMm"] == pytest.approx(0.0, abs=1e-9)
         with pytest.raises(InputError, match="This registration is final"):
             archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION | {"freMm": 2.0}, NOW)
-
-
-def test_an_older_trial_without_a_registration_is_not_scored(tmp_path):
-    write_trial(tmp_path)
-    with pytest.raises(InputError, match="has no registration yet"):
-        TrialArchive(tmp_path).answer(CommandName.TRIAL_SCORED, SCORE, NOW)
 
 
 def test_a_score_whose_details_look_like_an_acknowledgment_acknowledges_nothing(tmp_path):
@@ -155,14 +141,6 @@ def test_a_trial_is_found_before_any_number_of_later_lines(tmp_path):
     assert find_unacknowledged(tmp_path) == [path]
 
 
-def test_a_trial_that_was_acknowledged_can_still_be_requested_and_scored(tmp_path):
-    write_trial(tmp_path, {"kind": "acknowledged"})
-    archive = TrialArchive(tmp_path)
-    assert archive.unacknowledged() == ()
-    assert archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)["acknowledged"]
-    assert "headToWorld" in archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION, NOW)
-
-
 def test_a_completed_trial_takes_no_memory_and_is_answered_as_before(tmp_path):
     path = write_trial(tmp_path)
     archive = TrialArchive(tmp_path)
@@ -182,15 +160,6 @@ def test_a_completed_trial_takes_no_memory_and_is_answered_as_before(tmp_path):
     assert reading.integrity is Integrity.INTACT
     for kind in ("registration", "scored", "acknowledged"):
         assert len(reading.of_kind(kind)) == 1
-
-
-def test_an_incomplete_line_after_the_record_does_not_hide_the_trial(tmp_path):
-    path = write_trial(tmp_path)
-    with path.open("ab") as file:
-        file.write(b'{"n":9999,"previous":"abc')
-    archive = TrialArchive(tmp_path)
-    archive.answer(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": TRIAL_ID}, NOW)
-    assert read_journal(path).integrity is Integrity.INTACT
 
 
 def test_an_altered_journal_is_named_and_not_delivered(tmp_path):
@@ -228,19 +197,6 @@ def test_a_journal_with_valid_hashes_and_odd_content_is_named_and_blocks_no_othe
     (problem,) = archive.problems
     assert path.name in problem
     assert "not delivered" in problem
-
-
-def test_an_invalid_registration_is_reported(tmp_path):
-    path = write_trial(tmp_path, {"kind": "registration", "arguments": {"matrix": [1.0]}})
-    archive = TrialArchive(tmp_path)
-    assert archive.unacknowledged() == ()
-    assert path.name in archive.problems[0]
-
-
-def test_a_missing_trial_is_answered_with_a_message(tmp_path):
-    archive = TrialArchive(tmp_path)
-    with pytest.raises(InputError, match="There is no trial"):
-        archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
 
 
 def test_a_folder_with_foreign_files_is_read_without_problems(tmp_path):

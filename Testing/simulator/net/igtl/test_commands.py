@@ -79,12 +79,6 @@ def test_simulation_gets_checked_arguments_and_the_name_of_the_client(client, li
     assert arguments == {"velocityMmS": (1.0, 2.0, 3.0), "frame": "world", "durationS": 0.1}
 
 
-def test_refusal_by_the_simulation_is_returned_in_its_words(client, link_server):
-    link_server.simulated.answer = lambda *_: Answer(0, False, "This folder is empty.")
-    reply = client.send_command("LoadScenario", ARGUMENTS["LoadScenario"])
-    assert (reply.ok, reply.data) == (False, {"error": "This folder is empty."})
-
-
 def test_refusal_by_the_rules_of_a_trial_has_its_code_its_values_and_an_english_sentence(
     client, link_server
 ):
@@ -207,10 +201,3 @@ def test_simulation_that_fails_is_reported_and_the_link_continues(client, link_s
     link_server.link._submit_command = fail
     assert "could not carry the command out" in client.send_command("Capture").error
     assert client.send_command("Hello", HELLO).ok
-
-
-def test_client_of_header_version_1_reads_the_reason_in_the_body(link_server):
-    command = pack(Message("command", Command(1, "Fly"), version=1))
-    reply = answer_to(link_server.port, command)
-    assert reply.version == 1
-    assert "is unknown" in json.loads(reply.content.body)["error"]

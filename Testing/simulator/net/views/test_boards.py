@@ -7,9 +7,8 @@ import stat
 
 import pytest
 
-from rastrainer_simulator.net.views import access_control
 from rastrainer_simulator.net.views.access_control import BOARDS_FILE, Sessions
-from rastrainer_simulator.ops.instructor_pin import PIN_FILE, GuessLimit, InstructorPin
+from rastrainer_simulator.ops.instructor_pin import PIN_FILE, InstructorPin
 from rastrainer_simulator.presentation.messages import Seat, ViewRole
 from Testing.simulator.net.views.served import request
 
@@ -60,14 +59,6 @@ def test_a_boards_key_outlives_the_simulator_and_others_do_not(tmp_path):
     }
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
     assert keys[ViewRole.BOARD] not in path.read_text(encoding="utf-8")
-
-
-def test_the_oldest_board_is_forgotten_when_there_are_too_many(tmp_path, monkeypatch):
-    monkeypatch.setattr(access_control, "MAX_SESSIONS", 2)
-    sessions = Sessions(tmp_path / BOARDS_FILE)
-    keys = [sessions.open(ViewRole.BOARD) for _ in range(3)]
-    again = Sessions(tmp_path / BOARDS_FILE)
-    assert [again.role(key) for key in keys] == [None, ViewRole.BOARD, ViewRole.BOARD]
 
 
 @pytest.mark.parametrize("content", ["{}7", "[1]", '["ab"]', f'["{"x" * 64}"]', "7"])
@@ -159,15 +150,3 @@ def test_a_damaged_pin_file_lets_nobody_in(serve, tmp_path, content):
     assert status in (403, 409)
     assert "instructor-pin" in sentence
     assert served.presenter.calls == []
-
-
-def test_attempts_are_allowed_again_after_the_pause_and_a_right_one_clears_the_wrong_ones():
-    now = [0.0]
-    limit = GuessLimit(lambda: now[0])
-    assert [limit.guessed(False) for _ in range(5)] == [False] * 4 + [True]
-    assert limit.seconds_to_wait() == 1.0
-    now[0] = 1.0
-    assert limit.seconds_to_wait() == 0.0
-    assert not limit.guessed(True)
-    assert [limit.guessed(False) for _ in range(5)][-1]
-    assert limit.seconds_to_wait() == 1.0

@@ -67,15 +67,6 @@ def test_a_spectator_that_sends_anything_is_closed_without_any_effect(
     assert served.presenter.calls == []
 
 
-def test_a_spectator_that_reports_being_alive_keeps_watching(served, connect):
-    spectator = watch(served, connect)
-    spectator.send(EXAMPLES[Alive.type])
-    spectator.send(EXAMPLES[Alive.type])
-    spectator.leave()
-    assert watch(served, connect).next("state")["headset"] is None
-    assert served.presenter.calls == []
-
-
 @pytest.mark.parametrize("role", [ViewRole.SPECTATOR, ViewRole.BOARD])
 @pytest.mark.parametrize("kind", ["desktop", "page", "headset"])
 def test_a_spectators_key_lets_no_view_join(served, connect, kind, role):
@@ -162,23 +153,6 @@ def test_a_headset_that_leaves_is_no_longer_worn(served, connect):
     until(None, spectator)
 
 
-def test_the_newest_headset_is_followed_and_after_it_the_previous_one(served, connect):
-    spectator, page = watch(served, connect), connect(served)
-    page.join()
-    first, second = connect(served), connect(served)
-    first.join(kind="headset")
-    first.send(WORN)
-    until(TOLD, spectator)
-    second.join(kind="headset")
-    until(None, spectator)
-    second.send({**WORN, "right": None})
-    until({**TOLD, "right": None}, spectator)
-    first.send(WORN)
-    assert spectator.next("state")["headset"] == {**TOLD, "right": None}, "it was left"
-    second.leave()
-    until(TOLD, spectator)
-
-
 def test_spectators_do_not_use_up_the_slots_of_views(serve, connect, monkeypatch):
     monkeypatch.setattr(view_server, "SPECTATORS", 1)
     served = serve(views=1)
@@ -199,10 +173,3 @@ def test_a_spectators_connection_is_dropped_for_a_view_when_there_are_too_many(
     again.join()
     assert is_cut_off(spectator)
     assert view.next("state")["type"] == again.next("state")["type"] == "state"
-
-
-def test_a_spectator_that_lets_too_many_events_wait_is_dropped_as_a_view_is(served, connect):
-    spectator = watch(served, connect)
-    spectator.next("state")
-    served.tell(*(Feedback(number, "touch") for number in range(1, 300)))
-    assert spectator.closing() == (1013, "The view has not read its events; it may come back.")
