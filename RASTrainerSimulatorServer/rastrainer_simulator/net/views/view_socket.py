@@ -69,6 +69,8 @@ class ViewSocket:
         self.number = number
         self.hello = hello
         self.is_local = is_local
+        self.is_spectator = hello.kind in WATCHING_KINDS
+        """Whether it only watches: the flow, which counts who sees a trial, never hears of it."""
         self.outbox = Outbox()
         self.held = HeldInput(number, presenter)
         self.headset_pose: HeadsetPose | None = None
@@ -78,11 +80,6 @@ class ViewSocket:
         self._clock = asyncio.get_running_loop().time
         self._last_message = self._clock()
         self._has_reported_frames = False
-
-    @property
-    def is_spectator(self) -> bool:
-        """Whether it only watches: the flow, which counts who sees a trial, never hears of it."""
-        return self.hello.kind in WATCHING_KINDS
 
     async def serve(self) -> None:
         """Send and receive until either side ends it."""
@@ -97,16 +94,17 @@ class ViewSocket:
             with contextlib.suppress(asyncio.CancelledError):
                 await sending
 
-    def release_if_silent(self, silent_s: float) -> None:
-        if self._clock() - self._last_message > silent_s:
-            self.held.release(is_silent=True)
+    def check_silence(self, silent_s: float, lost_s: float) -> None:
+        """Release the inputs of a view that has not been heard for `silent_s`.
 
-    def has_fallen_silent(self, lost_s: float) -> bool:
-        """Return, once, whether a view that reports its frames has not been heard for `lost_s`."""
-        is_silent = self._has_reported_frames and self._clock() - self._last_message > lost_s
-        if is_silent:
+        Report, once, a view that reported its frames and has not been heard for `lost_s`.
+        """
+        silence_s = self._clock() - self._last_message
+        if silence_s > silent_s:
+            self.held.release(is_silent=True)
+        if silence_s > lost_s and self._has_reported_frames:
             self._has_reported_frames = False
-        return is_silent
+            self._presenter.receive(self.number, "silence")
 
     async def _send(self) -> None:
         with contextlib.suppress(ConnectionError):

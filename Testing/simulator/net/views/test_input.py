@@ -112,7 +112,7 @@ def test_inputs_held_by_a_view_that_reports_being_alive_stay_held(serve, connect
         now += 900.0
         view.send({"type": "alive"})
         served.thread.run(is_heard())
-        served.thread.call(joined.release_if_silent, 1000.0)
+        served.thread.call(joined.check_silence, 1000.0, 5000.0)
     assert ("on_key", number, "KeyW", False, "") not in served.presenter.calls
     now += 1001.0
     served.wait_for_call("on_key", number, "KeyW", False, "")
