@@ -150,15 +150,6 @@ def test_the_arms_distance_to_itself_matches_brute_force(collision):
     assert overlapping > 0
 
 
-def test_a_link_can_be_nearest_to_the_table(collision):
-    links = KINEMATICS.links(np.radians([165.0, 118.0, 0.0, 30.0, 0.0, 0.0, 0.0]))
-    found, posed = collision.check(links), ARM.pose(links)
-    heights = posed.ends[:, :, 2].min(axis=1) - ARM.radii
-    nearest = np.where(ARM.joints > 0, heights, np.inf).argmin()
-    assert found.table_m == pytest.approx(heights[nearest], abs=1e-9)
-    assert ARM.names[nearest] == "iiwa_link_3"
-
-
 def test_the_heads_stand_is_an_upright_column_under_its_base(head):
     raised = at(head[0], (0.5, 0.0, 0.45))
     collision = placed(head, raised, stand_radius=0.03)

@@ -20,7 +20,7 @@ from Testing.simulator.planned_procedures import INNER_MM, OUTER_MM
 
 SEED = 4
 IDENTITY = Rotation.identity()
-MANY_LINES = 6
+MANY_LINES = 4
 RIGHT = OperatorInput(translation=(1.0, 0.0, 0.0), operator="gamepad")
 TURN = OperatorInput(rotation=(1.0, 0.0), operator="gamepad")
 IN = OperatorInput(translation=(0.0, 0.0, -1.0), operator="gamepad")
@@ -111,8 +111,8 @@ def test_while_aligning_the_second_stick_turns_the_guide_and_the_first_keeps_its
     np.testing.assert_allclose(surgeon.tip, tip, atol=1e-6)
 
 
-@pytest.mark.parametrize("shift_mm", [(0.0, 0.0, 0.0), (2.0, -1.0, 1.0)])
-def test_the_robot_aligns_the_guide_with_the_plan_as_registered(surgeon, shift_mm):
+def test_the_robot_aligns_the_guide_with_the_plan_as_registered(surgeon):
+    shift_mm = (2.0, -1.0, 1.0)
     surgeon.to(Phase.ALIGNING, shift_mm=shift_mm)
     assert surgeon.align(stand_off_mm=20.0) == "reached"
     shown = surgeon.state.alignment

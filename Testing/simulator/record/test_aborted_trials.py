@@ -100,20 +100,6 @@ def test_a_trial_that_was_only_viewed_is_delivered_for_its_number_alone(simulati
         assert study.undelivered() == {record.series: ((2, 3),)}
 
 
-def test_a_later_finished_trial_is_offered_beside_it(simulation, tmp_path):
-    with Server(simulation, tmp_path) as server:
-        server.start()
-        touch(server, 2)
-        aborted = server.do(CommandName.ABORT).data["trialId"]
-        finished = server.start()
-        server.finish()
-        records = wait_for_offer(server)
-    assert [(type(record), record.trial_id) for record in records] == [
-        (AbortedTrial, aborted),
-        (TrialRecord, finished),
-    ]
-
-
 def disk_full_from_the_abort():
     """Return a write that fails from the abort on: the states before it come at any moment."""
     write, is_full = os.write, []

@@ -82,8 +82,7 @@ def play(loop, trainee, is_ended):
     return loop.latest.training.trial_id
 
 
-@pytest.mark.parametrize("minutes", [-5, -600_000])
-@pytest.mark.parametrize("restarts", [False, True], ids=["in one server", "with a restart between"])
+@pytest.mark.parametrize(("minutes", "restarts"), [(-5, False), (-600_000, True)])
 def test_the_most_recently_started_trial_is_resumed_even_if_the_clock_was_set_back(
     simulation, tmp_path, jumping, minutes, restarts
 ):

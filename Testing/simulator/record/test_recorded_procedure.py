@@ -18,7 +18,6 @@ from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.study.journal_check import check_journal
 from rastrainer.transforms import MM_PER_M
-from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import InterruptedTrial, find_interrupted
@@ -285,22 +284,6 @@ def test_a_server_that_ends_in_a_phase_is_resumed_there_and_everything_replays(
     assert reading.integrity is Integrity.INTACT
     assert replay(reading, planned).difference is None
     assert len(record.procedure.instruments) == count
-
-
-@pytest.mark.parametrize("phase", PROCEDURE_PHASES, ids=str)
-def test_an_abort_in_a_phase_is_recorded_with_the_phase(simulation, tmp_path, phase):
-    with Theater(simulation, tmp_path) as server:
-        server.to(phase)
-        elapsed = server.loop.latest.elapsed
-        server.must(CommandName.ABORT, reason="trainee")
-        server.loop._writer.submit(lambda: None).result()
-        (record,) = server.loop.archive.unacknowledged()
-    assert isinstance(record, AbortedTrial)
-    assert (record.phase, record.reason) == (phase.value, "trainee")
-    assert len(record.points) == 15
-    assert record.counts_as_failed
-    assert record.elapsed_s >= elapsed
-    assert record_from_json(AbortedTrial, json.loads(json.dumps(record_to_json(record)))) == record
 
 
 def test_a_paused_procedure_is_aborted_in_the_phase_in_which_it_was_paused(simulation, tmp_path):

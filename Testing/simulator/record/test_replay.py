@@ -76,18 +76,6 @@ def test_an_untouched_journal_is_intact_and_replays_to_the_last_bit(recorded, ca
     assert "equal to the last bit" in capsys.readouterr().out
 
 
-def test_the_json_report_contains_what_was_compared_and_the_metrics_of_measure(recorded, capsys):
-    assert main(["replay", str(recorded), "--verify", "--json"]) == 0
-    report = json.loads(capsys.readouterr().out)
-    assert report["identical"] is True
-    assert report["compared"]["sample"] >= 10
-    assert report["compared"]["rejected"] == 1
-    assert report["motion"]["path_length_mm"] > 1.0
-    assert report["motion"]["refused_touches"] == 1
-    assert main(["measure", str(recorded), "--json"]) == 0
-    assert json.loads(capsys.readouterr().out) == report["motion"]
-
-
 def test_cut_short_altered_and_foreign_files_are_distinguished_by_message_and_status(
     recorded, tmp_path, capsys
 ):

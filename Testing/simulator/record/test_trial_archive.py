@@ -1,17 +1,15 @@
 """The archive of registered trials: deliveries, and the truth kept until scored."""
 
 import gc
-import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from rastrainer.commands import CommandName, check_arguments, decode_json_object
+from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.journal.entries import FORMAT, FORMAT_VERSION, Stamp
 from rastrainer.journal.journal_file import Integrity, read_journal
-from rastrainer.json_checks import MAX_DEPTH
 from rastrainer.json_records import record_to_json
 from rastrainer.trial.record import TouchedPoint, TrialRecord
 from rastrainer_simulator.record.journal_writer import Journal
@@ -118,21 +116,6 @@ def test_a_score_whose_details_look_like_an_acknowledgment_acknowledges_nothing(
     path = write_trial(tmp_path, {"kind": "registration", "arguments": REGISTRATION})
     TrialArchive(tmp_path).answer(CommandName.TRIAL_SCORED, SCORE, NOW)
     assert TrialArchive(tmp_path).unacknowledged() == (sealed(path),)
-
-
-def test_a_score_nested_as_deeply_as_allowed_leaves_a_readable_journal(tmp_path):
-    path = write_trial(tmp_path, {"kind": "registration", "arguments": REGISTRATION})
-    levels = MAX_DEPTH - 2
-    details = '{"a":' * levels + "1" + "}" * levels
-    score = json.dumps({**SCORE, "details": "here"}).replace('"here"', f'{{"b":{details}}}')
-    arguments = check_arguments(CommandName.TRIAL_SCORED, decode_json_object(score))
-    TrialArchive(tmp_path).answer(CommandName.TRIAL_SCORED, arguments, NOW)
-    assert read_journal(path).integrity is Integrity.INTACT
-    data = TrialArchive(tmp_path).answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
-    assert data["phase"] == "scored"
-    deeper = score.replace(details, f"[{details}]")
-    with pytest.raises(InputError, match="one JSON object"):
-        decode_json_object(deeper)
 
 
 def test_a_trial_is_found_before_any_number_of_later_lines(tmp_path):

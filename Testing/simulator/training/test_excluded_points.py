@@ -15,7 +15,7 @@ from rastrainer.trial.record import TrialRecord
 from Testing.domain.trial.trial_records import make_record
 from Testing.simulator.training.hand_driven import Trial
 
-TASKS = ("trial-run", "task-1", "task-2", "task-3", "task-4", "task-5")
+TASKS = ("trial-run", "task-3")
 BAD_MM = 4.0
 """Errors of the five worst touches, along the skin or not."""
 MOTION = {

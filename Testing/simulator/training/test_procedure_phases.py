@@ -237,17 +237,6 @@ def test_a_guide_through_which_nothing_can_be_drilled_is_not_locked(scenario, sk
     assert trial.state is before
 
 
-def test_the_most_recently_locked_guide_is_recorded(scenario):
-    trial = at_procedure(scenario, Phase.DRILLING)
-    trial.must(CommandName.RETRACT_DRILL, feed=Feed(0.01, 0.01, AHEAD))
-    assert trial.state.phase is Phase.ALIGNING
-    tip, direction = (0.48, 0.01, 0.39), (0.0, 0.6, -0.8)
-    trial.must(CommandName.LOCK_GUIDE, tip, feed=LOCKABLE, direction=direction)
-    line = trial.procedure.trajectories[0]
-    assert (line.guide.tip, line.guide.direction, line.alignments) == (tip, direction, 2)
-    assert not line.is_self_aligned
-
-
 def test_no_instrument_without_a_hole_and_no_release_inside_the_guide(scenario):
     trial = at_procedure(scenario, Phase.DRILLING)
     assert "Nothing is drilled" in trial.do(CommandName.START_INSERTION, feed=LOCKABLE).message
@@ -273,16 +262,6 @@ def test_a_pause_returns_to_the_phase_in_which_it_began(scenario, phase):
     assert trial.state.phase is phase
     assert trial.state.instruction == said
     assert trial.training.elapsed(trial.now) == elapsed
-
-
-@pytest.mark.parametrize("phase", PROCEDURE_PHASES, ids=str)
-def test_an_abort_ends_a_procedure_in_each_phase(scenario, phase):
-    trial = at_procedure(scenario, phase)
-    trial.must(CommandName.ABORT)
-    assert trial.state.phase is Phase.IDLE
-    assert trial.procedure is None
-    assert trial.start().ok
-    assert trial.procedure is None
 
 
 @pytest.mark.parametrize(

@@ -121,38 +121,6 @@ def test_only_a_spectator_is_sent_the_pose_of_a_headsets_eyes_and_hands(served, 
     until(None, spectator)
 
 
-def test_links_before_the_eyes_of_a_headset_are_translucent_for_these_alone(
-    served, connect, control_loop
-):
-    start = {"task": "task-1", "trainee": "P07", "mode": "hmd", "seed": 3}
-    assert control_loop.submit("StartTask", start, "test").result().ok
-    headset, view = connect(served), connect(served)
-    headset.join(kind="headset")
-    view.join()
-
-    def until_translucent(eyes):
-        headset.send({**WORN, "eyes": eyes})
-        is_so = lambda news: bool(news["translucent"]["headset"]) is bool(eyes)  # noqa: E731
-        read = view.all_until(lambda news: news["type"] == "state" and is_so(news))
-        return read[-1]["translucent"]
-
-    assert until_translucent(None) == {"view": [], "inset": [], "headset": []}
-    # From behind the robot, which then stands before tip and head.
-    seen = until_translucent([-1.5, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0])
-    assert all(body.startswith("link_") for body in seen["headset"])
-    assert seen["view"] == []
-    assert control_loop.submit("Abort", {}, "test").result().ok
-
-
-def test_a_headset_that_leaves_is_no_longer_worn(served, connect):
-    spectator, headset = watch(served, connect), connect(served)
-    headset.join(kind="headset")
-    headset.send(WORN)
-    until(TOLD, spectator)
-    headset.leave()
-    until(None, spectator)
-
-
 def test_spectators_do_not_use_up_the_slots_of_views(serve, connect, monkeypatch):
     monkeypatch.setattr(view_server, "SPECTATORS", 1)
     served = serve(views=1)

@@ -124,18 +124,6 @@ def test_every_view_gets_each_event_once_and_in_order(served, connect):
     }
 
 
-def test_a_view_that_joins_later_does_not_get_past_events(served, connect):
-    first = connect(served)
-    first.join()
-    served.tell(feedback(1))
-    assert first.next("event")["number"] == 1
-    late = connect(served)
-    late.join()
-    late.next("state")
-    served.tell(feedback(2))
-    assert late.next("event")["number"] == 2
-
-
 def test_a_view_that_falls_behind_gets_the_latest_screen_and_not_all_before_it(serve, connect):
     served = serve(gone_s=1000.0)
     view = connect(served)
