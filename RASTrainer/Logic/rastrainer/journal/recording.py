@@ -17,6 +17,7 @@ from rastrainer.journal.entries import (
     AcceptedCheckpoint,
     AcceptedTouch,
     CameraChange,
+    CommandDone,
     Continued,
     Entry,
     JournalHeader,
@@ -26,6 +27,7 @@ from rastrainer.journal.entries import (
     Registered,
     Rejected,
     Sample,
+    Stamp,
     Stroke,
     TracePoint,
     Undo,
@@ -241,15 +243,17 @@ EVENTS = (
     AcceptedCheckpoint,
     ProximityChange,
     CameraChange,
+    CommandDone,
+    Continued,
 )
 """Entries that change the view besides the arm."""
 
 
 class RecordedEvent(NamedTuple):
-    """An entry of `EVENTS`, its trial time, and its simulated time, s."""
+    """An entry of `EVENTS`, its trial time, s, and when it was recorded."""
 
     time_s: float
-    sim_time_s: float
+    at: Stamp
     entry: Entry
 
 
@@ -323,4 +327,4 @@ class _ReplayRecording(WholeRecording):
             # Keep events in order, also in the tick in which a trial is paused.
             before_s = self.events[-1].time_s if self.events else 0.0
             time_s = max(before_s, self._trial_time(seen_s))
-            self.events.append(RecordedEvent(time_s, sim_time, entry))
+            self.events.append(RecordedEvent(time_s, line.at, entry))
