@@ -55,7 +55,7 @@ PARTS = (
         "trainees who only see the screen finish a trial, and cheating never helps",
         (
             "simulator/virtual/test_cheating_trainees.py",
-            "simulator/virtual/test_seeing_and_reading.py",
+            "simulator/virtual/test_playing_by_sight.py",
             "simulator/training",
         ),
     ),

@@ -16,7 +16,7 @@ from rastrainer_simulator.authoring.task_proposal import (
     TaskProposer,
     places_seen_from,
 )
-from rastrainer_simulator.authoring.task_set import is_smooth, smooth_places, spread_out
+from rastrainer_simulator.authoring.task_set import is_smooth, smooth_places
 from rastrainer_simulator.authoring.touch_order import (
     crossing_order,
     easiest_order,
@@ -101,15 +101,6 @@ def test_a_head_without_room_for_a_task_is_refused_with_a_message(mesh, places):
         TaskProposer(mesh, few, EYE, TARGET).propose(PLANS[1], 1)
 
 
-def test_places_are_spread_evenly_and_cover_the_skin(mesh):
-    points = mesh.vertices
-    chosen = points[spread_out(points, 30.0)]
-    away = np.linalg.norm(points[:, None] - chosen[None], axis=2)
-    assert away.min(axis=1).max() < 30.0
-    among = np.linalg.norm(chosen[:, None] - chosen[None], axis=2) + 1e3 * np.eye(len(chosen))
-    assert among.min() >= 30.0
-
-
 def test_no_fiducial_is_placed_near_an_edge():
     drum = trimesh.creation.cylinder(radius=80.0, height=120.0, sections=96).subdivide_to_size(6.0)
     mesh = HeadMesh(np.array(drum.vertices), np.array(drum.faces))
@@ -127,13 +118,6 @@ def ways_of(points):
     normals = np.tile([0.0, 0.0, 1.0], (len(points), 1))
     lengths = np.linalg.norm(points[:, None] - points[None], axis=2)
     return transitions_between(points, normals, lengths)
-
-
-def test_points_in_a_line_are_touched_in_sequence():
-    places = np.array([3, 0, 5, 1, 4, 2])
-    points = np.stack([40.0 * places, np.zeros(6), np.zeros(6)], axis=1)
-    order = places[easiest_order(ways_of(points), list(range(6)))].tolist()
-    assert order in ([0, 1, 2, 3, 4, 5], [5, 4, 3, 2, 1, 0])
 
 
 @pytest.mark.parametrize("seed", range(4))

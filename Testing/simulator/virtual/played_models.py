@@ -1,9 +1,8 @@
-"""A task played by a model that only looks, or only reads, in simulated time."""
+"""A task played by a model that only looks, in simulated time."""
 
 from __future__ import annotations
 
 import functools
-import json
 import math
 import sys
 import tempfile
@@ -22,7 +21,6 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow.running_presenter import RunningPresenter
-from rastrainer_simulator.flow.session.preferences import PREFERENCES_FILE
 from rastrainer_simulator.flow.session.services import FlowServices
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.state import TOUCH_ERRORS, Answer, StepResult, TouchStage
@@ -31,14 +29,12 @@ from Testing.simulator.at_once import at_once
 from Testing.simulator.flow.trainee import Trainee
 from Testing.simulator.virtual.drawn_pictures import DrawnPictures
 from Testing.simulator.virtual.looking_trainee import LookingTrainee, NotTouchedError
-from Testing.simulator.virtual.reading_trainee import ReadingTrainee
 from Testing.simulator.virtual.trained_hands import HANDS, TrainedMouse, TrainedPad
 from Testing.without_tutorial import skip_tutorial
 
 LIMIT_S = 300.0
 """A trial ends here: the trial run lasts five minutes, and no model has longer for a task."""
 POINTS = 15
-MODELS = ("looks", "reads")
 GREEN_MM = 0.5
 """Pressed in less than this, the tip is green on the point."""
 
@@ -83,11 +79,6 @@ class Outcome:
     error_mm: float
     landings: tuple[Landing, ...] = ()
 
-    def is_worse_than(self, other: Outcome) -> bool:
-        """Return whether fewer points were touched, or as many later and less accurately."""
-        is_late = self.time_s > other.time_s and self.error_mm > other.error_mm
-        return is_late if self.touches == other.touches else self.touches < other.touches
-
 
 class WatchedLandings:
     """Watches each tick how the tip comes onto the points."""
@@ -124,22 +115,16 @@ class SteadyTrainee(Trainee):
 
 
 def play(
-    setup: SimulationSetup,
-    model: str,
-    task: str,
-    seed: int,
-    limit_s: float = LIMIT_S,
-    device: str = "pad",
+    setup: SimulationSetup, task: str, seed: int, limit_s: float = LIMIT_S, device: str = "pad"
 ) -> Outcome:
-    """Let a model (one of `MODELS`) play a task, until all is touched or its time is over.
+    """Let a model that looks play a task, until all is touched or its time is over.
 
-    The seed gives the head's pose, and the model's eyes or choices. A model that looks
-    works one of the devices of `HANDS`.
+    The seed gives the head's pose and the model's eyes; the device is one of `HANDS`.
     """
     landings = WatchedLandings()
     with (
         tempfile.TemporaryDirectory() as folder,
-        _at_work(setup, seed, Path(folder), model, device) as trainee,
+        _at_work(setup, seed, Path(folder), device) as trainee,
     ):
         trainee.start(task)
         trainee.loop.subscribe(landings.take)
@@ -147,12 +132,8 @@ def play(
         is_mouse = isinstance(hands, TrainedMouse)
         if is_mouse:
             hands.show_sticks()
-        if model == "looks":
-            pictures = DrawnPictures(setup, seed)
-            with suppress(NotTouchedError):
-                LookingTrainee(trainee, hands, pictures, is_mouse).play(limit_s)
-        else:
-            ReadingTrainee(trainee, hands).play(limit_s)
+        with suppress(NotTouchedError):
+            LookingTrainee(trainee, hands, DrawnPictures(setup, seed), is_mouse).play(limit_s)
         state, truth = trainee.state, trainee.loop.simulation.truth
         touches = state.training.touches
         errors_mm = [
@@ -173,9 +154,7 @@ def play(
 
 
 @contextmanager
-def _at_work(
-    setup: SimulationSetup, seed: int, folder: Path, model: str, device: str
-) -> Iterator[Trainee]:
+def _at_work(setup: SimulationSetup, seed: int, folder: Path, device: str) -> Iterator[Trainee]:
     """Yield a trainee with a device, at the start menu of a new simulator."""
     done: Future[Answer] = Future()
     done.set_result(Answer(0, True))
@@ -189,11 +168,6 @@ def _at_work(
         quit=lambda: None,
     )
     skip_tutorial(services.config)
-    if model == "reads":
-        # The view stays, so that directions keep their meaning to those who do not see it turn.
-        path = services.config / PREFERENCES_FILE
-        preferences = json.loads(path.read_text(encoding="utf-8"))
-        path.write_text(json.dumps({**preferences, "view": "never"}), encoding="utf-8")
     gamepad = VirtualGamepad(lambda *_strengths: None)
     loop = ControlLoop(Simulation(setup, seed), folder / "records", speed=None)
     with at_once(), loop:
@@ -223,20 +197,16 @@ def mean_and_interval(values: Sequence[float]) -> str:
 
 
 def play_tasks(*seeds: int) -> None:
-    """Play all tasks by both models, and print a line for each trial and task."""
+    """Play all tasks, and print a line for each."""
     setup = load_setup()
     for task in setup.scenario.tasks:
-        for model in MODELS:
-            outcomes = []
-            for seed in seeds:
-                outcomes.append(play(setup, model, task.name, seed))
-                print(seed, task.name, model, outcomes[-1], flush=True)
-            finished = sum(outcome.touches == POINTS for outcome in outcomes)
-            each = (
-                mean_and_interval([getattr(outcome, name) for outcome in outcomes])
-                for name in ("touches", "time_s", "error_mm")
-            )
-            print(task.name, model, f"{finished} of {len(outcomes)} finished", *each, sep=" | ")
+        outcomes = [play(setup, task.name, seed) for seed in seeds]
+        finished = sum(outcome.touches == POINTS for outcome in outcomes)
+        each = (
+            mean_and_interval([getattr(outcome, name) for outcome in outcomes])
+            for name in ("touches", "time_s", "error_mm")
+        )
+        print(task.name, f"{finished} of {len(outcomes)} finished", *each, sep=" | ", flush=True)
 
 
 def play_devices(count: int, *devices: str) -> None:
@@ -248,7 +218,7 @@ def play_devices(count: int, *devices: str) -> None:
         given_up = 0
         for number, task in enumerate(tasks):
             if len(landings) < count:
-                played = play(setup, "looks", task, 11 + number, LIMIT_S, device)
+                played = play(setup, task, 11 + number, LIMIT_S, device)
                 landings.extend(played.landings)
                 given_up += played.touches < POINTS
         kept = landings[:count]

@@ -102,12 +102,3 @@ def test_a_journal_being_written_stops_the_deletion_before_it_starts(copied):
         assert len(study.history("V0001")) == 2
         journal.close()
         assert erase_trainee(study, "V0001", folder).trials == 2
-
-
-def test_an_unknown_trainee_or_folder_is_reported(copied):
-    with Study.open(copied / DATABASE) as study:
-        with pytest.raises(InputError, match="no trainee"):
-            erase_trainee(study, "nobody", copied / RECORDS)
-        with pytest.raises(InputError, match="no folder"):
-            erase_trainee(study, "V0001", copied / "elsewhere")
-        assert len(study.history("V0001")) == 2

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from rastrainer.study.database.cohort_store import CohortStore, IncompleteStudyError
+from rastrainer.study.database.cohort_store import CohortStore
 from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.main import main
@@ -23,7 +23,6 @@ from rastrainer_simulator.virtual.worker_pool import ATTEMPTS, WorkerDiedError
 from Testing.running_process import runs, started_by
 from Testing.simulator.virtual.small_jobs import (
     kill_self,
-    own_process,
     refused,
     squared_by_mortals,
 )
@@ -121,13 +120,6 @@ def test_an_error_in_a_worker_is_raised_with_its_location_and_no_worker_is_left(
     assert not any(map(is_worker, started_by(os.getpid())))
 
 
-def test_all_workers_get_jobs_and_end_with_the_run():
-    pids = set(run_jobs(own_process, range(12), workers=2))
-    assert len(pids) == 2
-    assert os.getpid() not in pids
-    assert not any(map(runs, pids))
-
-
 @pytest.mark.soak
 def test_a_cohort_whose_workers_are_killed_is_the_same_to_the_last_bit(
     played, protocol, population, tmp_path, monkeypatch
@@ -210,13 +202,6 @@ def test_an_incomplete_cohort_is_reported_on_request_and_the_page_says_so(copied
     assert main(words) == 0
     page = (tmp_path / "page" / "report.html").read_text()
     assert "3 of 4 trials are stored. What follows is about these trials alone." in page
-
-
-def test_a_cohort_without_any_trials_yet_is_reported_too(tmp_path):
-    with Study.open(tmp_path / DATABASE) as study:
-        CohortStore(study).start({"seed": 1}, 40)
-    with pytest.raises(IncompleteStudyError, match="0 of 40 trials"):
-        read_study_data(tmp_path / DATABASE)
 
 
 def test_trials_that_got_stuck_are_reported_and_not_played_again(tmp_path):

@@ -82,23 +82,5 @@ def test_the_effect_of_a_mode_is_found_where_it_exists_and_with_its_size(tmp_pat
     assert found["score"].adjusted_p < 0.01
 
 
-@pytest.mark.soak
-def test_the_true_properties_of_two_hundred_trainees_are_recovered(tmp_path):
-    """An hour on two cores: ten tasks in both modes each, 4,000 trials."""
-    tasks = tuple(f"task-{number}" for number in range(1, 6))
-    modes = ("desktop", "hmd")
-    protocol = StudyProtocol("soak", "Soak", modes, "balanced", tasks, "balanced", repetitions=2)
-    effect = {"hmd": ModeEffect(speed=0.8, aim=1.5)}
-    population = Population(skill=BRISK, learning=0.0, modes=effect)
-    run = simulate_cohort(protocol, population, 200, 11, tmp_path / "study", PlaySettings())
-    assert (run.played, run.stuck) == (4000, 0)
-    data = read_study_data(tmp_path / "study" / DATABASE)
-    found = {c.outcome.name: c for c in compare_modes(data, MAIN_OUTCOMES, *modes)}
-    for name, factor in (("completion_time_s", 1 / 0.8), ("rmse_mm", 1.5)):
-        desktop, hmd = map(np.mean, _means(found[name]))
-        assert hmd / desktop == pytest.approx(factor, rel=0.05)
-        assert found[name].adjusted_p < 1e-6
-
-
 def _means(comparison):
     return comparison.first_means, comparison.second_means

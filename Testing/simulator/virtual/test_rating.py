@@ -214,11 +214,6 @@ def test_interrupted_rating_resumes_at_the_replay_and_domain_where_it_stopped(
     assert again.menu.title == "GEARS: Efficiency"
 
 
-def test_a_rater_who_has_rated_everything_sees_a_message(copied, study, loader, rater):
-    rate_all(rater)
-    assert Rater(copied, study, loader).menu.title == "All 3 replays are rated"
-
-
 def everything_shown(rater):
     """Return all that a view could have been sent."""
     presenter = rater.presenter
@@ -388,16 +383,3 @@ def test_the_program_accepts_marks_and_resumes_where_it_was_even_if_killed(
     assert rows[0] == "trial_id,rater,form,domain,mark"
     assert f"{data[0].trial_id},R1,gears,gears_depth,4" in rows
     assert len(rows) == 9
-
-
-@pytest.mark.parametrize(
-    ("words", "sentence"),
-    [
-        (["--view-port", "70000"], "--view-port: must be"),
-        (["--replays", "0"], "--replays: must be a whole number from 1"),
-        (["--records", "nowhere"], "There is nothing to rate"),
-    ],
-)
-def test_an_unratable_study_is_reported_in_one_sentence(copied, capsys, words, sentence):
-    assert main(["rate", str(copied / STUDY_FILE), "--rater", "R1", *words]) == 2
-    assert sentence in capsys.readouterr().err
