@@ -23,7 +23,7 @@ from Testing.error_rates.match_warnings import CHUNKS
 from Testing.error_rates.page import PAGE, SETS, TABLES, printed, with_table
 from Testing.error_rates.played import WAYS, keys, play, stored
 from Testing.error_rates.registered import common_biases, errors_along_skin, registered_errors
-from Testing.error_rates.row_files import add_row, play_missing, stored_rows
+from Testing.error_rates.row_files import stored_rows
 
 FEW = {
     "goals": 20,
@@ -192,11 +192,3 @@ def test_each_stored_row_is_kept_once_and_belongs_to_its_table(path, kind, expec
     assert set(rows) <= expected
     if kind in (played.Played, hands.HandsTrial):
         assert set(rows) == expected
-
-
-def test_a_row_is_stored_and_not_played_again(tmp_path):
-    path, row = tmp_path / "rows.csv", hands.HandsTrial("a", 1, "b", "c", 0.5, (0.0, 1.5), (2.0,))
-    add_row(path, row)
-    others = []
-    play_missing(path, type(row), [("a", 1), ("a", 2)], lambda *key: others.append(key) or row, 2)
-    assert (stored_rows(path, type(row)), others) == ([row, row], [("a", 2)])

@@ -6,7 +6,6 @@ import scipy.signal
 
 from rastrainer.errors import InputError
 from rastrainer.motion.trajectory import (
-    idle_time,
     log_dimensionless_jerk,
     low_pass,
     path_length,
@@ -77,14 +76,6 @@ def test_path_length_and_efficiency():
     assert path_length(helix) == pytest.approx(2.0 * np.pi * 50.0, rel=1e-7)
     square = np.array([[0, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0]], dtype=float)
     assert path_length(square) == 30.0
-
-
-def test_idle_time_counts_rests_longer_than_the_threshold_only():
-    speed = np.full(1000, 20.0)
-    speed[100:125] = 0.0
-    speed[200:260] = 0.5
-    speed[940:] = 0.0
-    assert idle_time(speed, RATE_HZ) == pytest.approx(1.2)
 
 
 def test_throughput_follows_iso_9241_411_along_the_task_axis_about_the_targets():

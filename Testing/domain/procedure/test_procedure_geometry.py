@@ -11,7 +11,6 @@ from rastrainer.procedure.geometry import (
     bone_ahead,
     is_inside,
     segment_distances_mm,
-    skull_angle_deg,
 )
 from Testing.domain.procedure.made_up_procedure import shell
 from Testing.domain.scenario.made_up_scenario import ball_head
@@ -56,11 +55,6 @@ def test_a_line_through_the_edge_of_two_triangles_crosses_once(x, y):
     assert [crossing.distance_mm for crossing in crossings] == pytest.approx([20.0, 30.0])
 
 
-def test_bone_lies_between_its_tables():
-    bone = bone_ahead(shell(), np.array([0.0, 0.0, 120.0]), -Z, 300.0)
-    assert bone == pytest.approx((37.0, 44.0))
-
-
 def test_marrow_between_two_tables_is_bone_and_deeper_tissue_is_not():
     skull = slabs((47.0, 50.0), (43.5, 44.5), (10.0, 20.0))
     bone = bone_ahead(skull, np.array([1.0, 2.0, 80.0]), -Z, 200.0)
@@ -71,10 +65,6 @@ def test_solid_bone_has_no_inner_table_within_reach():
     bone = bone_ahead(slabs((0.0, 50.0)), np.array([1.0, 2.0, 80.0]), -Z, 60.0)
     assert bone.outer_mm == pytest.approx(30.0)
     assert bone.inner_mm is None
-
-
-def test_a_line_that_misses_the_skull_meets_no_bone():
-    assert bone_ahead(shell(), np.array([0.0, 100.0, 120.0]), -Z, 300.0) is None
 
 
 def test_only_points_enclosed_by_the_surface_are_inside():
@@ -89,11 +79,6 @@ def test_an_angle_is_exact_even_if_small(degrees):
     radians = np.radians(degrees)
     turned = np.array([np.sin(radians), 0.0, np.cos(radians)])
     assert angle_deg(3.0 * Z, turned) == pytest.approx(degrees, abs=1e-12)
-
-
-def test_the_angle_to_the_skull_is_that_to_its_normal():
-    place = np.array([0.0, 83.0 * np.sin(0.3), 83.0 * np.cos(0.3)])
-    assert skull_angle_deg(shell(), place, -Z) == pytest.approx(np.degrees(0.3), abs=1.0)
 
 
 def brute(start, end, other_start, other_end):

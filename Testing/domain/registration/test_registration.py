@@ -60,28 +60,6 @@ def test_exact_points_give_the_exact_transform_and_no_error(kind, touched_head):
     assert registration.fre_mm < 1e-9
 
 
-def test_the_similaritys_scale_is_the_symmetric_one(touched_head):
-    moving, fixed, _ = touched_head(0)
-    forth = register(moving, fixed, "similarity").matrix
-    back = register(fixed, moving, "similarity").matrix
-    np.testing.assert_allclose(forth @ back, np.eye(4), atol=1e-9)
-
-
-def test_fre_is_the_root_mean_square_of_the_residual_vectors(touched_head):
-    moving, fixed, _ = touched_head(1)
-    registration = register(moving, fixed, "rigid")
-    vectors = transforms.apply(registration.matrix, moving) - fixed
-    np.testing.assert_allclose(registration.residual_vectors_mm, vectors, atol=1e-12)
-    np.testing.assert_allclose(registration.residuals_mm, np.linalg.norm(vectors, axis=1))
-    assert registration.fre_mm == pytest.approx(np.sqrt((vectors**2).sum() / 15))
-
-
-def test_a_mirrored_set_still_yields_a_rotation(touched_head):
-    moving, fixed, _ = touched_head(2)
-    matrix = register(moving * [-1, 1, 1], fixed, "rigid").matrix
-    assert np.linalg.det(matrix[:3, :3]) == pytest.approx(1.0)
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_leaving_points_out_registers_the_others(kind, touched_head):
     moving, fixed, _ = touched_head(4)
@@ -108,12 +86,6 @@ def test_leave_one_out_returns_the_distance_predicted_by_the_other_points(kind, 
         others = vtk_matrix(np.delete(moving, i, 0), np.delete(fixed, i, 0), kind)
         expected = np.linalg.norm(transforms.apply(others, moving[i]) - fixed[i])
         assert distances[i] == pytest.approx(expected, abs=1e-6)
-
-
-def test_leave_one_out_is_refused_if_too_few_points_remain(touched_head):
-    moving, fixed, _ = touched_head(8, count=3)
-    with pytest.raises(InputError, match="at least 3 pairs"):
-        register(moving, fixed).leave_one_out_mm()
 
 
 def test_the_inputs_are_not_changed(touched_head):

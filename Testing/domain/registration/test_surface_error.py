@@ -74,24 +74,6 @@ def test_intervals_contain_the_true_error_and_its_size_is_predicted(head):
     assert expected == pytest.approx(true, rel=0.35)
 
 
-def test_an_offset_that_all_points_share_adds_to_the_error(head):
-    match, _ = trial(head, 4)
-    alone, shared = (
-        surface_target_error(knowledge_of(match), head.middle, common_bias_sd_mm=bias).expected_mm
-        for bias in (0.0, 2.0)
-    )
-    assert shared**2 == pytest.approx(alone**2 + 12.0)
-
-
-def test_the_expected_error_grows_away_from_the_trace(head):
-    match, _ = trial(head, 5)
-    over_head = expected_mm(knowledge_of(match), head.vertices)
-    back = head.vertices[:, 1] < head.vertices[:, 1].min() + 20.0
-    face = places(head, "face")
-    assert over_head.shape == (len(head.vertices),)
-    assert over_head[back].mean() > 1.2 * over_head[face].mean()
-
-
 def expected_at_targets(head, rows):
     knowledge = knowledge_so_far(head.vertices[rows], head.vertex_normals[rows], head, NOISE_MM)
     return float(np.sqrt(np.mean(expected_mm(knowledge, head.middle + ASIDE) ** 2)))
@@ -163,13 +145,6 @@ def test_a_stroke_elsewhere_moves_the_suggested_place_only_when_it_ends(guide, n
     then = guide.next_place(elsewhere, is_drawing=False)
     assert then is not first
     assert np.linalg.norm(then.position - elsewhere, axis=1).min() > COVERED_MM
-
-
-def test_undoing_a_stroke_restores_the_suggested_place(guide, nothing):
-    first = guide.next_place(nothing, is_drawing=False)
-    guide.next_place(around(first.position, 3 * DAB), is_drawing=False)
-    again = guide.next_place(nothing, is_drawing=False)
-    assert np.array_equal(again.position, first.position)
 
 
 def test_a_complete_trace_has_no_next_place(guide, head):

@@ -15,11 +15,7 @@ from rastrainer.scenario.library import list_scenarios
 from rastrainer.scenario.scenario import OperatingTable, SkullKind, Stand, load_scenario
 from rastrainer.scenario.setup import HeadPlace, SetUp, read_setup
 from rastrainer.scenario.writer import (
-    HeadDraft,
     new_folder,
-    read_draft,
-    scenario_name,
-    write_draft,
     write_scenario,
 )
 from Testing.domain.scenario.made_up_scenario import ball_head, ball_volume, made_up_scenario, png
@@ -129,16 +125,6 @@ def test_an_unusable_picture_is_not_listed(tmp_path, content):
     assert (ball.preview, ball.problem) == (None, "")
 
 
-def test_a_draft_is_read_back(tmp_path):
-    write_draft(
-        tmp_path, HeadDraft(ball_head(), "by hand", ball_head(80.0), SkullKind.APPROXIMATION)
-    )
-    draft = read_draft(tmp_path)
-    assert draft.method == "by hand"
-    assert draft.skull_kind is SkullKind.APPROXIMATION
-    assert len(draft.skull.vertices) == len(draft.head.vertices)
-
-
 def test_a_setup_is_written_and_read_back(tmp_path):
     limits = Perturbation(1.0, 2.0, 3.0)
     setup = SetUp(
@@ -150,13 +136,6 @@ def test_a_setup_is_written_and_read_back(tmp_path):
     )
     write_json(tmp_path / "setup.json", record_to_json(setup, with_defaults=True))
     assert read_setup(tmp_path / "setup.json") == setup
-
-
-def test_a_title_becomes_a_name_or_is_refused():
-    assert scenario_name("  Ms. X, 2nd MRI ") == "ms-x-2nd-mri"
-    assert len(scenario_name("a" * 100)) == 40
-    with pytest.raises(InputError, match="needs a Latin letter"):
-        scenario_name("頭")
 
 
 def test_moving_the_robot_base_moves_everything_else_the_opposite_way():

@@ -81,14 +81,6 @@ def test_the_first_planned_target_is_the_one_whose_error_is_reported(planning):
     assert check_plan(planning) == []
 
 
-def test_a_target_outside_the_head_is_reported(planning):
-    outside = replace(
-        planning.scenario, target=PlannedTarget("Tumor", np.array([0.0, -100.0, 95.0]))
-    )
-    found = check_plan(PlanningSetup(outside, planning.mesh))
-    assert any("Tumor is" in sentence and "outside of the head" in sentence for sentence in found)
-
-
 def moved(task, index, point):
     fiducials = task.fiducials.copy()
     fiducials[index] = point
@@ -185,15 +177,3 @@ def test_hand_placed_fiducials_become_tasks_and_a_skull_made_meanwhile_is_includ
     assert scenario.preview is not None
     again = read_fiducials(placed.task_files[0])
     assert np.array_equal(scenario.tasks[0].fiducials, again)
-
-
-@pytest.mark.usefixtures("unrendered")
-def test_a_skull_that_cannot_be_made_leaves_nothing_of_the_scenario(tmp_path, placed):
-    def fails():
-        raise InputError("The CT shows no bone.")
-
-    with pytest.raises(InputError, match="no bone"):
-        make_scenario(
-            HeadDraft(egg(), "made up"), placed, tmp_path / "made" / "egg", wait_for_skull=fails
-        )
-    assert not list((tmp_path / "made").iterdir())

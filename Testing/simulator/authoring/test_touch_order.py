@@ -7,7 +7,6 @@ from rastrainer_simulator.authoring.touch_order import (
     Complexity,
     SurfaceGraph,
     complexity,
-    turns_deg,
 )
 from Testing.domain.head.spheres import RADIUS_MM, on_sphere, sphere_mesh
 
@@ -59,15 +58,6 @@ def test_a_great_circle_has_no_turns_and_reorients_the_tool_by_its_angle():
     assert found.turning_deg == pytest.approx(0, abs=1.0)
     assert found.reorientation_deg == pytest.approx(90, abs=1.5)
     assert found.hidden_points == 0
-
-
-def test_each_reversal_turns_by_180_degrees():
-    assert of((80, 0), (100, 0), (80, 0), (100, 0)).turning_deg == pytest.approx(360, abs=2)
-
-
-def test_a_corner_is_measured_in_the_plane_of_the_skin():
-    before, at, after = np.array([[[0.0, 0, 0]], [[10, 0, 5]], [[10, 10, -3]]])
-    assert turns_deg(before, at, after, np.array([[0.0, 0, 1]])) == pytest.approx(90)
 
 
 @pytest.mark.parametrize(

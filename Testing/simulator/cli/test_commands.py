@@ -142,15 +142,6 @@ def test_score_and_report_print_the_same_score_of_every_task(tmp_path, capsys):
     assert [score for score in scores if f">{score}</td>" not in page] == []
 
 
-def test_a_mean_time_without_a_mode_counts_for_all(tmp_path, run_json):
-    result = run_json("score", STUDY, "--mean-ct", "120")
-    assert (result["hmd"]["mean_ct"], result["desktop"]["mean_ct"]) == (120, 120)
-    noted = run_json("score", STUDY)
-    assert noted["desktop"]["mean_ct"] == 129.42
-    own = run_json("score", shutil.copy(STUDY, tmp_path))
-    assert own["desktop"]["mean_ct"] == pytest.approx(129.435)
-
-
 def options_of(parser, name="rastrainer"):
     """Yield each command with its help and its options."""
     yield name, parser.format_help(), [each for each in parser._actions if each.option_strings]
@@ -207,13 +198,6 @@ def test_values_in_the_list_of_commands_are_those_of_the_product():
     assert f"Asks for a PIN of {PIN_WORDS}" in read_commands()["instructor-pin"].description
 
 
-def test_statistics_undefined_for_a_single_trial_are_null(tmp_path, run_json):
-    path = tmp_path / "one.csv"
-    path.write_text("mode,subject,task,ct,rmse\ndesktop,a,task-1,100,1\n")
-    result = run_json("score", path)["desktop"]
-    assert (result["overall"], result["sd_sample"], result["pearson_r"]) == (100, None, None)
-
-
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
@@ -231,13 +215,6 @@ def test_bad_input_is_reported_in_one_sentence(words, sentence):
     with pytest.raises(InputError, match=sentence) as caught:
         run(*words)
     assert "\n" not in str(caught.value)
-
-
-def test_lists_that_do_not_pair_are_refused(files, tmp_path):
-    moving, _, _, fixed_file = files
-    other = write_csv(tmp_path / "other.csv", moving, [f"F-{i}" for i in range(15)])
-    with pytest.raises(InputError, match=r"paired by their labels, but F-0, .* and 1, 2"):
-        run("register", other, fixed_file)
 
 
 @pytest.mark.parametrize("name", ["bad.csv", "bad.mrk.json"])

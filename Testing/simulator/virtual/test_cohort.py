@@ -1,7 +1,5 @@
 """A simulated cohort is a study like any other, repeatable, and its truth can be recovered."""
 
-import functools
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -14,8 +12,7 @@ from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.report.report import report_html
 from rastrainer_simulator.virtual.cohort import DATABASE, run_jobs, simulate_cohort
-from rastrainer_simulator.virtual.play import PlaySettings, play_job
-from rastrainer_simulator.virtual.population import trial_jobs
+from rastrainer_simulator.virtual.play import PlaySettings
 from Testing.simulator.virtual.conftest import AIM_FACTOR, BRISK
 from Testing.simulator.virtual.small_jobs import squared
 
@@ -58,31 +55,12 @@ def test_the_scatter_of_the_aim_is_recovered_from_the_registrations(data):
     assert fle_of["hmd"] > 1.5 * fle_of["desktop"]
 
 
-@pytest.mark.soak
-def test_equal_jobs_give_equal_trials_whatever_was_played_before_and_in_which_process(
-    protocol, population
-):
-    jobs = list(trial_jobs(protocol, population, 1, 7))
-    play = functools.partial(play_job, settings=PlaySettings())
-    here = [numbers(trial) for trial in run_jobs(play, jobs, workers=1)]
-    there = [numbers(trial) for trial in run_jobs(play, jobs[::-1], workers=2)]
-    assert there[::-1] == here
-
-
 @pytest.mark.parametrize(
     ("engine", "workers"), [("processes", 2), pytest.param("dask", 1, marks=pytest.mark.soak)]
 )
 def test_every_engine_returns_the_results_in_job_order(engine, workers):
     found = list(run_jobs(squared, range(20), engine, workers))
     assert found == [number * number for number in range(20)]
-
-
-@pytest.mark.soak
-def test_dask_plays_the_same_trial_as_this_process(protocol, population):
-    job = next(iter(trial_jobs(protocol, population, 1, 7)))
-    play = functools.partial(play_job, settings=PlaySettings())
-    (there,) = run_jobs(play, [job], "dask", workers=1)
-    assert numbers(there) == numbers(play(job))
 
 
 @pytest.mark.soak
@@ -118,16 +96,6 @@ def test_the_command_reports_power_without_playing(capsys):
         "score",
     ]
     assert "p (Holm) < .05" in text
-
-
-def test_properties_of_simulated_trainees_can_be_set_by_options(capsys):
-    """Haste that costs accuracy makes errors scatter: the same effect is found less often."""
-    shares = []
-    for haste in ([], ["--tempo-spread", "0.5", "--trade-off", "1", "--interaction", "0.2"]):
-        words = ["simulate-cohort", "--trainees", "8", "--power", "100", "--hmd-aim", "1.2"]
-        assert main([*words, *haste, "--lapses", "0.1", "--accuracy-learning", "0.1"]) == 0
-        shares.append(float(re.search(r"rmse_mm +\S+ +([0-9.]+) %", capsys.readouterr().out)[1]))
-    assert shares[1] < shares[0] - 30
 
 
 @pytest.mark.parametrize(

@@ -140,15 +140,15 @@ def points_of(markups):
     return np.array([markups.GetNthControlPointPosition(i) for i in range(count)])
 
 
-def test_participant_labels_are_plain_and_distinct():
-    labels = participant_labels(("T-1", "T1", "../..", "Ä", "t1"))
-    assert len({label.lower() for label in labels.values()}) == 5
-    assert all(label.isascii() and label.isalnum() for label in labels.values())
-
-
 def test_exporting_motion_bids_without_journals_is_refused(played, tmp_path, capsys):
     words = ["export", played / DATABASE, "-o", tmp_path / "x", "--format", "bids"]
     assert main([str(word) for word in words]) == 2
     assert "give their folder with --records" in capsys.readouterr().err
     with pytest.raises(InputError, match="No trial of the study has a journal"):
         write_motion_bids(read_study_data(played / DATABASE), tmp_path / "y", lambda _id: None)
+
+
+def test_participant_labels_are_plain_and_distinct():
+    labels = participant_labels(("T-1", "T1", "../..", "Ä", "t1"))
+    assert len({label.lower() for label in labels.values()}) == 5
+    assert all(label.isascii() and label.isalnum() for label in labels.values())

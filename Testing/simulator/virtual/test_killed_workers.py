@@ -16,24 +16,16 @@ from rastrainer.study.database.cohort_store import CohortStore
 from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.main import main
-from rastrainer_simulator.virtual import cohort
 from rastrainer_simulator.virtual.cohort import DATABASE, RECORDS, run_jobs, simulate_cohort
-from rastrainer_simulator.virtual.play import PlaySettings, play_job
+from rastrainer_simulator.virtual.play import PlaySettings
 from rastrainer_simulator.virtual.worker_pool import ATTEMPTS, WorkerDiedError
 from Testing.running_process import runs, started_by
 from Testing.simulator.virtual.small_jobs import (
-    kill_self,
     refused,
     squared_by_mortals,
 )
 
 STORED_WHEN = {"stored_utc", "created_utc", "finished_utc"}
-
-
-def played_by_mortals(folder, doomed, times, job, settings):
-    if job.trial_id in doomed:
-        kill_self(folder, job.trial_id, times)
-    return play_job(job, settings)
 
 
 def tables(path):
@@ -120,20 +112,6 @@ def test_an_error_in_a_worker_is_raised_with_its_location_and_no_worker_is_left(
     assert not any(map(is_worker, started_by(os.getpid())))
 
 
-@pytest.mark.soak
-def test_a_cohort_whose_workers_are_killed_is_the_same_to_the_last_bit(
-    played, protocol, population, tmp_path, monkeypatch
-):
-    with Study.open(played / DATABASE) as study:
-        doomed = {trial.record.trial_id for trial in study.history("V0001")[:1]}
-    mortal = functools.partial(played_by_mortals, tmp_path, doomed, 1)
-    monkeypatch.setattr(cohort, "play_job", mortal)
-    folder = tmp_path / "study"
-    simulate_cohort(protocol, population, 2, 7, folder, PlaySettings(), True, workers=2)
-    assert tables(folder / DATABASE) == tables(played / DATABASE)
-    assert journals(folder) == journals(played)
-
-
 @pytest.mark.parametrize("missing", [1, pytest.param(3, marks=pytest.mark.soak)])
 def test_a_resumed_cohort_equals_an_uninterrupted_one_to_the_last_bit(
     missing, played, copied, protocol, population
@@ -145,13 +123,6 @@ def test_a_resumed_cohort_equals_an_uninterrupted_one_to_the_last_bit(
     assert (run.found, run.played) == (4 - missing, missing)
     assert tables(copied / DATABASE) == tables(played / DATABASE)
     assert journals(copied) == journals(played)
-
-
-def test_a_complete_cohort_has_nothing_left_to_play(played, copied, protocol, population):
-    words = (protocol, population, 2, 7, copied, PlaySettings(), True)
-    run = simulate_cohort(*words, workers=1)
-    assert (run.found, run.played) == (4, 0)
-    assert tables(copied / DATABASE) == tables(played / DATABASE)
 
 
 def test_trials_of_a_deleted_trainee_are_not_played_again(copied, protocol, population):

@@ -8,8 +8,6 @@ from rastrainer.study.outcomes import MAIN_OUTCOMES
 from rastrainer_simulator.report.comparisons import compare_modes
 from rastrainer_simulator.virtual.outcome_model import (
     OutcomeModel,
-    draw_outcomes,
-    expected_outcomes,
     rejection_rates,
 )
 from rastrainer_simulator.virtual.population import ModeEffect, Population
@@ -43,13 +41,6 @@ def test_the_fast_rejection_rates_match_those_of_the_report(alternating):
             ends = np.array([one.result.difference.interval for one in found]).T
             held = (ends[0] <= rates.true_difference) & (rates.true_difference <= ends[1])
             assert rates.coverage == np.mean(held)
-
-
-def test_the_expected_outcomes_match_those_of_very_many_trainees():
-    truth = model(mode_time={"hmd": 0.9}, mode_fle={"hmd": 1.2}, learning=0.25)
-    drawn = draw_outcomes(truth, 20_000, MODES, np.random.default_rng(3))
-    for expected, values in zip(expected_outcomes(truth, MODES), drawn, strict=True):
-        np.testing.assert_allclose(values.mean(axis=0), expected, rtol=0.006)
 
 
 def test_the_same_seed_gives_the_same_trainees_however_many():

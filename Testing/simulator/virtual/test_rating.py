@@ -283,17 +283,6 @@ def test_a_mark_that_cannot_be_stored_is_reported_and_can_be_given_again(rater, 
     assert rater.presenter.screen.warnings == ()
 
 
-def test_only_trials_with_consent_and_a_journal_are_rated(copied, study):
-    every = trials_to_show(study, copied / RECORDS)
-    assert len(every) == 4
-    journals(copied / RECORDS)[0].unlink()
-    assert len(trials_to_show(study, copied / RECORDS)) == 3
-    for trainee in study.trainees():
-        study.change_trainee(trainee.pseudonym, consent=False)
-    with pytest.raises(InputError, match="There is nothing to rate"):
-        trials_to_show(study, copied / RECORDS)
-
-
 class RatingProcess:
     """`rastrainer rate` as a process, and a page that joins it."""
 
@@ -383,3 +372,14 @@ def test_the_program_accepts_marks_and_resumes_where_it_was_even_if_killed(
     assert rows[0] == "trial_id,rater,form,domain,mark"
     assert f"{data[0].trial_id},R1,gears,gears_depth,4" in rows
     assert len(rows) == 9
+
+
+def test_only_trials_with_consent_and_a_journal_are_rated(copied, study):
+    every = trials_to_show(study, copied / RECORDS)
+    assert len(every) == 4
+    journals(copied / RECORDS)[0].unlink()
+    assert len(trials_to_show(study, copied / RECORDS)) == 3
+    for trainee in study.trainees():
+        study.change_trainee(trainee.pseudonym, consent=False)
+    with pytest.raises(InputError, match="There is nothing to rate"):
+        trials_to_show(study, copied / RECORDS)
