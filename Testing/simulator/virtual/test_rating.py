@@ -214,11 +214,6 @@ def test_interrupted_rating_resumes_at_the_replay_and_domain_where_it_stopped(
     assert again.menu.title == "GEARS: Efficiency"
 
 
-def test_a_rater_who_has_rated_everything_sees_a_message(copied, study, loader, rater):
-    rate_all(rater)
-    assert Rater(copied, study, loader).menu.title == "All 3 replays are rated"
-
-
 def everything_shown(rater):
     """Return all that a view could have been sent."""
     presenter = rater.presenter
@@ -286,17 +281,6 @@ def test_a_mark_that_cannot_be_stored_is_reported_and_can_be_given_again(rater, 
     rater.key("Digit4")
     assert rater.work.marks == {"gears_depth": 4}
     assert rater.presenter.screen.warnings == ()
-
-
-def test_only_trials_with_consent_and_a_journal_are_rated(copied, study):
-    every = trials_to_show(study, copied / RECORDS)
-    assert len(every) == 4
-    journals(copied / RECORDS)[0].unlink()
-    assert len(trials_to_show(study, copied / RECORDS)) == 3
-    for trainee in study.trainees():
-        study.change_trainee(trainee.pseudonym, consent=False)
-    with pytest.raises(InputError, match="There is nothing to rate"):
-        trials_to_show(study, copied / RECORDS)
 
 
 class RatingProcess:
@@ -390,14 +374,12 @@ def test_the_program_accepts_marks_and_resumes_where_it_was_even_if_killed(
     assert len(rows) == 9
 
 
-@pytest.mark.parametrize(
-    ("words", "sentence"),
-    [
-        (["--view-port", "70000"], "--view-port: must be"),
-        (["--replays", "0"], "--replays: must be a whole number from 1"),
-        (["--records", "nowhere"], "There is nothing to rate"),
-    ],
-)
-def test_an_unratable_study_is_reported_in_one_sentence(copied, capsys, words, sentence):
-    assert main(["rate", str(copied / STUDY_FILE), "--rater", "R1", *words]) == 2
-    assert sentence in capsys.readouterr().err
+def test_only_trials_with_consent_and_a_journal_are_rated(copied, study):
+    every = trials_to_show(study, copied / RECORDS)
+    assert len(every) == 4
+    journals(copied / RECORDS)[0].unlink()
+    assert len(trials_to_show(study, copied / RECORDS)) == 3
+    for trainee in study.trainees():
+        study.change_trainee(trainee.pseudonym, consent=False)
+    with pytest.raises(InputError, match="There is nothing to rate"):
+        trials_to_show(study, copied / RECORDS)
