@@ -28,7 +28,6 @@ RED, YELLOW, GREEN = (244, 165, 158), (252, 234, 170), (171, 219, 165)
 
 
 def with_ctps(data: StudyData) -> StudyData:
-    """Return the study with `ctps` in the values of each registered trial."""
     references = {mode: cohort_scores(data, mode) for mode in data.modes}
     trials = []
     for trial in data.trials:
@@ -85,7 +84,6 @@ def published_tables(data: StudyData) -> Markup:
 
 
 def performance_color(value: float, values: Iterable[float]) -> str:
-    """Return the color of a score among others, from red to green."""
     values = list(values)
     low, high = min(values), max(values)
     share = 0.5 if low == high else (value - low) / (high - low)
@@ -96,7 +94,6 @@ def performance_color(value: float, values: Iterable[float]) -> str:
 
 
 def complexity(data: StudyData, mode: str, scores: CohortScores) -> dict[str, Correlation] | None:
-    """Return how times and CTPS of trials and tasks correlate with the tasks' numbers."""
     trials = data.ctps_trials(mode)
     times = {task: [t.completion_time_s for t in trials if t.task == task] for task in scores.tasks}
     values = {

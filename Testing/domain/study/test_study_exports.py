@@ -11,7 +11,6 @@ import pytest
 from rastrainer.study.protocol.questionnaires import SSQ
 from rastrainer.study.study_data import read_study_data
 from rastrainer.study.tidy_csv import answers_csv, scores_csv, trials_csv
-from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.export.xapi import HOME_PAGE, statements
 from Testing.domain.study.played_study import study_with_trials
@@ -52,15 +51,6 @@ def test_every_answered_questionnaire_is_a_statement_with_its_scores(data):
     assert before["result"]["extensions"] == {
         f"{HOME_PAGE}/xapi/values/{scale}": score for scale, score in SSQ.score([1] * 16).items()
     }
-
-
-def test_a_score_is_exported_with_the_version_that_computed_it(data):
-    first, *others = data.trials
-    mixed = replace(data, trials=(replace(first, score_version=""), *others))
-    name = f"{HOME_PAGE}/xapi/score-version"
-    found = [s["context"]["extensions"].get(name) for s in statements(mixed)]
-    assert found[: len(mixed.trials)] == [None, *(t.score_version or None for t in others)]
-    assert SCORE_VERSION in found
 
 
 def test_a_score_is_exported_with_its_parts(data):

@@ -11,14 +11,10 @@ from rastrainer.files.point_list import PointList
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.study.study_data import StudyData, TrialRow
-from rastrainer.study.tidy_csv import trials_csv
 from rastrainer.trial.score_reference import score_reference
 from rastrainer.trial.scoring import ScoreMeasures, score_trial
 from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.report.conclusions import left_out_methods
-from rastrainer_simulator.report.report import with_one_method
 from Testing.simulator.landmarked import LANDMARKS, OVER_THE_FACE, on_skin, with_landmarks
 
 SURFACE = RegistrationMethod.SURFACE
@@ -127,16 +123,3 @@ def test_a_trial_without_fiducials_is_scored_without_a_common_bias(scenario):
     assert score.acceptable
     with pytest.raises(InputError, match="common bias"):
         score_trial(measures, reference)
-
-
-def test_a_report_compares_trials_of_one_method_and_names_the_others():
-    rows = [
-        TrialRow("P01", "desktop", "task-1", number, {}, method=method)
-        for number, method in enumerate(("fiducials", "surface", "surface", "landmarks"), start=1)
-    ]
-    data = StudyData("A study", tuple(rows))
-    assert [row.number for row in with_one_method(data).trials] == [1]
-    assert left_out_methods(data) == {"landmarks": 1, "surface": 2}
-    assert left_out_methods(with_one_method(data)) == {}
-    assert [row.number for row in with_one_method(replace(data, trials=rows[1:])).trials] == [2, 3]
-    assert trials_csv(rows).splitlines()[2].split(",")[8] == "surface"

@@ -214,11 +214,6 @@ def test_interrupted_rating_resumes_at_the_replay_and_domain_where_it_stopped(
     assert again.menu.title == "GEARS: Efficiency"
 
 
-def test_a_rater_who_has_rated_everything_sees_a_message(copied, study, loader, rater):
-    rate_all(rater)
-    assert Rater(copied, study, loader).menu.title == "All 3 replays are rated"
-
-
 def everything_shown(rater):
     """Return all that a view could have been sent."""
     presenter = rater.presenter

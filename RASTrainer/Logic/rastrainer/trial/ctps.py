@@ -59,7 +59,6 @@ class CohortReference:
 
     @classmethod
     def of(cls, trials: Sequence[Trial], mean_ct_s: float | None = None) -> CohortReference:
-        """Return the reference of a cohort; a printed mean CT replaces the computed mean."""
         if not trials:
             raise InputError("CTPS needs at least one trial.")
         if mean_ct_s is None:
@@ -72,12 +71,9 @@ class CohortScores:
     """CTPS of one mode as the paper tabulates it; where too few trials define a value it is None.
 
     Attributes:
-        trials: Published CTPS of each trial, in the order given.
-        tasks: Mean published CTPS of each task ("Task Perf.").
-        subjects: Mean published CTPS of each subject ("User Perf.").
-        equation_3_overall: The same by equation 3: half of it.
-        sd_population: Standard deviation of `trials`, divided by n.
-        sd_sample: Standard deviation of `trials`, divided by n − 1.
+        trials: Published CTPS of each trial, in the order given; the means of tasks and subjects
+            are "Task Perf." and "User Perf.".
+        sd_population, sd_sample: Standard deviations of `trials`, divided by n and by n − 1.
         pearson_r: Correlation of task number and mean CT of the task, which the paper calls R².
     """
 
@@ -123,7 +119,6 @@ def score_cohort(trials: Sequence[Trial], mean_ct_s: float | None = None) -> Coh
 
 
 def trials_by_mode(trials: Iterable[Trial]) -> dict[str, list[Trial]]:
-    """Return the trials of each mode, modes in the order of their first trial."""
     modes: dict[str, list[Trial]] = {}
     for trial in trials:
         modes.setdefault(trial.mode, []).append(trial)
