@@ -13,6 +13,8 @@ from rastrainer.number_text import counted, fixed, significant
 from rastrainer.study.study_data import StudyData
 from rastrainer.trial.ctps import (
     CTPS_WARNING,
+    RMSE,
+    TIME,
     CohortScores,
     Printed,
     published_ctps,
@@ -32,9 +34,8 @@ def with_ctps(data: StudyData) -> StudyData:
     trials = []
     for trial in data.trials:
         scores, values = references[trial.mode], trial.values
-        if scores is not None and "rmse_mm" in values:
-            measures = values["completion_time_s"], values["rmse_mm"]
-            ctps = published_ctps(*measures, scores.reference)
+        if scores is not None and RMSE in values:
+            ctps = published_ctps(values[TIME], values[RMSE], scores.reference)
             trial = replace(trial, values={**values, "ctps": ctps})
         trials.append(trial)
     return replace(data, trials=tuple(trials))
@@ -55,7 +56,7 @@ def published_tables(data: StudyData) -> Markup:
         scores = cohort_scores(data, mode)
         if scores is None:
             continue
-        trials = [trial for trial in data.of_mode(mode) if "rmse_mm" in trial.values]
+        trials = data.ctps_trials(mode)
         tables.append(
             {
                 "number": number,
@@ -95,9 +96,9 @@ def performance_color(value: float, values: Iterable[float]) -> str:
 
 def complexity(data: StudyData, mode: str, scores: CohortScores) -> dict[str, Correlation] | None:
     trials = data.ctps_trials(mode)
-    times = {task: [t.completion_time_s for t in trials if t.task == task] for task in scores.tasks}
+    times = {task: [t.values[TIME] for t in trials if t.task == task] for task in scores.tasks}
     values = {
-        "times": [(trial.task, trial.completion_time_s) for trial in trials],
+        "times": [(trial.task, trial.values[TIME]) for trial in trials],
         "scores": [(t.task, score) for t, score in zip(trials, scores.trials, strict=True)],
         "task_times": [(task, float(np.mean(own))) for task, own in times.items()],
         "task_scores": list(scores.tasks.items()),
@@ -133,9 +134,9 @@ def _ours(data: StudyData, printed: Printed) -> str:
     if scores is None:
         return "–"
     if printed.quantity == "mean_ct":
-        value = float(np.mean([trial.completion_time_s for trial in trials]))
+        value = float(np.mean([trial.values[TIME] for trial in trials]))
     elif printed.quantity == "mean_rmse":
-        value = float(np.mean([trial.rmse_mm for trial in trials]))
+        value = float(np.mean([trial.values[RMSE] for trial in trials]))
     else:
         value = getattr(scores, printed.quantity)
     if value is None:

@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.trial.ctps import Trial, read_trials, score_cohort, trials_by_mode
+from rastrainer.trial.ctps import RMSE, TIME, read_trials, score_cohort, trials_by_mode
+from rastrainer.trial.trial_row import TrialRow
 
 STUDY = Path(__file__).parents[3] / "assets" / "studies" / "published.csv"
 PRINTED_MEAN_CT = {"hmd": None, "desktop": 129.42}
@@ -28,6 +29,10 @@ def modes():
 @pytest.fixture(scope="module")
 def published(modes):
     return {mode: score_cohort(trials, PRINTED_MEAN_CT[mode]) for mode, trials in modes.items()}
+
+
+def trial(task="1", time_s=10.0, rmse_mm=1.0):
+    return TrialRow("a", "desktop", task, values={TIME: time_s, RMSE: rmse_mm})
 
 
 def printed(means):
@@ -60,14 +65,14 @@ def test_equation_3_yields_half_of_the_tables(published):
 
 
 def test_undefined_values_of_one_trial_are_none():
-    scores = score_cohort([Trial("desktop", "a", "task-1", 100.0, 1.0)])
+    scores = score_cohort([trial("task-1", 100.0)])
     assert scores.overall == 100.0
     assert (scores.sd_sample, scores.pearson_r, scores.r_squared) == (None, None, None)
 
 
 def test_tasks_are_numbered_by_the_digits_of_their_names():
     trials = [
-        Trial("desktop", "a", name, time, 1.0)
+        trial(name, time)
         for name, time in [
             ("task-2", 20.0),
             ("trial-run", 500.0),
@@ -82,9 +87,9 @@ def test_tasks_are_numbered_by_the_digits_of_their_names():
     ("trials", "mean", "words"),
     [
         ([], None, "at least one trial"),
-        ([Trial("m", "s", "1", 10.0, 0.0)], None, "best RMSE, which must be above 0"),
-        ([Trial("m", "s", "1", 10.0, 1.0)], -5.0, "mean completion time must be"),
-        ([Trial("m", "s", "1", 10.0, 1.0)], float("nan"), "mean completion time must be"),
+        ([trial(rmse_mm=0.0)], None, "best RMSE, which must be above 0"),
+        ([trial()], -5.0, "mean completion time must be"),
+        ([trial()], float("nan"), "mean completion time must be"),
     ],
 )
 def test_a_cohort_without_a_reference_is_refused(trials, mean, words):

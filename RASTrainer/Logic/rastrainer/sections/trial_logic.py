@@ -46,8 +46,8 @@ from rastrainer.trial.analysis import (
     TrialAnalysis,
     score_arguments,
 )
-from rastrainer.trial.ctps import Trial
 from rastrainer.trial.record import AbortedTrial, TrialRecord
+from rastrainer.trial.trial_row import TrialRow
 
 Delivery = Mapping[str, Any]
 """The record of a trial as it was delivered, not yet checked."""
@@ -82,7 +82,7 @@ class TrialLogic(Listening):
         received: UUIDs of the received trials that are in the study, in their order.
     """
 
-    def __init__(self, services: TrialServices, cohort: Sequence[Trial] = ()) -> None:
+    def __init__(self, services: TrialServices, cohort: Sequence[TrialRow] = ()) -> None:
         """Begin to listen; `cohort` are the trials that CTPS compares with."""
         link = services.link
         super().__init__(

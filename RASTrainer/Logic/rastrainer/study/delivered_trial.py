@@ -22,7 +22,6 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.journal_check import check_journal
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import pass_mark_of
-from rastrainer.trial import ctps
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
 from rastrainer.trial.procedure_outcome import ProcedureOutcome, procedure_outcome
 from rastrainer.trial.record import TrialRecord
@@ -120,7 +119,7 @@ _READING = "Reading the journal"
 
 
 def register(
-    record: TrialRecord, scenario: Scenario, cohort: Sequence[ctps.Trial], progress: Progress
+    record: TrialRecord, scenario: Scenario, cohort: Sequence[TrialRow], progress: Progress
 ) -> TrialAnalysis:
     progress("Registering", 0.0)
     return analyze_trial(record, scenario, cohort)

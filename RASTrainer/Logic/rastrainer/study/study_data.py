@@ -22,7 +22,7 @@ from rastrainer.study.protocol.study_progress import QuestionnaireAnswers, Study
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.ratings import Rating, RatingStore
 from rastrainer.study_messages import StudyStep
-from rastrainer.trial.ctps import StudyNotes, Trial, read_notes, read_trials
+from rastrainer.trial.ctps import StudyNotes, read_notes, read_trials
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.record import AbortedTrial, TrialRecord
 from rastrainer.trial.scoring import TrialScore
@@ -78,12 +78,8 @@ class StudyData:
     def of_mode(self, mode: str) -> list[TrialRow]:
         return [trial for trial in self.trials if trial.mode == mode]
 
-    def ctps_trials(self, mode: str) -> list[Trial]:
-        return [
-            Trial(t.mode, t.trainee, t.task, t.values["completion_time_s"], t.values["rmse_mm"])
-            for t in self.of_mode(mode)
-            if "rmse_mm" in t.values
-        ]
+    def ctps_trials(self, mode: str) -> list[TrialRow]:
+        return [trial for trial in self.of_mode(mode) if "rmse_mm" in trial.values]
 
 
 def read_study_data(place: StudyPlace, allow_incomplete: bool = False) -> StudyData:
@@ -113,16 +109,9 @@ def read_study_data(place: StudyPlace, allow_incomplete: bool = False) -> StudyD
 
 def _from_csv(path: Path) -> StudyData:
     notes = read_notes(path.with_suffix(".json"))
-    counts: Counter[tuple[str, str]] = Counter()
-    rows = []
-    for trial in read_trials(path):
-        counts[trial.mode, trial.subject] += 1
-        values = {"completion_time_s": trial.completion_time_s, "rmse_mm": trial.rmse_mm}
-        number = counts[trial.mode, trial.subject]
-        rows.append(TrialRow(trial.subject, trial.mode, trial.task, number, values))
     return StudyData(
         title=notes.title if notes else path.stem,
-        trials=tuple(rows),
+        trials=tuple(read_trials(path)),
         mean_ct_s=notes.mean_ct_s if notes else {},
         notes=notes,
     )

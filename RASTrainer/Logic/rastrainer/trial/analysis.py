@@ -31,6 +31,7 @@ from rastrainer.trial.touch_registration import (
     unshifted_tre_mm,
 )
 from rastrainer.trial.trial_feedback import TrialFeedback, trial_feedback
+from rastrainer.trial.trial_row import TrialRow
 from rastrainer.trial.wording import Sentence
 
 
@@ -147,7 +148,7 @@ class TrialAnalysis(TouchRegistration):
 def analyze_trial(
     record: TrialRecord,
     scenario: Scenario,
-    cohort: Sequence[ctps.Trial] = (),
+    cohort: Sequence[TrialRow] = (),
     references: Mapping[str, ScoreReference] | None = None,
     trajectory: Trajectory | None = None,
     truth: RevealedTruth | None = None,
@@ -179,7 +180,7 @@ def analyze_trial(
 
 
 def published_score(
-    record: TrialRecord, fre_mm: float, cohort: Sequence[ctps.Trial]
+    record: TrialRecord, fre_mm: float, cohort: Sequence[TrialRow]
 ) -> PublishedScore | None:
     """Return the CTPS of a trial with this FRE, or None without a reference."""
     try:
