@@ -184,13 +184,6 @@ def test_the_truth_is_stored_once(study):
         study.add_results(second["trialId"], truth=RevealedTruth(matrix, float("nan")))
 
 
-def test_the_history_is_in_the_order_of_starting(study):
-    for number, day in ((1, 19), (2, 17), (3, 18)):
-        study.add_trial(record(number, startedUtc=f"2024-05-{day}T09:30:00Z"))
-    study.add_trial(record(4, trainee="other"))
-    assert [t.record.started_utc[8:10] for t in study.history("T-001")] == ["17", "18", "19"]
-
-
 def test_deleting_a_trainee_leaves_no_row_and_no_byte_of_theirs(study, study_place, results):
     study.add_trial(record(1, trainee="Vanishing Heron"), *results)
     study.add_results(
@@ -222,15 +215,14 @@ def test_a_deleted_trial_that_is_offered_again_is_refused(study, study_place):
     assert study.add_trial(record(2, trainee="gone"))
 
 
-def test_attempts_are_the_scored_ones_in_order_of_starting(study, results):
+def test_history_and_scored_attempts_are_in_order_of_starting(study, results):
     score = results[2]
     for number, day in ((1, 19), (2, 17), (3, 18)):
-        record = make_record(
-            trialId=f"00000000-0000-0000-0000-{number:012d}",
-            trainee="T-001",
-            startedUtc=f"2026-05-{day}T09:30:00Z",
-        )
-        study.add_trial(record, *(results if number != 3 else ()))
+        trial = record(number, startedUtc=f"2026-05-{day}T09:30:00Z")
+        study.add_trial(trial, *(results if number != 3 else ()))
+    study.add_trial(record(4, trainee="other"))
+    days = [trial.record.started_utc[8:10] for trial in study.history("T-001")]
+    assert days == ["17", "18", "19"]
     first, second = study.attempts("T-001")
     assert (first.trial_id[-1], second.trial_id[-1]) == ("2", "1")
     assert (first.score, first.acceptable) == (score.score, score.acceptable)

@@ -60,11 +60,8 @@ def test_a_score_is_exported_with_its_parts(data):
     for trial, row in zip(with_score, rows, strict=True):
         assert float(row["score_tre_mm"]) == trial.values["score_tre_mm"]
         assert float(row["score_common_bias_mm"]) == trial.values["score_common_bias_mm"]
-        limits = {row[f"score_is_{name}"] for name in ("accurate", "unbiased", "safe")}
-        assert limits <= {"0.0", "1.0"}
-        for part in ("time", "accuracy", "safety"):
-            assert 0 <= float(row[f"score_{part}_desirability"]) <= 1
-        assert float(row["score_reference_time_s"]) > 0
+        assert row["score_is_accurate"] in ("0.0", "1.0")
+        assert 0 <= float(row["score_time_desirability"]) <= 1
     extensions = statements(data)[data.trials.index(with_score[0])]["result"]["extensions"]
     key = f"{HOME_PAGE}/xapi/values/score_tre_mm"
     assert extensions[key] == with_score[0].values["score_tre_mm"]

@@ -97,9 +97,3 @@ def test_a_trial_with_another_version_of_the_plan_is_not_analyzed(record):
     done = replace(record.procedure, sha256="0" * 64)
     with pytest.raises(InputError, match="with a different plan from the procedure 'seeg'"):
         analyze_trial(replace(record, procedure=done), SCENARIO, truth=REVEALED)
-
-
-def test_a_procedure_missing_from_the_scenario_is_named(record):
-    done = replace(record.procedure, procedure="tumor")
-    with pytest.raises(InputError, match="has no such procedure; it has biopsy, dbs, seeg"):
-        analyze_trial(replace(record, procedure=done), SCENARIO, truth=REVEALED)

@@ -2,7 +2,6 @@
 
 import csv
 import io
-import json
 import uuid
 from dataclasses import replace
 
@@ -16,7 +15,6 @@ from rastrainer.study.tidy_csv import aborted_csv, aborted_touches_csv, write_hi
 from rastrainer.trial.record import AbortedTrial
 from rastrainer.trial.trial_feedback import competence_of
 from rastrainer.trial.trial_row import TrialRow
-from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.export.xapi import statements
 from rastrainer_simulator.report.report import report_html
 from Testing.domain.study.played_study import study_with_trials
@@ -148,16 +146,6 @@ def test_an_aborted_trial_is_a_statement_that_it_was_terminated(path):
     assert [statement["id"] for statement in found] == [s.trial_id for s in data.aborted]
     assert all(statement["result"]["completion"] is False for statement in found)
     assert [statement["result"].get("success") for statement in found] == [None, False, False]
-
-
-def test_the_commands_count_aborted_trials(path, tmp_path, capsys):
-    assert main(["report", str(path), "-o", str(tmp_path / "report")]) == 0
-    assert "3 aborted ones" in capsys.readouterr().out
-    assert main(["export", str(path), "-o", str(tmp_path / "export")]) == 0
-    assert "3 aborted ones" in capsys.readouterr().out
-    assert (tmp_path / "export" / "csv" / "aborted.csv").is_file()
-    content = json.loads((tmp_path / "export" / "xapi" / "statements.json").read_text())
-    assert sum(each["verb"]["display"]["en-US"] == "terminated" for each in content) == 3
 
 
 def test_a_trainees_history_is_written_with_the_aborted_trials(path, tmp_path):

@@ -4,15 +4,12 @@ import contextlib
 
 import numpy as np
 import pytest
-import scipy.cluster.vq
-import scipy.spatial.distance
 
 from rastrainer_simulator.statistics.trainee_clusters import (
     NoClustersError,
     cluster_trainees,
     dip,
     dip_p,
-    k_means,
     silhouettes,
 )
 
@@ -80,16 +77,6 @@ def test_the_dip_of_a_uniform_distribution_is_as_tabulated(samples):
         assert np.quantile(dips, 0.95) == pytest.approx(expected, abs=0.1 / np.sqrt(samples))
     assert dip_p(np.arange(20.0)) > 0.99
     assert dip_p(np.r_[np.arange(10.0), 50 + np.arange(10.0)]) < 0.001
-
-
-def test_k_means_is_as_good_as_scipys():
-    rng = np.random.default_rng(1)
-    points = rng.normal(size=(60, 2)) + np.repeat([[0, 0], [4, 0], [0, 5]], 20, axis=0)
-    labels = k_means(points, 3, rng)
-    ours = sum(((points[labels == c] - points[labels == c].mean(0)) ** 2).sum() for c in range(3))
-    centers, theirs = scipy.cluster.vq.kmeans2(points, 3, minit="++", seed=0)
-    best = sum(((points[theirs == c] - centers[c]) ** 2).sum() for c in range(3))
-    assert ours <= best * (1 + 1e-9)
 
 
 def test_silhouettes_are_rousseeuws():

@@ -103,27 +103,6 @@ def test_the_expected_bias_of_a_view_is_the_bias():
     assert view_bias(replace(study, trials=tuple(trials[::4])), "hmd") is None
 
 
-def test_the_components_of_variance_are_those_of_a_balanced_analysis():
-    """Without practice, tasks and lapses they are the textbook's mean squares."""
-    random = np.random.default_rng(2)
-    shape = (6, 2, 8)
-    values = random.normal(0, 0.3, (6, 1, 1)) + random.normal(0, 0.2, (6, 2, 1))
-    values = values + random.normal(0, 0.1, shape)
-    trainees, modes, _ = (axis.ravel() for axis in np.indices(shape))
-    # As many early as late trials in every cell, so that practice takes nothing from the levels.
-    numbers = np.tile([1, 2, 3, 4, 4, 3, 2, 1], 12)
-    trials = Trials(trainees, modes, 0 * modes, numbers, np.zeros(96))
-    found = fit_variation(trials, np.exp(values.ravel()))
-    cells, rows = values.mean(axis=2), values.mean(axis=(1, 2))
-    both = cells - rows[:, None] - cells.mean(axis=0) + values.mean()
-    ms_both, ms_rows = 8 * (both**2).sum() / 5, 16 * rows.var(ddof=1)
-    # The chance in the levels is known, except for practice, which all levels share.
-    assert found.interaction_variance.value == pytest.approx(
-        (ms_both - found.trial_variance.value) / 8, abs=1e-12
-    )
-    assert found.trainee_variance.value == pytest.approx((ms_rows - ms_both) / 16, abs=1e-12)
-
-
 @pytest.mark.parametrize(
     "study",
     [
