@@ -43,8 +43,8 @@ def played(trainees=12, methods=tuple(TRUE_MM), modes=("desktop",), seed=3):
                     "score": 50.0,
                 }
                 name = f"T{trainee:03d}"
-                row = TrialRow(name, mode, f"task-{number}", number, values)
-                rows.append(replace(row, method=str(method)))
+                others = {"method": str(method), "started_utc": f"2026-05-0{number}T09:00:00Z"}
+                rows.append(TrialRow(name, mode, f"task-{number}", number, values, **others))
     return StudyData("Methods", tuple(rows), has_order=True)
 
 

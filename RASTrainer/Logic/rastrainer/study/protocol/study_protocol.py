@@ -164,14 +164,6 @@ def mode_order(protocol: StudyProtocol, place: int) -> tuple[str, ...]:
     return _ordered(protocol.modes, protocol.mode_order, place)
 
 
-def task_order(
-    protocol: StudyProtocol, place: int, mode_index: int, round_: int
-) -> tuple[str, ...]:
-    rows = len(williams_design(len(protocol.modes))) if protocol.mode_order == BALANCED else 1
-    row = place // rows + mode_index * protocol.repetitions + round_
-    return _ordered(protocol.tasks, protocol.task_order, row)
-
-
 def _ordered(names: tuple[str, ...], order: str, row: int) -> tuple[str, ...]:
     if order != BALANCED:
         return names
@@ -203,8 +195,10 @@ def _in_mode(protocol: StudyProtocol, place: int, index: int, mode: str) -> Iter
             tutorial=protocol.tutorial,
         )
     is_first = True
+    orders = len(williams_design(len(protocol.modes))) if protocol.mode_order == BALANCED else 1
     for round_ in range(protocol.repetitions):
-        for task in task_order(protocol, place, index, round_):
+        row = place // orders + index * protocol.repetitions + round_
+        for task in _ordered(protocol.tasks, protocol.task_order, row):
             name = f"{mode}/{round_ + 1}/{task}"
             if not is_first and protocol.break_between_tasks_min:
                 minutes = protocol.break_between_tasks_min
