@@ -460,7 +460,7 @@ def test_an_aborted_trial_is_stored_before_it_is_acknowledged(lab):
     lab.run_until(lambda: acknowledged(lab) == [ABORTED])
     with Study.open(lab.path) as study:
         (stored,) = study.aborted("T-001")
-    assert stored.record == lab.kept[0]
+    assert stored == lab.kept[0]
 
 
 def test_delivering_an_aborted_trial_twice_stores_once(lab):
