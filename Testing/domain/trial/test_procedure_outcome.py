@@ -14,6 +14,7 @@ from rastrainer.registration.registration import register
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.trial.analysis import RevealedTruth, analyze_trial, score_arguments
 from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.scoring import SAFETY_METRICS
 from rastrainer_simulator.assets import asset_path
 from Testing.domain.procedure.procedure_records import recorded
 from Testing.domain.trial.trial_records import make_record
@@ -21,11 +22,7 @@ from Testing.domain.trial.trial_records import make_record
 SCENARIO = load_scenario(asset_path("scenarios", "colin27"))
 TRUTH = SCENARIO.perturbed_head_to_world(7)
 REVEALED = RevealedTruth(tuple(TRUTH.ravel().tolist()), 0.4)
-MOTION = {
-    "unintended_contact_time_s": 0.0,
-    "unintended_contact_path_mm": 0.0,
-    "pressing_depth_mm": 0.2,
-}
+MOTION = dict.fromkeys(SAFETY_METRICS, 0.0)
 
 
 @pytest.fixture(scope="module")

@@ -49,11 +49,8 @@ def off_target(scenario, registered, pose):
 def test_a_trace_corrects_what_the_landmarks_missed(scenario, traced):
     given, pose = traced
     registered = register_trial(given, scenario)
-    by_three = with_landmarks(replace(scenario))
-    coarse = register_trial(
-        replace(given, method=RegistrationMethod.LANDMARKS),
-        replace(by_three, landmarks=LANDMARKS[:3]),
-    )
+    by_landmarks = replace(given, method=RegistrationMethod.LANDMARKS)
+    coarse = register_trial(by_landmarks, replace(scenario, landmarks=LANDMARKS[:3]))
     assert off_target(scenario, registered, pose) < 0.2
     assert off_target(scenario, coarse, pose) > 1.0
     assert registered.rigid.fre_mm < 0.05
@@ -112,10 +109,7 @@ def test_the_reference_of_a_method_has_its_own_time_and_the_same_error(scenario)
 
 def test_a_trial_without_fiducials_is_scored_without_a_common_bias(scenario):
     reference = score_reference(scenario, "task-1", method=SURFACE)
-    motion = dict.fromkeys(
-        ("unintended_contact_time_s", "unintended_contact_path_mm", "pressing_depth_mm"), 0.0
-    )
-    measures = ScoreMeasures.of(40.0, 0.5, None, motion)
+    measures = ScoreMeasures(40.0, 0.5, 0.0, 0.0, 0.0)
     score = score_trial(measures, reference, SURFACE)
     unbiased = score_trial(replace(measures, common_bias_mm=0.0), reference)
     assert score.score == unbiased.score

@@ -114,16 +114,6 @@ def test_methods_are_paired_within_a_mode():
     assert pair.first_means.tolist() == pytest.approx(of_desktop)
 
 
-def test_nothing_is_tested_if_nobody_played_two_methods():
-    data = played(methods=("fiducials", "landmarks"))
-    by_half = tuple(
-        t for t in data.trials if (int(t.trainee[1:]) % 2 == 0) == (t.method == "fiducials")
-    )
-    words = words_of(method_comparison(replace(data, trials=by_half)))
-    assert "Fiducials 6 6" in words
-    assert "No trainee played two methods in one mode: nothing is tested." in words
-
-
 def test_the_report_has_the_section_and_otherwise_covers_the_fiducial_trials():
     words = words_of(report_html(played(), "today"))
     assert "leaves out 12 trials by landmarks and 12 trials by surface" in words

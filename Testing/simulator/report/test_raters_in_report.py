@@ -86,15 +86,6 @@ def test_a_single_rater_or_two_replays_are_reported_as_too_few_for_agreement():
     assert "cannot be seen from 2 scored replays" in words
 
 
-def test_raters_who_agree_on_everything_have_no_interval():
-    data = rated()
-    same = [replace(rating, rater="R2") for rating in data.ratings if rating.rater == "R1"]
-    ratings = (*(r for r in data.ratings if r.rater == "R1"), *same)
-    words = words_of(raters(replace(data, ratings=ratings)))
-    assert "GEARS 24 R1, R2 1.00 [–] 1.00 [–]" in words
-    assert "no interval" in words
-
-
 def test_three_raters_have_one_icc_and_a_kappa_for_each_pair():
     words = words_of(raters(rated(names=("R1", "R2", "R3"))))
     assert "GEARS 24 R1, R2, R3" in words
