@@ -20,8 +20,9 @@ from rastrainer import transforms
 from rastrainer.number_text import fixed
 from rastrainer.registration.registration import register
 from rastrainer.scenario.scenario import Scenario, load_scenario
-from rastrainer.study.study_data import StudyData, TrialRow, read_study_data
+from rastrainer.study.study_data import StudyData, read_study_data
 from rastrainer.trial.score_reference import fiducial_normals
+from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.setup import DEFAULT_SCENARIO
 from rastrainer_simulator.virtual.cohort import DATABASE, simulate_cohort

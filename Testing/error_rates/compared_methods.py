@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy import stats
 
-from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.study.study_data import StudyData
+from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.report.target_errors import TITLES
 from rastrainer_simulator.statistics.intervals import ALPHA
 from rastrainer_simulator.statistics.paired import fit_differences, holm, is_separable

@@ -18,7 +18,7 @@ from rastrainer.study.curriculum.standing import (
 )
 from rastrainer.study_messages import Assignment
 from rastrainer.trial.scoring import PASS_MARK
-from rastrainer.trial.trial_feedback import PastTrial
+from rastrainer.trial.trial_row import TrialRow
 from Testing.error_rates.measured import Measured, share_of
 
 GOALS_HEADER = ("goal, and trainee", "called reached")
@@ -85,11 +85,11 @@ def _is_reached(assignment: Assignment, failing: np.ndarray, random: np.random.G
     return _stand(Curriculum("c", "C", (assignment,)), played).reached == 1
 
 
-def _trial(task: str, score: float) -> PastTrial:
-    return PastTrial("", task, "desktop", 60.0, score, acceptable=True)
+def _trial(task: str, score: float) -> TrialRow:
+    return TrialRow("", "desktop", task, values={"score": score}, acceptable=True)
 
 
-def _stand(curriculum: Curriculum, trials: Sequence[PastTrial]) -> CurriculumStanding:
+def _stand(curriculum: Curriculum, trials: Sequence[TrialRow]) -> CurriculumStanding:
     return standing_in(curriculum, trials, lambda _version: PASS_MARK)
 
 
@@ -148,7 +148,7 @@ def course(choose: Choice, seed: int) -> tuple[int, float]:
     """
     random = np.random.default_rng((6, seed))
     skill = _skill(random)
-    played: list[PastTrial] = []
+    played: list[TrialRow] = []
     after_some = float(skill.min())
     while len(played) < MOST_TRIALS:
         standing = _stand(CURRICULUM, played)
@@ -181,6 +181,6 @@ def _skill(random: np.random.Generator) -> np.ndarray:
     return START + random.normal(0, TRAINEE_SD) + random.normal(0, TASK_SD, TASKS)
 
 
-def _play(task: int, skill: np.ndarray, random: np.random.Generator) -> PastTrial:
+def _play(task: int, skill: np.ndarray, random: np.random.Generator) -> TrialRow:
     score = float(np.clip(random.normal(skill[task], TRIAL_SD), 1.0, 100.0))
     return _trial(f"task-{task + 1}", score)

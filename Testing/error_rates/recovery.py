@@ -14,8 +14,9 @@ from rastrainer.number_text import fixed
 from rastrainer.protocol import FIDUCIAL_COUNT, StepKind
 from rastrainer.registration.target_error import COMMON_BIAS_SD_MM
 from rastrainer.study.protocol.study_protocol import StudyProtocol, steps_for
-from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.study.study_data import StudyData
 from rastrainer.study_messages import StudyStep
+from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.report.variation import study_variation, view_bias
 from rastrainer_simulator.statistics.intervals import Estimate
 from rastrainer_simulator.virtual.outcome_model import DOF, OutcomeModel, draw

@@ -14,8 +14,7 @@ from rastrainer.sections.trainees_logic import TraineeLogic
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import moment
 from rastrainer.study.protocol.study_progress import StudyProgress
-from rastrainer.trial.aborted_trial import AbortedTrial
-from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.record import AbortedTrial, TrialRecord
 from Testing.domain.trial.trial_records import gentle_score, make_aborted
 
 SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "published-protocol.json"

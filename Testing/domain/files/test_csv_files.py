@@ -148,8 +148,8 @@ def test_a_list_in_the_coordinates_of_an_image_is_refused(tmp_path):
 
 def test_trials_are_read_with_their_units(tmp_path):
     (trial,) = read_trials(file(tmp_path, HEADER + "hmd,Anne,task-1,114.3,1.10\n"))
-    assert (trial.mode, trial.subject, trial.task) == ("hmd", "Anne", "task-1")
-    assert (trial.completion_time_s, trial.rmse_mm) == (114.3, 1.1)
+    assert (trial.mode, trial.trainee, trial.task) == ("hmd", "Anne", "task-1")
+    assert trial.values == {"completion_time_s": 114.3, "rmse_mm": 1.1}
 
 
 @pytest.mark.parametrize(
