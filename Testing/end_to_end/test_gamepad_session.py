@@ -49,7 +49,7 @@ class Photographer:
         self._window.wait_for_tick(self._lab.view.state["tick"])
 
     def begin(self, trainee: StreamTrainee, task: str) -> None:
-        """Begin a task; until the window has drawn its scene, all presses but the menu's are lost."""
+        """Begin a task, and wait until presses count: the window has drawn its scene."""
         trainee.begin_task(task)
         self._window.page.wait_for_selector(f"body[data-scene={task}]")
         trainee.until_running()
