@@ -19,7 +19,6 @@ from Testing.slicer.strangers import (
     says,
     stranger,
     trickles,
-    web_server,
 )
 
 TEXT = pack(Message("Note", String("from another program")))
@@ -59,11 +58,6 @@ def test_a_simulator_is_recognized_with_its_version(version):
         found = ask("localhost", simulator.port)
         assert found == ProbeResult(Peer.SIMULATOR, "127.0.0.1", version)
         assert simulator.commands == []
-
-
-def test_a_web_server_is_recognized():
-    with web_server() as port:
-        assert ask("127.0.0.1", port).peer is Peer.WEB_PAGE
 
 
 @pytest.mark.parametrize(
