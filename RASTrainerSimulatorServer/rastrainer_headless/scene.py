@@ -80,7 +80,6 @@ NODE_CLASS = {
     Points.TYPE: "vtkMRMLMarkupsFiducialNode",
     Status.TYPE: "vtkMRMLScriptedModuleNode",
 }
-
 """Class of the node that each type is put into; Slicer knows more types, which we never send."""
 
 
