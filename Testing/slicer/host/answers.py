@@ -10,14 +10,7 @@ from Testing.slicer.host.failures import FAILURES
 
 @dataclass(frozen=True)
 class Message:
-    """A message box that was shown.
-
-    Attributes:
-        title: of its window.
-        text: its sentence.
-        details: what its button Show Details would show.
-        answer: name of the button that was pressed.
-    """
+    """A message box that was shown."""
 
     title: str
     text: str
@@ -26,12 +19,7 @@ class Message:
 
 
 class Answers:
-    """Answers dialogs in the order in which the test has given the answers.
-
-    Attributes:
-        messages: all message boxes so far.
-        are_given_by_hand: whether dialogs stay open until someone presses their buttons.
-    """
+    """Answers dialogs in the order in which the test has given the answers."""
 
     def __init__(self) -> None:
         self.messages: list[Message] = []
@@ -39,7 +27,6 @@ class Answers:
         self._prepared: list[tuple[str, Any]] = []
 
     def clear(self) -> None:
-        """Forget everything."""
         self.__init__()
 
     def prepare(self, part: str, answer: Any) -> None:
