@@ -118,20 +118,26 @@ def left_beside(setup):
     return [path.name for path in kept.iterdir()]
 
 
-def replaced(wheel, text):
-    """Put other content under the name of a wheel, as the owner of the folder could."""
-    write_wheel(wheel.parent, *wheel.name.split("-")[:2], {"bolt.py": text})
-
-
-def test_the_simulator_is_set_up_from_a_folder_of_wheels_without_a_network(setup, source):
+def test_the_simulator_is_set_up_from_a_folder_of_wheels_without_a_network_or_the_users_settings(
+    setup, source, bolt, tmp_path, monkeypatch
+):
+    settings = tmp_path / "pip.conf"
+    settings.write_text("[global]\nno-binary = :all:\nuser = true\n", encoding="utf-8")
+    monkeypatch.setenv("PIP_CONFIG_FILE", str(settings))
+    monkeypatch.setenv("PIP_TARGET", str(tmp_path / "elsewhere"))
     left = setup.folder.with_name("simulator.removed-0123")
     left.mkdir(parents=True)
     (left / "library.so").touch()
     counts = []
     setup.progressed.connect(lambda _line: counts.append(setup.fetched))
     assert (setup.isCurrent, setup.folder.is_dir(), setup.count) == (False, False, 0)
-    lines, error = run_setup(setup, **source)
+    with PackageIndex([bolt]) as index:
+        monkeypatch.setenv("PIP_INDEX_URL", index.address)
+        monkeypatch.setenv("PIP_EXTRA_INDEX_URL", index.address)
+        lines, error = run_setup(setup, **source)
     assert error == "", lines
+    assert index.asked == []
+    assert not (tmp_path / "elsewhere").exists()
     assert (setup.installedVersion, setup.isCurrent) == (__version__, True)
     assert (setup.folder / "rastrainer_simulator" / "cli" / "main.py").is_file()
     assert (setup.folder / "bolt.py").is_file()
@@ -142,14 +148,6 @@ def test_the_simulator_is_set_up_from_a_folder_of_wheels_without_a_network(setup
     assert setup.isInstalling
     # What an interrupted removal left behind is gone.
     assert left_beside(setup) == ["simulator"]
-
-
-def test_nothing_is_installed_whose_hash_the_module_does_not_know(setup, source, bolt):
-    replaced(bolt, "SIZE = 'whatever'\n")
-    lines, error = run_setup(setup, **source)
-    assert "installation ended with status 1" in error
-    assert any("DO NOT MATCH THE HASHES" in line for line in lines)
-    assert left_beside(setup) == []
 
 
 def test_nothing_is_built_from_source_during_setup_even_if_its_hash_is_known(
@@ -174,21 +172,6 @@ def test_only_third_party_packages_are_requested_from_a_private_index(setup, bol
         assert error == "", lines
         assert index.asked == ["/simple/bolt/", f"/files/{bolt.name}"]
     assert (setup.folder / "rastrainer_simulator" / "cli" / "main.py").is_file()
-
-
-def test_pip_ignores_the_users_settings(setup, source, bolt, tmp_path, monkeypatch):
-    with PackageIndex([bolt]) as index:
-        settings = tmp_path / "pip.conf"
-        text = f"[global]\nindex-url = {index.address}\nextra-index-url = {index.address}\n"
-        settings.write_text(f"{text}no-binary = :all:\nuser = true\n", encoding="utf-8")
-        monkeypatch.setenv("PIP_CONFIG_FILE", str(settings))
-        monkeypatch.setenv("PIP_INDEX_URL", index.address)
-        monkeypatch.setenv("PIP_EXTRA_INDEX_URL", index.address)
-        monkeypatch.setenv("PIP_TARGET", str(tmp_path / "elsewhere"))
-        lines, error = run_setup(setup, **source)
-        assert error == "", lines
-        assert index.asked == []
-    assert not (tmp_path / "elsewhere").exists()
 
 
 @pytest.mark.parametrize("address", ["pypi", "ftp://127.0.0.1/simple", "https://", "file:///tmp"])
@@ -242,16 +225,20 @@ def test_removing_the_simulator_leaves_nothing(installed):
     installed.remove()
 
 
-def test_an_installed_simulator_starts_reports_its_port_and_stops(installed):
+@pytest.mark.parametrize(
+    ("word", "state", "sentence"),
+    [
+        ("--end", ProgramState.FAILED, "(status 3): The port is taken."),
+        # As where its window is closed.
+        ("--close", ProgramState.STOPPED, "The simulator has ended."),
+    ],
+)
+def test_a_simulator_that_ends_by_itself_says_why(installed, word, state, sentence):
     program = SimulatorProgram()
-    command = installed.command(["simulator", "--port", "18999"])
-    program.start(command)
-    assert program.state is ProgramState.STARTING
-    wait_until(lambda: program.state is ProgramState.READY, program.process)
-    assert program.port == 18999
-    program.stop()
+    program.start(installed.command(["simulator", "--port", "1", word]))
     wait_until(lambda: not program.isRunning, program.process)
-    assert program.state is ProgramState.STOPPED
+    assert program.state is state
+    assert program.sentence.endswith(sentence)
 
 
 def test_the_pairing_of_a_headset_is_described_until_the_simulator_ends(installed):
@@ -262,9 +249,13 @@ def test_the_pairing_of_a_headset_is_described_until_the_simulator_ends(installe
             received.append(program.pairingSentence)
 
     program.changed.connect(note)
-    program.start(installed.command(["simulator", "--port", "1", "--lan"]))
+    program.start(installed.command(["simulator", "--port", "18999", "--lan"]))
+    assert program.state is ProgramState.STARTING
     wait_until(lambda: program.pairingCode == "678901", program.process)
+    assert (program.state, program.port) == (ProgramState.READY, 18999)
     program.stop()
+    wait_until(lambda: not program.isRunning, program.process)
+    assert program.state is ProgramState.STOPPED
     here = "In a browser or a headset open http://127.0.0.1:18945"
     everywhere = f"{here} or https://192.0.2.7:18946 or https://192.0.2.8:18946"
     warning = "The browser warns about a certificate made here; its SHA-256 fingerprint is AB:01."
@@ -277,25 +268,12 @@ def test_the_pairing_of_a_headset_is_described_until_the_simulator_ends(installe
     ]
 
 
-def test_a_simulator_that_ends_by_itself_says_why(installed):
-    program = SimulatorProgram()
-    program.start(installed.command(["simulator", "--port", "1", "--end"]))
-    wait_until(lambda: program.state is ProgramState.FAILED, program.process)
-    assert program.sentence.endswith("(status 3): The port is taken.")
-
-
-def test_a_simulator_whose_window_is_closed_has_simply_ended(installed):
-    program = SimulatorProgram()
-    program.start(installed.command(["simulator", "--port", "1", "--close"]))
-    wait_until(lambda: not program.isRunning, program.process)
-    assert (program.state, program.sentence) == (ProgramState.STOPPED, "The simulator has ended.")
-
-
-def test_a_failed_setup_leaves_the_old_one_and_says_what_to_do(installed, tmp_path):
-    (bolt,) = (tmp_path / "wheels").iterdir()
-    replaced(bolt, "")
-    _lines, error = run_setup(installed, wheels=bolt.parent)
+def test_nothing_is_installed_whose_hash_is_unknown_and_the_old_set_up_stays(installed, tmp_path):
+    write_wheel(tmp_path / "wheels", "bolt", "1.0", {"bolt.py": "SIZE = 'whatever'\n"})
+    lines, error = run_setup(installed, wheels=tmp_path / "wheels")
+    assert "installation ended with status 1" in error
     assert "choose a folder of wheels or your own package index" in error
+    assert any("DO NOT MATCH THE HASHES" in line for line in lines)
     assert installed.isCurrent
     assert left_beside(installed) == ["simulator"]
 
