@@ -46,9 +46,9 @@ PAIRS = pytest.mark.parametrize("pair", [transform_pair, string_pair, points_pai
 def test_bytes_of_both_header_versions_are_those_of_pyigtl(pair):
     content, peer = pair()
     assert pack(Message("Device", content, timestamp=TIME, version=1)) == peer.pack()
-    peer.header_version, peer.message_id = 2, 42
+    peer.header_version = 2
     peer.metadata = {"seq": "12", "TransformStatus": "OK"}
-    message = Message("Device", content, dict(peer.metadata), 42, TIME)
+    message = Message("Device", content, dict(peer.metadata), TIME)
     assert pack(message) == peer.pack()
 
 
@@ -58,7 +58,7 @@ def test_messages_packed_by_pyigtl_are_read(pair):
     peer.header_version, peer.metadata = 2, {"seq": "12"}
     data = peer.pack()
     message = unpack(read_header(data), data[HEADER_BYTES:])
-    assert message == Message("Device", content, {"seq": "12"}, 0, TIME, 2)
+    assert message == Message("Device", content, {"seq": "12"}, TIME, 2)
 
 
 @pytest.mark.parametrize("checksum", [crc64, plain_crc64])

@@ -103,7 +103,7 @@ def _findSkin(
         if settings.threshold is not None:
             settings = replace(settings, threshold=settings.threshold + offset)
         found = findHead(volume, settings, progress)
-    mesh = skinOf(found, settings, progress)
+    mesh = skinOf(found, progress)
     checkHead(mesh)
     return volume, found, mesh, warnings + more + skullWarnings(volume, found)
 

@@ -140,12 +140,8 @@ class HeadSettings:
     """Height (S) of the flat base; None for just above the image's lower edge, or the neck."""
     noiseMm: float = 1.0
     """Standard deviation of the smoothing of the image."""
-    cavityDepthMm: float = 4.0
-    """Cavities so deep below the skin are filled: airways, sinuses, ear canals."""
     openingMm: float = 12.0
     """Openings up to this width do not count as part of the skin's outside."""
-    triangles: int = 55_000
-    """How many are aimed at; the flat base adds a few."""
 
 
 @dataclass(frozen=True)
