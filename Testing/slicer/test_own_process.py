@@ -33,7 +33,7 @@ def ignore(_step, _share):
 
 
 def test_a_head_found_in_a_separate_process_equals_one_found_in_this_process():
-    scan, settings = phantom(spacing=(3.0, 3.0, 3.0), size=0.4), HeadSettings()
+    scan, settings = phantom(spacing=(3.0, 3.0, 3.0), size=0.25), HeadSettings()
     received = []
     found = OwnProcess(PYTHON)(FIND_HEAD, lambda *step: received.append(step), scan, settings)
     expected = findHead(scan, settings, ignore)

@@ -71,18 +71,8 @@ def bolt(tmp_path):
 
 
 @pytest.fixture
-def source(bolt):
-    return {"wheels": bolt.parent}
-
-
-@pytest.fixture
-def package(tmp_path, bolt):
-    return write_module(tmp_path, bolt)
-
-
-@pytest.fixture
-def setup(tmp_path, package):
-    return setup_in(tmp_path, package)
+def setup(tmp_path, bolt):
+    return setup_in(tmp_path, write_module(tmp_path, bolt))
 
 
 @pytest.fixture(scope="module")
@@ -119,7 +109,7 @@ def left_beside(setup):
 
 
 def test_the_simulator_is_set_up_from_a_folder_of_wheels_without_a_network_or_the_users_settings(
-    setup, source, bolt, tmp_path, monkeypatch
+    setup, bolt, tmp_path, monkeypatch
 ):
     settings = tmp_path / "pip.conf"
     settings.write_text("[global]\nno-binary = :all:\nuser = true\n", encoding="utf-8")
@@ -134,7 +124,7 @@ def test_the_simulator_is_set_up_from_a_folder_of_wheels_without_a_network_or_th
     with PackageIndex([bolt]) as index:
         monkeypatch.setenv("PIP_INDEX_URL", index.address)
         monkeypatch.setenv("PIP_EXTRA_INDEX_URL", index.address)
-        lines, error = run_setup(setup, **source)
+        lines, error = run_setup(setup, wheels=bolt.parent)
     assert error == "", lines
     assert index.asked == []
     assert not (tmp_path / "elsewhere").exists()
@@ -150,16 +140,14 @@ def test_the_simulator_is_set_up_from_a_folder_of_wheels_without_a_network_or_th
     assert left_beside(setup) == ["simulator"]
 
 
-def test_nothing_is_built_from_source_during_setup_even_if_its_hash_is_known(
-    setup, source, package, bolt, tmp_path
-):
+def test_nothing_is_built_from_source_during_setup_even_if_its_hash_is_known(setup, bolt, tmp_path):
     mark = tmp_path / "sources were run"
     path = bolt.with_name("bolt-1.0.zip")
     with zipfile.ZipFile(path, "w") as sources:
         sources.writestr("bolt-1.0/setup.py", f"open({str(mark)!r}, 'w').close()")
-    write_package(package.folder, CLI, [lock_entry(path)])
+    write_package(setup.package.folder, CLI, [lock_entry(path)])
     bolt.rename(bolt.with_name("other-1.0-py3-none-any.whl"))
-    lines, error = run_setup(setup, **source)
+    lines, error = run_setup(setup, wheels=bolt.parent)
     assert "installation ended with status 1" in error
     assert any("No matching distribution found for bolt==1.0" in line for line in lines)
     assert not mark.exists()
@@ -181,14 +169,14 @@ def test_an_invalid_index_address_is_reported_before_the_setup_starts(setup, add
     assert not setup.folder.parent.exists()
 
 
-def test_a_simulator_missing_or_damaged_in_the_module_is_reported(setup, source, package):
-    wheel = package.folder / WHEEL
+def test_a_simulator_missing_or_damaged_in_the_module_is_reported(setup, bolt):
+    wheel = setup.package.folder / WHEEL
     wheel.write_bytes(wheel.read_bytes()[:-1])
     with pytest.raises(InputError, match="is damaged: reinstall the extension RASTrainer"):
-        setup.begin(**source)
-    (package.folder / f"{WHEEL}.sha256").unlink()
+        setup.begin(wheels=bolt.parent)
+    (setup.package.folder / f"{WHEEL}.sha256").unlink()
     with pytest.raises(InputError, match=r"is missing in .*: reinstall the extension"):
-        setup.begin(**source)
+        setup.begin(wheels=bolt.parent)
     assert not setup.folder.parent.exists()
 
 
@@ -278,21 +266,21 @@ def test_nothing_is_installed_whose_hash_is_unknown_and_the_old_set_up_stays(ins
     assert left_beside(installed) == ["simulator"]
 
 
-def test_an_installation_that_cannot_be_run_is_not_used(setup, source, tmp_path, bolt):
+def test_an_installation_that_cannot_be_run_is_not_used(setup, tmp_path, bolt):
     package = write_package(tmp_path / "broken", CLI + ")", [lock_entry(bolt)])
     broken = SimulatorSetup(Path(sys.executable), setup.folder, package)
-    lines, error = run_setup(broken, **source)
+    lines, error = run_setup(broken, wheels=bolt.parent)
     assert "cannot be run (status 1)" in error
     assert "SyntaxError" in lines[-1]
     assert left_beside(setup) == []
 
 
-def test_a_setup_can_be_canceled(setup, source):
+def test_a_setup_can_be_canceled(setup, bolt):
     ends = []
     setup.finished.connect(ends.append)
-    setup.begin(**source)
+    setup.begin(wheels=bolt.parent)
     with pytest.raises(InputError, match="already being set up"):
-        setup.begin(**source)
+        setup.begin(wheels=bolt.parent)
     with pytest.raises(InputError, match="Cancel the set-up first"):
         setup.remove()
     setup.cancel()
@@ -303,10 +291,10 @@ def test_a_setup_can_be_canceled(setup, source):
     assert left_beside(setup) == []
 
 
-def test_a_folder_without_wheels_and_a_missing_python_are_reported(setup, package, tmp_path):
+def test_a_folder_without_wheels_and_a_missing_python_are_reported(setup, tmp_path):
     with pytest.raises(InputError, match="no wheels"):
         setup.begin(wheels=tmp_path)
-    missing = SimulatorSetup(tmp_path / "PythonSlicer", tmp_path / "simulator", package)
+    missing = SimulatorSetup(tmp_path / "PythonSlicer", tmp_path / "simulator", setup.package)
     with pytest.raises(InputError, match="cannot be started: No such file"):
         missing.begin()
 
@@ -321,8 +309,8 @@ def test_slicers_python_and_the_checkout_are_found_where_they_are(tmp_path):
     assert SimulatorPackage.of(tmp_path / "RASTrainer").checkout == tmp_path
 
 
-def test_the_size_of_a_setup_is_known_for_measured_platforms(package, monkeypatch):
-    assert package.sizesMB() is None
+def test_the_size_of_a_setup_is_known_for_measured_platforms(setup, monkeypatch):
+    assert setup.package.sizesMB() is None
     ours = SimulatorPackage.of(Path(__file__).parents[2] / "RASTrainer")
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setattr("platform.machine", lambda: "x86_64")

@@ -84,7 +84,7 @@ def expect_skin(mesh, errors, base_mm):
 def skin_in(volume):
     """Return the surface of the head that is found in a volume."""
     settings = HeadSettings(openingMm=8)
-    return skinOf(findHead(volume, settings, no_progress), settings, no_progress)
+    return skinOf(findHead(volume, settings, no_progress), no_progress)
 
 
 @pytest.mark.parametrize(

@@ -55,7 +55,7 @@ def skin_of(node, segment, **settings):
     """Return the surface of the head that is made of a segment."""
     wanted = forSegment(HeadSettings(**settings))
     volume = volumeOfSegment(readSegment(node, segment))
-    return skinOf(findHead(volume, wanted, no_progress), wanted, no_progress)
+    return skinOf(findHead(volume, wanted, no_progress), no_progress)
 
 
 def ball_errors(mesh):

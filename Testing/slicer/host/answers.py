@@ -33,11 +33,6 @@ class Answers:
         """Answer the next dialog whose text or title contains `part`."""
         self._prepared.append((part, answer))
 
-    @property
-    def unused(self) -> list[str]:
-        """The texts of the dialogs that were expected and have not appeared."""
-        return [part for part, _answer in self._prepared]
-
     def take(self, *texts: str) -> Any | None:
         """Return the answer prepared for a dialog with these texts; None if there is none."""
         for prepared in self._prepared:

@@ -95,6 +95,13 @@ class Hands:
                 raise TourError(f"In {timeout_s:g} s it did not happen: {what}.")
             self.idle_for(0.02)
 
+    def wait_for(self, name: str, part: str, at_least_s: float = 0.0) -> None:
+        """Wait until the text of a widget contains `part`."""
+        self.wait_until(lambda: part in self.text(name), f"{name} says “{part}”", at_least_s)
+
+    def wait_enabled(self, name: str) -> None:
+        self.wait_until(lambda: self.find(name).enabled, f"{name} can be used")
+
     def _handle_dialogs(self) -> None:
         """Raise `TourError` if an unexpected dialog has opened."""
         said = self._unexpected[self._known :]

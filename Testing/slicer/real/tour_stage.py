@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import qt
 import slicer
@@ -75,6 +76,19 @@ class Tour:
         self.hands.click("loadScenarioButton")
         self.play("--await", "colin27")
         shutil.rmtree(folder)
+
+    def place(self, node: Any, *places: tuple[float, ...]) -> None:
+        """Place points of a markup, as by clicks in a view."""
+        for place in places:
+            node.AddControlPoint(*place)
+        interaction = slicer.app.applicationLogic().GetInteractionNode()
+        interaction.SetCurrentInteractionMode(interaction.ViewTransform)
+        self.hands.idle_for(0.5)
+
+    def place_active(self, *places: tuple[float, ...]) -> None:
+        """Place points of the markup that the module has just added."""
+        selection = slicer.app.applicationLogic().GetSelectionNode()
+        self.place(slicer.mrmlScene.GetNodeByID(selection.GetActivePlaceNodeID()), *places)
 
     def touch(self, first: int, last: int) -> str:
         """Let the trainee touch points, and wait until Slicer shows them; return its sentence."""
