@@ -61,6 +61,16 @@ def showPercent(label: Any, step: str, share: float) -> None:
         setText(label, f"{step}: {100 * share:.0f} %")
 
 
+def replaceWidgets(layout: Any, former: Iterable[Any], new: Iterable[Any]) -> None:
+    """Show widgets in a box layout in place of others, which are deleted."""
+    for widget in former:
+        layout.removeWidget(widget)
+        widget.setParent(None)
+        widget.deleteLater()
+    for widget in new:
+        layout.addWidget(widget)
+
+
 def textLabel(text: str) -> Any:
     """Return a label for text by anyone, configured like the labels of the `.ui` files."""
     label = qt.QLabel(wrappable(shortened(text, LONGEST_TEXT)))
@@ -186,15 +196,11 @@ T = TypeVar("T")
 
 
 class _CanceledError(Exception):
-    """The user has pressed Cancel."""
+    pass
 
 
 class CancelableWork:
-    """Runs one piece of work at a time; meanwhile its button says Cancel, and does that.
-
-    Attributes:
-        isUnderWay: whether it runs.
-    """
+    """Runs one piece of work at a time; meanwhile its button says Cancel, and does that."""
 
     def __init__(
         self,
@@ -205,13 +211,10 @@ class CancelableWork:
         showUsable: Callable[[], None] = lambda: None,
         show: Progress | None = None,
     ) -> None:
-        """Have a click start or cancel the work.
+        """Have a click call `start`, which calls `run`, or cancel the work.
 
-        Args:
-            start: calls `run`; `failure` is shown if that fails.
-            showSentence: shows a sentence, an empty one where the work has failed.
-            showUsable: called when work begins and ends.
-            show: shows a step and the share of the work done; None shows the step as a sentence.
+        `showSentence` shows a sentence, an empty one where the work has failed; `showUsable` is
+        called when it begins and ends. Without `show`, each step is shown as a sentence.
         """
         self.isUnderWay = self._isCanceled = False
         self._button = button
