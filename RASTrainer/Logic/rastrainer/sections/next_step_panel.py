@@ -76,10 +76,7 @@ class NextStepPanel(Panel):
             (session.trainees.changed, self._lookUp),
             (session.study.changed, self._lookUp),
             # Each section shows it in a separate turn; only then is there something to see.
-            (
-                session.trials.trialScored,
-                lambda a: session.work.later(partial(self._noteScored, a)),
-            ),
+            (session.trials.trialScored, lambda a: session.work.later(lambda: self._noteScored(a))),
             (session.trials.problemFound, lambda _sentence: self._note(isUnscored=True)),
         )
         self._lookAtSetup()

@@ -53,8 +53,8 @@ class ReplayLogic:
         self,
         services: TrialServices,
         robot: Path,
-        isTrialOpen: Callable[[], bool] = lambda: False,
-        isBeingScored: Callable[[str], bool] = lambda _trialId: False,
+        isTrialOpen: Callable[[], bool],
+        isBeingScored: Callable[[str], bool],
     ) -> None:
         """`robot` is the folder of the URDF; a trial that is being scored gets feedback by that."""
         self.feedbackFound = Signal()
