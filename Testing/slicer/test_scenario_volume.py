@@ -143,7 +143,9 @@ def test_displayed_images_are_not_read_again_and_a_users_changes_stay(scene, loa
     assert backgrounds(scene) == [loading.node.GetID()] * 3
 
 
-def test_rebuilt_images_are_read_again(scene, loading, imaged):
+def test_rebuilt_images_are_read_again_and_those_of_another_scenario_removed(
+    scene, loading, imaged, scenario
+):
     showScenario(scene, imaged)
     loading.finish()
     write_nrrd(imaged.volume.file, ball_volume(60.0).values, ball_volume(60.0).ijk_to_ras)
@@ -151,11 +153,6 @@ def test_rebuilt_images_are_read_again(scene, loading, imaged):
     loading.finish()
     assert np.array_equal(slicer.util.arrayFromVolume(loading.node).T, ball_volume(60.0).values)
     assert len(loading.shown) == 2
-
-
-def test_a_scenario_without_images_removes_those_of_another(scene, loading, imaged, scenario):
-    showScenario(scene, imaged)
-    loading.finish()
     showScenario(scene, scenario)
     loading.finish()
     assert loading.node is None
@@ -187,16 +184,15 @@ def test_unusable_images_are_reported_and_the_head_is_shown(scene, loading, imag
     assert findNode(scene, MODEL, Role.HEAD_MODEL) is not None
 
 
-def test_a_node_deleted_while_it_is_read_stays_deleted(scene, loading, imaged):
+def test_a_node_deleted_while_it_is_read_stays_deleted_and_one_without_display_is_filled(
+    scene, loading, imaged
+):
     showScenario(scene, imaged)
     loading.loader.process()
     scene.RemoveNode(loading.node)
     loading.finish()
     assert loading.node is None
     assert loading.problems == loading.shown == []
-
-
-def test_a_node_whose_display_is_deleted_is_filled_anyway(scene, loading, imaged):
     showScenario(scene, imaged)
     scene.RemoveNode(loading.node.GetDisplayNode())
     loading.finish()

@@ -3,8 +3,6 @@
 import pytest
 import slicer
 
-from Testing.slicer.host.host import Host
-
 
 @pytest.mark.parametrize(
     ("layout", "is_entered", "in_slices", "is_seen"),
@@ -32,14 +30,3 @@ def test_visibility_depends_on_the_layout_and_on_the_module(
     assert not isAnythingVisible(is_entered, in_slices)
     host.minimize(False)
     assert isAnythingVisible(is_entered, in_slices) is is_seen
-
-
-def test_without_a_window_only_the_module_can_be_visible(tmp_path):
-    from rastrainer.sections.application import isAnythingVisible
-
-    bare = Host(tmp_path, window=False)
-    try:
-        assert isAnythingVisible(True)
-        assert not isAnythingVisible(False, True)
-    finally:
-        bare.close()
