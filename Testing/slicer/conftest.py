@@ -7,6 +7,7 @@ from rastrainer import transforms
 from rastrainer.head.mesh import write_head_mesh
 from rastrainer.scenario.points import LABELS, PlannedTarget, Task, task_file
 from rastrainer.scenario.scenario import Perturbation, Scenario
+from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.program.child_process import OwnProcess, runHere
 from rastrainer_headless.connector import headlessKit
@@ -39,6 +40,13 @@ def headless_scene():
 @pytest.fixture
 def scene(headless_scene):
     return headless_scene.scene
+
+
+@pytest.fixture
+def work():
+    work = BackgroundWork()
+    yield work
+    work.close()
 
 
 @pytest.fixture

@@ -1,8 +1,9 @@
-"""A module that has nothing to do costs Slicer nothing: no paint, no layout, no question."""
+"""A module that has nothing to do, or is not seen, costs Slicer nothing: no paint, no poses."""
 
 import json
 
 import pytest
+import slicer
 
 from rastrainer.igtl.content import String
 from rastrainer.protocol import DeviceName
@@ -84,3 +85,31 @@ def test_a_sentence_is_shown_and_hidden_in_a_closed_section_without_a_layout(hos
     assert label.visible
     setText(label, "")
     assert not label.visible
+
+
+@pytest.mark.parametrize(
+    ("layout", "is_entered", "in_slices", "is_seen"),
+    [
+        ("FourUpView", True, False, True),
+        ("FourUpView", False, False, True),
+        ("OneUp3DView", False, False, True),
+        ("OneUp3DView", False, True, True),
+        ("OneUpRedSliceView", True, False, True),
+        ("OneUpRedSliceView", False, False, False),
+        ("OneUpRedSliceView", False, True, True),
+        ("OneUpPlotView", False, True, False),
+        ("OneUpPlotView", True, False, True),
+    ],
+)
+def test_visibility_depends_on_the_layout_and_on_the_module(
+    host, layout, is_entered, in_slices, is_seen
+):
+    from rastrainer.sections.application import isAnythingVisible
+
+    number = getattr(slicer.vtkMRMLLayoutNode, f"SlicerLayout{layout}")
+    slicer.app.layoutManager().setLayout(number)
+    assert isAnythingVisible(is_entered, in_slices) is is_seen
+    host.minimize()
+    assert not isAnythingVisible(is_entered, in_slices)
+    host.minimize(False)
+    assert isAnythingVisible(is_entered, in_slices) is is_seen

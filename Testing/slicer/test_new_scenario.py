@@ -25,7 +25,8 @@ from Testing.slicer.host.cancels import cancels
 pytestmark = pytest.mark.usefixtures("module_widget")
 
 SIZE = 0.75
-"""Size of the heads: small heads are found faster."""
+SPACING = (3.5, 3.5, 3.5)
+"""Size of the heads, and spacing of their images, mm: these are found faster."""
 
 EMPTY = Volume(np.zeros((16, 16, 16), np.float32), np.eye(4))
 
@@ -127,7 +128,7 @@ def test_a_volume_without_a_head_is_reported(host):
 
 
 def test_a_found_head_becomes_a_segment_with_the_displayed_base_and_threshold(host):
-    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "MRI")
+    volume = add_volume(host.scene, phantom(spacing=SPACING, size=SIZE), "MRI")
     host.choose("scanComboBox", volume)
     host.type("thresholdSpinBox", "150")
     host.press("previewHeadButton")
@@ -157,7 +158,7 @@ def test_a_draft_is_hidden_once_a_scenario_is_made_and_shown_when_it_is_found_ag
     monkeypatch.setattr(new_scenario_logic, "planScenario", lambda *_arguments: [])
     monkeypatch.setattr(scenario_files, "load_scenario", lambda _folder: made)
     monkeypatch.setattr(new_scenario_logic, "findSkin", found_once(scenario_logic.findSkin))
-    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "phantom")
+    volume = add_volume(host.scene, phantom(spacing=SPACING, size=SIZE), "phantom")
     rendering = host.scene.AddNode(slicer.vtkMRMLCPURayCastVolumeRenderingDisplayNode())
     volume.AddAndObserveDisplayNodeID(rendering.GetID())
     host.choose("scanComboBox", volume)
@@ -193,7 +194,7 @@ def test_a_preview_shows_a_warning_and_is_where_the_volumes_transform_places_it(
 
 @pytest.mark.usefixtures("own_processes")
 def test_a_canceled_preview_leaves_nothing_behind(host):
-    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "MRI")
+    volume = add_volume(host.scene, phantom(spacing=SPACING, size=SIZE), "MRI")
     host.choose("scanComboBox", volume)
     before = nodes(host)
     with cancels(host, "makeScenarioButton"):

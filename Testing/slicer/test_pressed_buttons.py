@@ -6,9 +6,10 @@ import pytest
 import slicer
 from PySide6 import QtCore, QtTest
 
+from rastrainer.sections.training_logic import LOADING
 from rastrainer.slicer.link.link_status import LinkState
 from Testing.slicer.recorded_trial import put_touches, touches_on_colin
-from Testing.slicer.simulator_double import run_until_received
+from Testing.slicer.simulator_double import connect_module, run_until_received
 from Testing.slicer.told_module import ToldModule
 
 LEFT = QtCore.Qt.MouseButton.LeftButton
@@ -169,3 +170,19 @@ def test_a_failed_setup_does_not_start_a_simulator_after_the_next_one(host, tmp_
     count = len(host.messages)
     host.widget.logic.session.simulator.setup.finished.emit("")
     assert len(host.messages) == count
+
+
+STARTING = ("startTrialRunButton", "startTaskButton", "nextStepButton")
+
+
+def test_the_buttons_that_start_trials_are_disabled_while_slicers_head_is_loaded(host, simulator):
+    simulator.responder = lambda name, _arguments: None if name == "LoadScenario" else {}
+    host.open()
+    connect_module(host, simulator)
+    host.check("newConsentCheckBox")
+    host.press("createTraineeButton")
+    host.wait_until(lambda: host.find("startTaskButton").enabled, "a trial can be started")
+    host.press("loadScenarioButton")
+    assert [host.find(name).enabled for name in STARTING] == [False] * 3
+    assert {host.find(name).toolTip for name in STARTING} == {LOADING}
+    assert host.text("nextStepText") == LOADING

@@ -15,7 +15,6 @@ from rastrainer.registration.registration import register, register_all_kinds
 from rastrainer.registration.target_error import expected_tre, target_error
 from rastrainer.scenario.points import LABELS
 from rastrainer.sections.registration_logic import RegistrationLogic
-from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.scene.error_colors import TRE_SCALARS
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints, worldPoints
 from rastrainer.slicer.scene.registration_input import Choices
@@ -27,7 +26,7 @@ from rastrainer.slicer.scene.trial_scene import (
     setApplied,
 )
 from Testing.slicer.shown_scenario import show_whole
-from Testing.slicer.work_at_once import WorkAtOnce
+from Testing.slicer.work_at_once import WorkAtOnce, in_turns
 
 LEGEND = "vtkMRMLColorLegendDisplayNode"
 
@@ -320,22 +319,9 @@ def test_touches_are_registered_again_on_another_head(table, logic_in_turns, wor
 
 
 @pytest.fixture
-def work():
-    work = BackgroundWork()
-    yield work
-    work.close()
-
-
-@pytest.fixture
 def logic_in_turns(table, work):
     """Logic with turns; the table's own has none."""
     return RegistrationLogic(table.scene, work)
-
-
-def in_turns(work):
-    while work.isBusy:
-        work.yieldTime()
-        work.process()
 
 
 def test_with_turns_each_part_of_a_registration_is_shown_in_a_separate_turn(
@@ -344,13 +330,14 @@ def test_with_turns_each_part_of_a_registration_is_shown_in_a_separate_turn(
     logic, scene = logic_in_turns, table.scene
     setPoints(capturedPointsNode(scene), LABELS, table.touched)
     logic.process()
-    seen = []
-    while work.isBusy:
-        work.yieldTime()
-        work.process()
+    counts = []
+
+    def count():
         arrows = table.node(Role.RESIDUAL_ARROWS, "vtkMRMLModelNode")
-        seen.append((logic.transform, table.node(Role.FITS), arrows, logic.comparison))
-    counts = [sum(part is not None for part in parts) for parts in seen]
+        parts = logic.transform, table.node(Role.FITS), arrows, logic.comparison
+        counts.append(sum(part is not None for part in parts))
+
+    in_turns(work, count)
     assert counts == sorted(counts)
     assert set(counts) == {0, 1, 2, 3, 4}
     np.testing.assert_array_equal(

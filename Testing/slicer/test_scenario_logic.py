@@ -8,13 +8,13 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.sections.scenario_logic import ScenarioLogic
-from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.program.child_process import runHere
 from rastrainer.slicer.scene.nodes import Role, findNode
 from rastrainer.slicer.scene.robot import missingLinks
 from rastrainer.slicer.scene.robot_description import READ_LINKS
 from rastrainer.slicer.scene.trial_scene import isApplied
 from rastrainer_simulator.assets import asset_path
+from Testing.slicer.work_at_once import in_turns
 
 
 class Cache:
@@ -23,13 +23,6 @@ class Cache:
 
     def find(self, _name):
         return self._scenario
-
-
-@pytest.fixture
-def work():
-    work = BackgroundWork()
-    yield work
-    work.close()
 
 
 @pytest.fixture
@@ -45,13 +38,6 @@ def logic(scene, scenario, work, runs):
         return runHere(function, *arguments, **named)
 
     return ScenarioLogic(scene, Cache(scenario), asset_path("robots", "iiwa7"), run, work)
-
-
-def in_turns(work, then=lambda: None):
-    while work.isBusy:
-        work.yieldTime()
-        work.process()
-        then()
 
 
 def volume(scene, values, spacing):

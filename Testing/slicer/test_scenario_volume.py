@@ -23,6 +23,7 @@ from rastrainer.slicer.scene.scenario_nodes import (
 from rastrainer_headless.scene import HeadlessScene
 from Testing.domain.scenario.made_up_scenario import ball_head, ball_volume
 from Testing.slicer.scene_bundle import load_bundle
+from Testing.slicer.work_at_once import in_turns
 
 
 class Loading:
@@ -42,10 +43,7 @@ class Loading:
 
     def finish(self):
         self.loader.process()
-        while self.work.isBusy:
-            self.work.yieldTime()
-            self.work.process()
-            self.loader.process()
+        in_turns(self.work, self.loader.process)
 
     @property
     def node(self):
@@ -113,12 +111,13 @@ def test_meshes_and_images_are_read_beside_the_main_thread_and_shown_one_in_a_tu
     assert threads == {}
     loading, filled = Loading(scene), []
     loading.loader.process()
-    while loading.work.isBusy:
-        loading.work.yieldTime()
-        loading.work.process()
+
+    def count():
         models = [findNode(scene, MODEL, role) for role in (Role.HEAD_MODEL, Role.SKULL)]
         data = [*(model.GetPolyData() for model in models), loading.node.GetImageData()]
         filled.append(sum(each is not None for each in data))
+
+    in_turns(loading.work, count)
     assert threads.keys() == {"head.ply", "skull.ply", "volume.nrrd"}
     assert threading.get_ident() not in threads.values()
     assert {1, 2, 3} <= set(filled)
