@@ -19,17 +19,18 @@ from rastrainer.widgets.shown_errors import guardedAction
 from rastrainer.work_progress import Progress
 
 GREEN, YELLOW, RED, GRAY = "#2e9e44", "#c98a00", "#d03030", "#888888"
-LINK_COLORS = {
-    LinkState.OFF: GRAY,
-    LinkState.NOT_INSTALLED: RED,
-    LinkState.LOOKING: YELLOW,
-    LinkState.ABSENT: RED,
-    LinkState.OTHER_PROGRAM: RED,
-    LinkState.GREETING: YELLOW,
-    LinkState.CONNECTED: GREEN,
-    LinkState.STALE: YELLOW,
-    LinkState.WRONG_VERSION: RED,
+LINK_LOOKS = {
+    LinkState.OFF: (GRAY, _("Not connected")),
+    LinkState.NOT_INSTALLED: (RED, _("Not installed")),
+    LinkState.LOOKING: (YELLOW, _("Looking")),
+    LinkState.ABSENT: (RED, _("No answer")),
+    LinkState.OTHER_PROGRAM: (RED, _("No simulator")),
+    LinkState.GREETING: (YELLOW, _("Connecting")),
+    LinkState.CONNECTED: (GREEN, _("Connected")),
+    LinkState.STALE: (YELLOW, _("Silent")),
+    LinkState.WRONG_VERSION: (RED, _("Wrong version")),
 }
+"""Color and word of each state of the link."""
 
 
 def setProperty(widget: Any, name: str, value: Any) -> None:
