@@ -23,12 +23,6 @@ def idle_activity(host):
     return watch
 
 
-@pytest.fixture
-def idle_state():
-    """State of the simulator while no trial is open."""
-    return String(json.dumps({"phase": "idle", "instruction": "Ask for a trial."}))
-
-
 def test_without_a_connection_and_with_all_sections_open_nothing_is_written_or_drawn_again(host):
     host.open()
     for name in vars(host.widget.ui):
@@ -39,14 +33,23 @@ def test_without_a_connection_and_with_all_sections_open_nothing_is_written_or_d
     assert 0 < watch.ticks <= TICKS
 
 
-def test_connected_nothing_is_written_or_drawn_again(host, simulator, idle_state):
+def test_connected_nothing_is_written_or_drawn_again_and_a_state_is_shown_without_a_poll(
+    host, simulator
+):
+    def tell(instruction):
+        state = String(json.dumps({"phase": "idle", "instruction": instruction}))
+        simulator.send(DeviceName.SIM_STATE, state)
+        host.wait_until(lambda: instruction in host.text("trainingText"), "the state arrives")
+
     host.open()
     connect_module(host, simulator)
-    simulator.send(DeviceName.SIM_STATE, idle_state)
-    host.wait_until(lambda: "Ask for" in host.text("trainingText"), "the state arrives")
+    tell("Ask for a trial.")
     watch = idle_activity(host)
     assert (watch.writes, watch.drawn) == ([], [])
     assert watch.ticks <= TICKS
+    with ActivityWatch() as watch:
+        tell("Now.")
+    assert watch.ticks <= watch.clock // 5 + 2
 
 
 def test_behind_another_module_without_a_connection_no_timer_runs(host):
@@ -56,18 +59,6 @@ def test_behind_another_module_without_a_connection_no_timer_runs(host):
     # Changes are shown at once all the same.
     host.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Mine")
     host.wait_until(lambda: host.widget.logic.session.restS(False) is None, "it rests again")
-
-
-def test_a_state_of_a_trial_is_shown_without_a_poll(host, simulator):
-    host.open()
-    connect_module(host, simulator)
-    host.idle_for(1.0)
-    with ActivityWatch() as watch:
-        simulator.send(
-            DeviceName.SIM_STATE, String(json.dumps({"phase": "idle", "instruction": "Now."}))
-        )
-        host.wait_until(lambda: "Now." in host.text("trainingText"), "the state arrives")
-    assert watch.ticks <= watch.clock // 5 + 2
 
 
 def test_a_sentence_is_shown_and_hidden_in_a_closed_section_without_a_layout(host):

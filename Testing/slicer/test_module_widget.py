@@ -144,21 +144,3 @@ def test_every_button_box_and_list_is_used_in_a_test():
     names = widgets_of("QPushButton", "QCheckBox", "QComboBox")
     assert len(names) > 60
     assert names - used == set()
-
-
-NOT_IN_THE_TOUR = {
-    "setupButton": "the button at the top sets up what is not set up yet",
-    "removeSetupButton": "it would remove what is set up",
-    "connectToRunningButton": "it needs a Slicer that has crashed",
-    "endRunningButton": "it needs a Slicer that has crashed",
-    "sampleDataButton": "it needs the Internet",
-    "restoreLineButton": "the tour removes no line; the host's tests press it",
-    "raiseLineButton": "the tour's procedure has one line; the host's tests press it",
-    "placeCheckpointButton": "the tour's procedure has its checkpoints; the host's tests press it",
-}
-
-
-def test_the_release_tour_presses_every_button_except_those_listed_here():
-    folder = Path(__file__).parent / "real"
-    used = {name for path in folder.glob("tour_*.py") for name in used_by(path)}
-    assert widgets_of("QPushButton") - used == set(NOT_IN_THE_TOUR)

@@ -49,14 +49,6 @@ def registered(moving, fixed, kind="rigid"):
     return register(pairs.moving, pairs.fixed, kind, pairs.labels)
 
 
-def test_points_are_paired_by_label_whatever_their_order(scene, moving, fixed, points):
-    order = np.random.default_rng(7).permutation(15)
-    shuffled = markups(scene, "Shuffled", [LABELS[i] for i in order], points[order])
-    np.testing.assert_allclose(
-        registered(moving, shuffled).matrix, registered(moving, fixed).matrix, atol=1e-9
-    )
-
-
 def test_the_result_is_applied_or_not_and_another_registration_gives_the_same(
     scene, moving, fixed, points
 ):
