@@ -75,9 +75,8 @@ class TrialLogic(Listening):
 
     Attributes:
         problemFound: emits a sentence about a trial that was not stored, or not scored.
-        trialKept: emits each received `TrialRecord` when it is in the study.
-        abortedKept: emits each received `AbortedTrial` when it is in the study; nothing is stored
-            of a trial in which nothing was done.
+        trialKept, abortedKept: emit each received `TrialRecord` or `AbortedTrial` when it is in the
+            study; nothing is stored of a trial in which nothing was done.
         trialScored: emits each `TrialAnalysis` with truth and score, when they are in the study.
         received: UUIDs of the received trials that are in the study, in their order.
     """
