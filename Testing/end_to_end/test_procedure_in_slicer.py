@@ -11,8 +11,7 @@ import pytest
 from rastrainer.commands import CommandName
 from rastrainer.protocol import DEFAULT_HOST, PROCEDURE_PHASES, Phase
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.scene.nodes import Role, nodesOf, nodesOfClass
-from rastrainer.slicer.scene.procedure_lines import LINE
+from rastrainer.slicer.scene.nodes import LINE, Role, nodesOf, nodesOfClass
 from rastrainer.study.database.study import Study
 from rastrainer_headless.headless_session import openSession, process
 from rastrainer_headless.scene import HeadlessScene

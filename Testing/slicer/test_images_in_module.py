@@ -16,8 +16,7 @@ from rastrainer.scenario.library import user_library
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.head.volume import imageOfNode
 from rastrainer.slicer.link.link_status import LinkState
-from rastrainer.slicer.scene.nodes import Role, findNode
-from rastrainer.slicer.scene.scenario_nodes import VOLUME
+from rastrainer.slicer.scene.nodes import VOLUME, Role, findNode
 from rastrainer_simulator.assets import asset_path
 from Testing.domain.igtl.sent_pose import transform_of
 from Testing.slicer.host.host import Host

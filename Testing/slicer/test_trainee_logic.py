@@ -131,7 +131,6 @@ def test_the_history_is_a_table_and_two_learning_curves(scene, add_trial):
     table = findNode(scene, "vtkMRMLTableNode", Role.HISTORY)
     scores = slicer.util.arrayFromTableColumn(table, "score")
     assert scores.tolist() == [trial.score.score for trial in trials]
-    table = findNode(scene, "vtkMRMLTableNode", Role.LEARNING_CURVE)
     for index in range(2):
         series = chart.GetNthPlotSeriesNode(index)
         assert series.GetTableNodeID() == table.GetID()

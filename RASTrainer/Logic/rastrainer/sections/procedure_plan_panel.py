@@ -13,8 +13,8 @@ from rastrainer.procedure.plan import ProcedureKind
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, chosenScenario, connectClick
 from rastrainer.sections.procedure_plan_logic import PlanDescription
-from rastrainer.slicer.scene.nodes import Role, findNode, worldPoints
-from rastrainer.slicer.scene.plan_points import LIST, startPlacing
+from rastrainer.slicer.scene.nodes import LIST, Role, findNode, worldPoints
+from rastrainer.slicer.scene.plan_points import startPlacing
 from rastrainer.slicer.scene.procedure_lines import (
     checkpointList,
     instrumentOf,
@@ -22,10 +22,8 @@ from rastrainer.slicer.scene.procedure_lines import (
     lengthMm,
     newPlanLine,
     noGoNodes,
+    placeLine,
     planLines,
-    raiseLine,
-    removeLine,
-    restoreLine,
     setInstrument,
     setNoGo,
 )
@@ -112,20 +110,22 @@ class ProcedurePlanPanel(Panel):
         """Remove the chosen line; it can be restored."""
         line = self._line()
         if line is not None:
-            self._removed.append((line, removeLine(slicer.mrmlScene, line)))
+            self._removed.append((line, self._ui.linesTable.currentRow()))
+            slicer.mrmlScene.RemoveNode(line)
         self.showState()
 
     def restoreLine(self) -> None:
         if self._removed:
-            restoreLine(slicer.mrmlScene, *self._removed.pop())
+            placeLine(slicer.mrmlScene, *self._removed.pop())
         self.showState()
 
     def raiseLine(self) -> None:
         """Move the chosen line up in the order of the procedure; it stays chosen."""
         line, table = self._line(), self._ui.linesTable
         if line is not None:
-            raiseLine(slicer.mrmlScene, line)
-            table.selectRow(max(table.currentRow() - 1, 0))
+            place = max(table.currentRow() - 1, 0)
+            placeLine(slicer.mrmlScene, line, place)
+            table.selectRow(place)
         self.showState()
 
     def placeCheckpoint(self) -> None:

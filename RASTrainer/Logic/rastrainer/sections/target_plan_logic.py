@@ -15,7 +15,8 @@ from rastrainer.igtl.client import Reply
 from rastrainer.registration.target_error import TargetError
 from rastrainer.sections.registration_logic import RegistrationLogic
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.scene.plan_points import LINE, PlanPoints, placedPoints
+from rastrainer.slicer.scene.nodes import LINE
+from rastrainer.slicer.scene.plan_points import PlanPoints, placedPoints
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.trial.analysis import TrialAnalysis

@@ -211,32 +211,20 @@ def standings(
 
 def showStandings(scene: Any, found: Sequence[GroupComparison]) -> Any:
     """Show comparisons in a `vtkMRMLTableNode` and return it."""
-    return showTable(
-        scene,
-        Role.COMPARISON,
-        "Comparison",
-        {
-            "measure": [s.title for s in found],
-            "unit": [s.unit for s in found],
-            "value": [s.value for s in found],
-            "compared with": [s.group for s in found],
-            "trials": [s.count for s in found],
-            "median": [s.median for s in found],
-            "better than (share)": [s.betterThan for s in found],
-        },
-    )
+    columns = {
+        "measure": [each.title for each in found],
+        "unit": [each.unit for each in found],
+        "value": [each.value for each in found],
+        "compared with": [each.group for each in found],
+        "trials": [each.count for each in found],
+        "median": [each.median for each in found],
+        "better than (share)": [each.betterThan for each in found],
+    }
+    return showTable(scene, Role.COMPARISON, "Comparison", columns)
 
 
 def showRows(scene: Any, role: str, name: str, rows: Sequence[Row]) -> Any:
     """Show scores with their parts, or motion metrics, in a `vtkMRMLTableNode`; return it."""
-    return showTable(
-        scene,
-        role,
-        name,
-        {
-            "measure": [row.title for row in rows],
-            "value": [row.value for row in rows],
-            "unit": [row.unit for row in rows],
-            "note": [row.note for row in rows],
-        },
-    )
+    parts = {"measure": "title", "value": "value", "unit": "unit", "note": "note"}
+    columns = {title: [getattr(row, part) for row in rows] for title, part in parts.items()}
+    return showTable(scene, role, name, columns)
