@@ -39,7 +39,7 @@ class TrainingLogic(Listening):
         changed: emits nothing, whenever `status` has changed in more than its time.
         answered: emits the error of each command, empty if it was accepted.
         sceneShown: emits the `Scenario` of an open trial whose head and fiducials are now shown.
-        learner: pseudonym of the trainee doing the tutorial before the trial run; empty if none.
+        learner: the trainee doing the tutorial before the trial run; empty if none.
         loadings: how many scenarios the simulator is loading for Slicer; it refuses trials then.
     """
 
@@ -104,18 +104,16 @@ class TrainingLogic(Listening):
             raise InputError(_("Choose a trainee in the section Trainees first."))
         if not task:
             raise InputError(_("Choose a task first."))
+        who = {"trainee": trainee, "mode": mode}
         if task == TRIAL_RUN and isTutorialFirst:
-            who = {"trainee": trainee, "mode": mode}
             self._link.send(
                 CommandName.START_TUTORIAL, who, lambda reply: self._startUnlessTutorial(reply, who)
             )
         else:
-            wanted = {"task": task, "trainee": trainee, "mode": mode}
             isMarked = method == RegistrationMethod.FIDUCIALS.value
             others = {"procedure": procedure, "method": "" if isMarked else method, "skin": skin}
-            self.command(
-                CommandName.START_TASK, wanted | {key: each for key, each in others.items() if each}
-            )
+            given = {key: each for key, each in others.items() if each}
+            self.command(CommandName.START_TASK, {"task": task, **who, **given})
 
     def command(self, name: str, arguments: Mapping[str, Any] | None = None) -> None:
         self._link.send(name, arguments, lambda reply: self.answered.emit(reply.error))
