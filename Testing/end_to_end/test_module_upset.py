@@ -44,22 +44,6 @@ def upset(story, delete_nodes):
 
 
 @pytest.mark.soak
-def test_the_scene_may_be_disrupted_during_and_after_a_trial(story):
-    host = story.host
-    story.start_simulator()
-    story.create_trainee()
-    story.start_task()
-    story.touch_some()
-    upset(story, delete_nodes=True)
-    story.touch_the_others()
-    upset(story, delete_nodes=False)
-    story.register()
-    upset(story, delete_nodes=True)
-    story.look_at_score()
-    assert host.find("historyTable").rowCount == 1
-
-
-@pytest.mark.soak
 def test_the_scene_may_be_disrupted_after_every_step(story):
     for step, delete_nodes in (
         (Story.start_simulator, False),

@@ -7,6 +7,7 @@ import time
 
 import numpy as np
 import pytest
+from slicer.util import arrayFromVTKMatrix
 
 from rastrainer.commands import CommandName
 from rastrainer.protocol import DEFAULT_HOST, PROCEDURE_PHASES, Phase
@@ -71,15 +72,8 @@ class Leader:
 
     def slices(self) -> dict:
         """The axes and origins of the slice views, (4, 4) float."""
-        return {
-            view.GetName(): np.array(
-                [
-                    [view.GetSliceToRAS().GetElement(row, column) for column in range(4)]
-                    for row in range(4)
-                ]
-            )
-            for view in nodesOfClass(self.session._scene, "vtkMRMLSliceNode")
-        }
+        views = nodesOfClass(self.session._scene, "vtkMRMLSliceNode")
+        return {view.GetName(): arrayFromVTKMatrix(view.GetSliceToRAS()) for view in views}
 
 
 def found(leader: Leader, seen: dict) -> Leader:

@@ -10,12 +10,13 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer import transforms
-from rastrainer.procedure.errors import TrueLine, analyze_procedure, true_lines
+from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.procedure.plan import read_procedure_meshes
-from rastrainer.procedure.record import UsedRegistration
+from rastrainer.procedure.record import ProcedureRecord, UsedRegistration
 from rastrainer.registration.registration import register
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.sections.views import AlongInstrument
+from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.procedure_outcome import (
     ProcedureMeasures,
     ProcedureOutcome,
@@ -34,7 +35,7 @@ PROCEDURE, TASK, TOUCHING_S, FLE_MM = "seeg", "task-3", 90.0, 2.0
 SECTION = "procedureCollapsibleButton"
 
 
-def carried_out() -> tuple[ProcedureOutcome, list[TrueLine]]:
+def carried_out() -> tuple[ProcedureOutcome, ProcedureRecord, RevealedTruth]:
     """Return what virtual hands made of stereo-EEG after a careless registration."""
     scenario = load_scenario(asset_path("scenarios", "colin27"))
     procedure, skull = scenario.procedure(PROCEDURE), scenario.skull.file
@@ -54,19 +55,20 @@ def carried_out() -> tuple[ProcedureOutcome, list[TrueLine]]:
     analysis = analyze_procedure(done, procedure, meshes, truth)
     reference = reference_duration_s(TOUCHING_S, procedure)
     score = score_procedure(ProcedureMeasures.of(analysis, procedure), reference)
-    return ProcedureOutcome(analysis, score), true_lines(done, truth)
+    return ProcedureOutcome(analysis, score), done, RevealedTruth(tuple(truth.ravel().tolist()), 0.0)
 
 
 def save(picture: Path) -> None:
     """Show the outcome in the module, with the slices along the first instrument."""
-    outcome, lines = carried_out()
+    carried = carried_out()
     with tempfile.TemporaryDirectory() as temporary:
         host = Host(Path(temporary))
         host.open()
         host.press("showScenarioButton")
         host.finish_work()
-        host.widget.logic.session.procedure.showOutcome(outcome, lines)
-        guide, tip = lines[0].placed
+        procedure = host.widget.logic.session.procedure
+        procedure.showOutcome(*carried)
+        guide, tip = procedure.lines[0].placed
         AlongInstrument(host.scene).show(tip, (tip - guide) / np.linalg.norm(tip - guide))
         host.scene.GetFirstNodeByName("Head").SetDisplayVisibility(False)
         for name in ("scenario", "simulator", "setup"):
