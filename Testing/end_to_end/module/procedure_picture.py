@@ -55,7 +55,11 @@ def carried_out() -> tuple[ProcedureOutcome, ProcedureRecord, RevealedTruth]:
     analysis = analyze_procedure(done, procedure, meshes, truth)
     reference = reference_duration_s(TOUCHING_S, procedure)
     score = score_procedure(ProcedureMeasures.of(analysis, procedure), reference)
-    return ProcedureOutcome(analysis, score), done, RevealedTruth(tuple(truth.ravel().tolist()), 0.0)
+    return (
+        ProcedureOutcome(analysis, score),
+        done,
+        RevealedTruth(tuple(truth.ravel().tolist()), 0.0),
+    )
 
 
 def save(picture: Path) -> None:

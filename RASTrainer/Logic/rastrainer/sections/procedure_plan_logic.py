@@ -47,13 +47,10 @@ FILE = "procedure.json"
 
 @dataclass(frozen=True)
 class PlanDescription:
-    """The parts of a plan that are not nodes of the scene.
+    """The parts of a plan that are not lines or structures in the scene.
 
-    Attributes:
-        kind: a `ProcedureKind`.
-        source: where the coordinates come from; empty says that they were placed in Slicer.
-        name: of the procedure that is changed; empty for a new one, whose name its title gives.
-        checkpoints: a list of points on the skin, or None.
+    `name` is empty for a new procedure, whose name its title gives; without a `source`, the
+    coordinates were placed in Slicer. `checkpoints` is a list of points on the skin, or None.
     """
 
     title: str

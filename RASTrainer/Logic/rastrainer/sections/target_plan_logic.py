@@ -30,10 +30,8 @@ SAME_PLACE_MM = 0.01
 class PlanOnImages:
     """The plan: a target, or the entry and the target of a trajectory.
 
-    Attributes:
-        ends: (1, 3) or (2, 3) float, RAS mm; the target is the last.
-        endsWorld: of the same shape, where the registration puts them, World, mm.
-        expected: the error to expect at the target; None if the registration cannot predict it.
+    `ends`, (1, 3) or (2, 3) float, are in RAS mm, `endsWorld` where the registration puts them; the
+    target is the last. `expected` is the error there; None if it cannot be predicted.
     """
 
     name: str

@@ -54,8 +54,8 @@ Wanted = tuple[str, TraceStatus]
 class TraceLogic(Listening):
     """Asks for the trace as it grows, and shows it on the head while the trial is open.
 
-    Guidance is shown in the scene where the simulator's setting, or the study, has it shown to the
-    trainee. All of it is by the landmarks: the head's true pose stays unknown.
+    Guidance is shown where the trainee sees it, too. All of it is by the landmarks: the head's true
+    pose stays unknown.
     """
 
     def __init__(
@@ -136,11 +136,7 @@ NEXT_LOOK = {"SelectedColor": (0.75, 0.0, 0.5), "GlyphScale": 4.0, "TextScale": 
 
 
 def showTrace(scene: Any, trace: FollowedTrace, isGuided: bool) -> None:
-    """Show a trace on the head, RAS mm.
-
-    Where the trainee is guided, the head is colored by the distance to the trace, and the place to
-    draw next is marked.
-    """
+    """Show a trace on the head; to guide, color the distance to it, and mark where to draw next."""
     node = findOrAddNode(scene, MODEL, Role.TRACED_POINTS, _("Traced points"))
     drawAsPoints(node)
     node.SetAndObservePolyData(pointCloud(trace.places))

@@ -91,14 +91,10 @@ class TrainingLogic(Listening):
         method: str = "",
         skin: Mapping[str, float] | None = None,
     ) -> None:
-        """Start a trial, which continues with a procedure of the scenario if one is named.
+        """Start a trial, by fiducials and without a procedure unless others are named.
 
-        It is registered by a `RegistrationMethod`, by fiducials if none is named. Its skin shifts
-        by `skin`, or as the scenario says.
-
-        With `isTutorialFirst`, the simulator opens the tutorial instead of a trial run for trainees
-        who have not done it yet with the device in use, unless the study or the simulator's setting
-        does without it. The trial run can be started after it.
+        Its skin shifts by `skin`, or as the scenario says. With `isTutorialFirst`, the simulator
+        may open the tutorial instead of a trial run, which can be started after it.
         """
         if not trainee:
             raise InputError(_("Choose a trainee in the section Trainees first."))

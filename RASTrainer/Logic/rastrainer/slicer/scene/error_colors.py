@@ -119,10 +119,7 @@ RESIDUAL_SCALARS = "residual (mm)"
 
 
 def magnification(registration: Registration) -> float:
-    """Return how many times as long as the residuals the arrows are.
-
-    Residuals are about a millimeter on a head of 200: true to scale they could not be seen.
-    """
+    """Return how many times as long as the residuals the arrows are, so that they can be seen."""
     largest = float(registration.residuals_mm.max())
     return next((m for m in (10.0, 5.0, 2.0) if m * largest <= LONGEST_ARROW_MM), 1.0)
 
@@ -135,10 +132,9 @@ def arrowTips(registration: Registration) -> np.ndarray:
 def glyphsPolyData(
     registration: Registration, rows: Iterable[int] | None = None
 ) -> vtk.vtkPolyData:
-    """Return a ball on each fiducial and an arrow along its residual, in RAS mm.
+    """Return a ball on each fiducial, or on those in `rows`, with an arrow along its residual.
 
-    Its point data hold the residual in mm under the name `residual (mm)`. `rows` selects points; by
-    default all.
+    In RAS mm; its scalars are the residual in mm.
     """
     append = vtk.vtkAppendPolyData()
     tips = arrowTips(registration)

@@ -72,15 +72,12 @@ class Choices:
 
 @dataclass(frozen=True)
 class Pairs:
-    """Paired points, mm.
+    """Paired points, (n, 3) float, mm: moving in the list's own frame, fixed in RAS.
 
     Attributes:
         labels: one for each pair, in the order of the moving list.
-        moving: (n, 3) float, in the moving list's own frame.
-        fixed: (n, 3) float, RAS.
         missing: labels of fixed points that have no partner yet.
-        excluded: labels of the pairs that were left out, by the user's choices or because Slicer
-            would not use one of the points.
+        excluded: labels of left out pairs, by choice or because Slicer would not use a point.
     """
 
     labels: tuple[str, ...]

@@ -216,28 +216,25 @@ class SceneFileLoader:
         self.problemFound = Signal()
         self._scene = scene
         self._work = work
-        self._requested: dict[str, tuple[str, ...]] = {}
+        self._reading: set[tuple[str, ...]] = set()
 
     def process(self) -> None:
         """Start reading requested files; called about ten times a second."""
         for className, role, problem in _SHOWN:
             requested = requestedFile(findNode(self._scene, className, role))
-            if requested != self._requested.get(role, ()):
-                self._requested[role] = requested
-                if requested:
-                    read = read_nrrd if className == VOLUME else _readMesh
-                    self._work.do(
-                        partial(read, Path(requested[-1])),
-                        partial(self._take, role, requested),
-                        partial(self._refuse, role, requested, problem),
-                    )
+            if requested and requested not in self._reading:
+                self._reading.add(requested)
+                self._work.do(
+                    partial(read_nrrd if className == VOLUME else _readMesh, Path(requested[-1])),
+                    partial(self._take, requested),
+                    partial(self._refuse, requested, problem),
+                )
 
-    def _take(self, role: str, requested: tuple[str, ...], found: Any) -> None:
-        node = self._awaiting(role, requested)
+    def _take(self, requested: tuple[str, ...], found: Any) -> None:
+        node = self._awaiting(requested)
         if node is None:
             return
         node.RemoveAttribute(FILE_ATTRIBUTE)
-        className, nodeId = node.GetClassName(), node.GetID()
         if isinstance(found, HeadMesh):
             node.SetAndObservePolyData(meshPolyData(found))
         else:
@@ -247,29 +244,24 @@ class SceneFileLoader:
             data.GetPointData().SetScalars(vtkArray(values.ravel(order="F")))
             node.SetIJKToRASMatrix(slicer.util.vtkMatrixFromArray(ijkToRas))
             node.SetAndObserveImageData(data)
+        self._work.later(partial(self._emitShown, node))
 
-        def emitShown() -> None:
-            node = findNode(self._scene, className, role)
-            if node is not None and node.GetID() == nodeId:
-                if node.IsA(VOLUME):
-                    showAsBackground(self._scene, node, self._work.later)
-                self.shown.emit(node)
+    def _emitShown(self, node: Any) -> None:
+        if node.GetScene() is self._scene:
+            if node.IsA(VOLUME):
+                showAsBackground(self._scene, node, self._work.later)
+            self.shown.emit(node)
 
-        self._work.later(emitShown)
-
-    def _refuse(
-        self, role: str, requested: tuple[str, ...], problem: str, error: Exception
-    ) -> None:
-        node = self._awaiting(role, requested)
+    def _refuse(self, requested: tuple[str, ...], problem: str, error: Exception) -> None:
+        node = self._awaiting(requested)
         if node is not None:
             self._scene.RemoveNode(node)
             if isinstance(error, InputError):
                 self.problemFound.emit(problem.format(problem=error))
 
-    def _awaiting(self, role: str, requested: tuple[str, ...]) -> Any | None:
+    def _awaiting(self, requested: tuple[str, ...]) -> Any | None:
         """Return the node that still requests this file; None if there is none."""
-        # In a cleared scene the next node has the same ID, and may request the same at once.
-        self._requested[role] = ()
+        self._reading.discard(requested)
         node = self._scene.GetNodeByID(requested[0])
         return node if requestedFile(node) == requested else None
 

@@ -31,10 +31,7 @@ from rastrainer.trial.scoring import (
 
 @dataclass(frozen=True)
 class Row:
-    """One line of the score: title, value, unit and note.
-
-    `more` is added to the note in the tool tip.
-    """
+    """One line of the score; `more` is added to the note in the tool tip."""
 
     title: str
     value: float | None
@@ -56,10 +53,7 @@ class Row:
 
 @dataclass(frozen=True)
 class GroupComparison:
-    """A value compared with the values of a group.
-
-    `betterThan` is the share of the others that the trial is better than, 0 to 1.
-    """
+    """A value compared with those of a group; it is better than a share of these, 0 to 1."""
 
     title: str
     unit: str
