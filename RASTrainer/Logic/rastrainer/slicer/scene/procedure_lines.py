@@ -145,8 +145,6 @@ def setNoGo(node: Any, isNoGoNow: bool) -> None:
     node.SetAttribute(NO_GO_ATTRIBUTE, "yes" if isNoGoNow else None)
 
 
-TRAJECTORY_ATTRIBUTE = "RASTrainer.trajectory"
-"""On a line: the name of its trajectory."""
 THICKNESS = 0.3
 """Thickness of the arrows, which are true to scale, relative to arrows of residuals."""
 
@@ -198,7 +196,6 @@ def _showLines(scene: Any, role: str, title: str, lines: Mapping[str, Any]) -> N
     for row, (name, ends) in enumerate(lines.items()):
         node = nodes[row] if row < len(nodes) else addNode(scene, LINE, role, "")
         node.SetName(title.format(name))
-        node.SetAttribute(TRAJECTORY_ATTRIBUTE, name)
         # Only the planned lines show a label, at their entries.
         setPoints(node, (name, ""), np.array(ends))
         node.SetLocked(True)

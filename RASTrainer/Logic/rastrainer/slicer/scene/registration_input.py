@@ -35,12 +35,10 @@ estimated from the residuals."""
 
 @dataclass(frozen=True)
 class Choices:
-    """The user's changes to the pairs.
+    """The user's changes to the pairs, by label.
 
-    Attributes:
-        excluded: labels of pairs that are left out.
-        renamed: label in the moving list → label that it belongs to.
-        fle: label → localization error, RMS length in mm, of points that do not have the usual one.
+    `renamed` gives moving points other labels; `fle` is the localization error of points that do
+    not have the usual one, RMS length in mm.
     """
 
     excluded: frozenset[str] = frozenset()

@@ -106,14 +106,12 @@ def _stamp(node: Any) -> str:
 MOVING_REFERENCE = "RASTrainer.moving"
 FIXED_REFERENCE = "RASTrainer.fixed"
 KIND_ATTRIBUTE = "RASTrainer.registration"
-FRE_ATTRIBUTE = "RASTrainer.freMm"
 PLANNED = "planned"
 
 
 def showRegistration(scene: Any, registration: Registration, moving: Any, fixed: Any) -> Any:
     """Put a registration into the scene's WorldToHead transform and return that node."""
-    fre = f"{registration.fre_mm:.6f}"
-    return _placeWorld(scene, registration.matrix, registration.kind, moving, fixed, fre)
+    return _placeWorld(scene, registration.matrix, registration.kind, moving, fixed)
 
 
 def showPlannedPlace(scene: Any, scenario: Scenario, moving: Any, fixed: Any) -> Any:
@@ -121,13 +119,10 @@ def showPlannedPlace(scene: Any, scenario: Scenario, moving: Any, fixed: Any) ->
 
     The head of a trial is placed a little differently; only its registration shows where.
     """
-    matrix = transforms.inverse(scenario.head_to_world)
-    return _placeWorld(scene, matrix, PLANNED, moving, fixed)
+    return _placeWorld(scene, transforms.inverse(scenario.head_to_world), PLANNED, moving, fixed)
 
 
-def _placeWorld(
-    scene: Any, matrix: np.ndarray, kind: str, moving: Any, fixed: Any, fre: str | None = None
-) -> Any:
+def _placeWorld(scene: Any, matrix: np.ndarray, kind: str, moving: Any, fixed: Any) -> Any:
     """Set the WorldToHead transform, which remembers its lists of points, and return its node.
 
     At first it is applied to the moving points; later that stays as it was.
@@ -140,7 +135,6 @@ def _placeWorld(
         node.SetNodeReferenceID(MOVING_REFERENCE, moving.GetID())
         node.SetNodeReferenceID(FIXED_REFERENCE, fixed.GetID())
         node.SetAttribute(KIND_ATTRIBUTE, kind)
-        node.SetAttribute(FRE_ATTRIBUTE, fre)
     if isApplied(node) != wanted:
         setApplied(node, wanted)
     return node
