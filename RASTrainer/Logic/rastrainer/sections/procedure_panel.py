@@ -185,8 +185,8 @@ def scoreText(outcome: ProcedureOutcome) -> str:
 
 def _row(errors: TrajectoryErrors) -> tuple[str, ...]:
     target, entry = errors.target_point_error, errors.entry_point_error
-    numbers = (target.mm, target.by_registration_mm, target.by_hand_mm, entry.mm)
-    numbers += (errors.angular_deviation_deg,)
+    split = target.mm, target.by_registration_mm, target.by_hand_mm
+    numbers = (*split, entry.mm, errors.angular_deviation_deg)
     return errors.trajectory, *(fixed(number, 2) for number in numbers)
 
 

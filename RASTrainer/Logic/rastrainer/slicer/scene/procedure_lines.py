@@ -43,7 +43,7 @@ from rastrainer.slicer.scene.nodes import (
     worldPoints,
 )
 from rastrainer.slicer.scene.plan_points import ENDS, TARGET_COLOR, placedPoints, unfinishedLine
-from rastrainer.slicer.scene.tables import showTable
+from rastrainer.slicer.scene.tables import Columns, showTable
 from rastrainer.slicer.translation import _
 
 DIAMETER_ATTRIBUTE, SAFETY_ATTRIBUTE = "RASTrainer.diameterMm", "RASTrainer.safetyMm"
@@ -240,7 +240,7 @@ def _showTable(scene: Any, each: Sequence[TrajectoryErrors]) -> Any:
             f"{title}, by hand or robot (mm)": [split.by_hand_mm for split in splits],
         }
 
-    columns: dict[str, Sequence[Any]] = {
+    columns: Columns = {
         "trajectory": [errors.trajectory for errors in each],
         "aligned by": ["robot" if errors.self_aligned else "hand" for errors in each],
         **parts("entry point error", [errors.entry_point_error for errors in each]),

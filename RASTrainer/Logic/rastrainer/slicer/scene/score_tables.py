@@ -12,7 +12,7 @@ from rastrainer.number_text import fixed
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.slicer.scene.nodes import Role
-from rastrainer.slicer.scene.tables import showTable
+from rastrainer.slicer.scene.tables import Columns, showTable
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
@@ -205,7 +205,7 @@ def standings(
 
 def showStandings(scene: Any, found: Sequence[GroupComparison]) -> Any:
     """Show comparisons in a `vtkMRMLTableNode` and return it."""
-    columns = {
+    columns: Columns = {
         "measure": [each.title for each in found],
         "unit": [each.unit for each in found],
         "value": [each.value for each in found],

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from rastrainer.study.tre_calibration import TreCalibration
 
 
+Columns = Mapping[str, "Sequence[Any] | np.ndarray"]
 FEWEST_ROWS = 2
 """Fewest rows of a plotted table: VTK logs an error for each line with fewer points, visible or
 not, and Slicer plots every series as a line."""
@@ -28,13 +29,7 @@ EXPECTED, TRUE = "expected TRE (mm)", "true TRE (mm)"
 LOW, HIGH = "TRE from, 95 % (mm)", "TRE to, 95 % (mm)"
 
 
-def showTable(
-    scene: Any,
-    role: str,
-    name: str,
-    columns: Mapping[str, Sequence[Any] | np.ndarray],
-    fewestRows: int = 0,
-) -> Any:
+def showTable(scene: Any, role: str, name: str, columns: Columns, fewestRows: int = 0) -> Any:
     """Put columns, texts or numbers or None, into the `vtkMRMLTableNode` of a role; return it.
 
     Rows without values follow where there are fewer than `fewestRows`.
@@ -64,7 +59,7 @@ def showResiduals(
     """
     vectors = registration.residual_vectors_mm
     leftOut = [None] * len(registration.labels) if leaveOneOut is None else leaveOneOut
-    columns = {
+    columns: Columns = {
         "fiducial": registration.labels,
         "residual (mm)": registration.residuals_mm,
         **{f"residual {axis} (mm)": vectors[:, row] for row, axis in enumerate("RAS")},
@@ -78,7 +73,7 @@ def showFits(
 ) -> Any:
     """Compare fits of the same points, and what to expect at the target, in a table node."""
     known = [(e.expected_mm, *e.interval_mm) if e else (None, None, None) for e in targetErrors]
-    columns = {
+    columns: Columns = {
         "fit": [fit.kind for fit in fits],
         "FRE (mm)": [fit.fre_mm for fit in fits],
         "largest residual (mm)": [fit.residuals_mm.max() for fit in fits],
@@ -101,7 +96,7 @@ def showHistory(scene: Any, pseudonym: str, trials: Sequence[StoredTrial]) -> An
     """Show the trials of a trainee in a `vtkMRMLTableNode`, one a row, and return it."""
     records = [trial.record for trial in trials]
     rigid = [trial.registrations.get(RIGID) for trial in trials]
-    columns = {
+    columns: Columns = {
         TRIAL_COLUMN: range(1, len(trials) + 1),
         "started (UTC)": [record.started_utc[:19] for record in records],
         "task": [record.task for record in records],
@@ -169,7 +164,7 @@ def showCalibration(scene: Any, found: TreCalibration) -> Any:
     from rastrainer.study.tre_calibration import share_text
 
     points, role = found.points, Role.CALIBRATION
-    columns: dict[str, Sequence[Any]] = {
+    columns: Columns = {
         "trainee": [point.trainee for point in points],
         "mode": [point.mode for point in points],
         "task": [point.task for point in points],
