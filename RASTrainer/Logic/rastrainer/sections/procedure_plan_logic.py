@@ -94,17 +94,15 @@ class ProcedurePlanLogic:
             raise InputError(text.format(title=title))
         node = plan.checkpoints
         checkpoints = () if node is None else zip(labelsOf(node), worldPoints(node), strict=True)
+        structures = zip(noGo, files, strict=True)
         procedure = Procedure(
-            name=name,
-            title=title[:80],
-            kind=ProcedureKind(plan.kind),
-            source=plan.source.strip() or _("Planned in 3D Slicer."),
-            trajectories=trajectories,
-            no_go=tuple(
-                NoGoStructure(structure[:60], Path(NO_GO_FOLDER, file))
-                for structure, file in zip(noGo, files, strict=True)
-            ),
-            checkpoints=tuple(Checkpoint(label, place) for label, place in checkpoints),
+            name,
+            title[:80],
+            ProcedureKind(plan.kind),
+            plan.source.strip() or _("Planned in 3D Slicer."),
+            trajectories,
+            tuple(NoGoStructure(each[:60], Path(NO_GO_FOLDER, file)) for each, file in structures),
+            tuple(Checkpoint(label, place) for label, place in checkpoints),
         )
         return procedure, dict(zip(files, noGo.values(), strict=True))
 

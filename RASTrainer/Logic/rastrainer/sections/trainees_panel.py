@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
@@ -266,21 +267,15 @@ class TraineesPanel(Panel):
         for button in (ui.learningCurveButton, ui.exportHistoryButton):
             setEnabled(button, bool(history), nothing)
         if trainee is not None:
-            text = _("{name}, since {day}. Trials: {count}. {aborted}").format(
-                name=trainee.pseudonym,
-                count=len(history),
-                day=day_of(trainee.created_utc),
-                aborted=_aborted(aborted),
-            )
+            name, day, count = trainee.pseudonym, day_of(trainee.created_utc), len(history)
+            text = _("{name}, since {day}. Trials: {count}. {aborted}")
+            text = text.format(name=name, day=day, count=count, aborted=_aborted(aborted))
             self._showMessage(text, isState=True)
         elif self._isStateShown or not ui.traineeText.text:
             text = _("Choose who is training, or create a new trainee.")
             self._showMessage(text, isState=True)
-        fillTable(
-            ui.historyTable,
-            (_historyRow(number, trial) for number, trial in enumerate(history, start=1)),
-            [trial.record.started_utc for trial in history],
-        )
+        rows = itertools.starmap(_historyRow, enumerate(history, start=1))
+        fillTable(ui.historyTable, rows, [trial.record.started_utc for trial in history])
 
     def _showMessage(self, sentence: str, isState: bool = False) -> None:
         """Show a sentence; one about the present state, until there is another state."""

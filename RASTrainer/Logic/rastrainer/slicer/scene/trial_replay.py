@@ -45,7 +45,7 @@ TOOL_LENGTH_MM, TOOL_RADIUS_MM = 120.0, 2.0
 
 _BROWSER, _PLACE, _TOOL, _TIP, _TOUCHES, _TRACE, _CLEARANCE = (
     f"{Role.REPLAY} {part}"
-    for part in ("browser", "place", "tool", "tool model", "touches", "trace", "clearance")
+    for part in ("browser", "WorldToHead", "tool", "tool model", "touches", "trace", "clearance")
 )
 POINTS_A_STATE = 10
 """Points of a trace that are added each time."""
@@ -93,24 +93,25 @@ def _fillScene(
     worldToHead: np.ndarray,
     rest: Callable[[float], None],
 ) -> Any:
-    def add(className: str, role: str, title: str) -> Any:
+    def add(className: str, role: str, under: Any | None = None) -> Any:
         rest(0.0)
-        return findOrAddNode(scene, className, role, title)
+        title = role.removeprefix(f"{Role.REPLAY} ")
+        node = findOrAddNode(scene, className, role, f"{name}: {title}")
+        if under is not None:
+            node.SetAndObserveTransformNodeID(under.GetID())
+        return node
 
-    placed = add(TRANSFORM, _PLACE, f"{name}: WorldToHead")
+    placed = add(TRANSFORM, _PLACE)
     placed.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(worldToHead))
-    tool = add(TRANSFORM, _TOOL, f"{name}: tool")
-    tool.SetAndObserveTransformNodeID(placed.GetID())
-    tip = add(MODEL, _TIP, f"{name}: tool model")
+    tool = add(TRANSFORM, _TOOL, placed)
+    tip = add(MODEL, _TIP, tool)
     tip.SetAndObservePolyData(_needle())
     setDisplay(tip, Color=TOOL_COLOR)
-    tip.SetAndObserveTransformNodeID(tool.GetID())
-    touches = add(LIST, _TOUCHES, f"{name}: touches")
+    touches = add(LIST, _TOUCHES, placed)
     touches.SetLocked(True)
     setDisplay(touches, **TOUCH_LOOK)
-    touches.SetAndObserveTransformNodeID(placed.GetID())
-    clearance = add(TEXT, _CLEARANCE, f"{name}: clearance")
-    browser = add(BROWSER, _BROWSER, f"Replay of {name}")
+    clearance = add(TEXT, _CLEARANCE)
+    browser = findOrAddNode(scene, BROWSER, _BROWSER, f"Replay of {name}")
     setValues(browser, IndexDisplayMode=browser.IndexDisplayAsIndexValue, PlaybackRateFps=SAMPLE_HZ)
     rest(0.0)
     _checkIsThere(placed, tool, touches, clearance, browser)
@@ -129,9 +130,8 @@ def _fillScene(
         (clearance, zip(times, distanceStates, strict=True)),
     ]
     if trajectory.traced:
-        trace = findOrAddNode(scene, MODEL, _TRACE, f"{name}: trace")
+        trace = add(MODEL, _TRACE, placed)
         drawAsPoints(trace)
-        trace.SetAndObserveTransformNodeID(placed.GetID())
         shown.append((trace, _growing(trajectory.traced, POINTS_A_STATE, _traceState, start)))
         total += 1 + -(-len(trajectory.traced) // POINTS_A_STATE)
     for proxy, states in shown:
