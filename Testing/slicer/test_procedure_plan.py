@@ -8,11 +8,7 @@ import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.procedure.plan import MAX_NO_GO_TRIANGLES
-from rastrainer.sections.procedure_plan_logic import (
-    PlanDescription,
-    ProcedurePlanLogic,
-    noGoMeshes,
-)
+from rastrainer.sections.procedure_plan_logic import PlanDescription, ProcedurePlanLogic, noGoMeshes
 from rastrainer.slicer.scene.nodes import setPoints, setValues
 from rastrainer.slicer.scene.procedure_lines import (
     instrumentOf,

@@ -36,6 +36,11 @@ class Lab:
     def next(self):
         return self.logic.progress().next_step.name
 
+    @property
+    def played(self):
+        status = self.room.logic.status
+        return status.method, status.procedure.name
+
     def begin(self, **changes):
         """Begin a study by the published protocol with changes, and enroll the trainee."""
         path = self.path.with_name("protocol.json")
@@ -164,10 +169,14 @@ def test_the_trial_run_ends_by_itself_while_it_is_played(practicing):
     assert practicing.logic.progress().entries[-1].details == {"minutes": 5.0}
 
 
-def test_trial_run_time_before_this_slicer_connected_is_not_counted_again(practicing):
+def test_each_trial_run_counts_from_its_start_the_first_from_when_this_slicer_connected(practicing):
     practicing.tell(phase="running", elapsedS=250.0)
     practicing.tell(phase="running", elapsedS=280.0)
     assert practicing.logic.minutesElapsed(practicing.logic.progress()) == 0.5
+    practicing.tell(phase="running", elapsedS=30.0, trialId="another")
+    practicing.tell(phase="running", elapsedS=40.0, trialId="another")
+    practicing.tell(phase="idle", elapsedS=0.0)
+    assert practicing.logic.progress().practiced_s == pytest.approx(30.0 + 40.0)
 
 
 def test_practice_of_another_trainee_or_task_does_not_count(practicing):
@@ -190,10 +199,15 @@ def test_a_stored_trial_is_counted_even_if_it_arrived_while_slicer_was_closed(
     again.close()
 
 
-def test_a_break_ends_after_the_protocols_minutes_for_any_trainee(lab):
+def test_a_break_ends_after_the_protocols_minutes_which_a_later_simulator_is_told(lab):
     lab.begin(tasks=["task-1"], questionnaires=[], trialRunMin=0)
     lab.skip("the headset's battery was empty")
     assert lab.next == "desktop/break"
+    lab.room.run_until(lambda: sent_step(lab).get("minutes") == 10.0)
+    lab.spend_in_step(4.0)
+    (again,) = lab.reconnect()
+    assert again["minutes"] == 10.0
+    assert again["over"] == pytest.approx(4.0, abs=0.5)
     lab.spend_in_step(9.9)
     lab.trainees.choose("")
     lab.logic.process()
@@ -204,25 +218,6 @@ def test_a_break_ends_after_the_protocols_minutes_for_any_trainee(lab):
     entry = lab.logic.progress().entries[-1]
     assert (entry.outcome, round(entry.details["minutes"], 1)) == ("done", 10.1)
     assert lab.next == "desktop/1/task-1"
-
-
-def test_a_trial_of_a_step_with_a_procedure_is_started_with_it(lab):
-    lab.begin(
-        modes=["desktop"],
-        tasks=["task-1"],
-        questionnaires=[],
-        trialRunMin=0,
-        procedures={"task-1": "dbs"},
-    )
-    lab.logic.startTrial("task-1", "desktop", procedure="biopsy")
-    lab.room.run_until(lambda: lab.room.sent("StartTask"))
-    assert lab.room.sent("StartTask")[0]["procedure"] == "dbs"
-    state = {"phase": "running", "task": "task-1", "mode": "desktop", "trainee": "T001"}
-    for name, is_asked in (("dbs", True), ("biopsy", False)):
-        lab.room.tell(**state, procedure={"name": name})
-        lab.room.run_until(lambda name=name: lab.room.logic.status.procedure.name == name)
-        assert (lab.logic.offProtocolSentence() == "") is is_asked
-    assert "with the procedure biopsy" in lab.logic.offProtocolSentence()
 
 
 def test_a_trial_that_will_not_count_is_reported_while_it_is_played(practicing):
@@ -275,14 +270,6 @@ def test_practice_before_switching_studies_counts_only_in_the_former_study(pract
     assert practicing.logic.progress().practiced_s == 0.0
     with Study.open(former) as study:
         assert StudyProgress(study).progress("T001").practiced_s == pytest.approx(3.0)
-
-
-def test_a_second_trial_run_counts_from_its_start_even_if_it_lasts_longer(practicing):
-    practicing.tell(phase="running", elapsedS=0.0)
-    practicing.tell(phase="running", elapsedS=20.0)
-    practicing.tell(phase="running", elapsedS=30.0, trialId="another")
-    practicing.tell(phase="idle", elapsedS=0.0)
-    assert practicing.logic.progress().practiced_s == pytest.approx(50.0)
 
 
 def sent_step(lab):
@@ -364,9 +351,8 @@ def test_answers_given_at_the_simulator_are_stored_once_for_whichever_trainee_is
     assert sent_step(enrolled)["kind"] == "trial-run"
 
 
-@pytest.mark.parametrize(
-    "wrong",
-    [
+def test_answers_that_do_not_belong_to_the_step_are_not_stored(enrolled):
+    for wrong in (
         {"answers": [1] * 15},
         {"answers": [4] * 16},
         {"answers": 7},
@@ -374,22 +360,11 @@ def test_answers_given_at_the_simulator_are_stored_once_for_whichever_trainee_is
         {"number": 2},
         {"questionnaire": "sus", "answers": [1] * 10},
         {"questionnaire": "dance"},
-    ],
-)
-def test_answers_that_do_not_belong_to_the_step_are_not_stored(enrolled, wrong):
-    answered(enrolled, **wrong)
-    enrolled.tell(phase="running")
-    assert enrolled.next == "hmd/before/ssq"
-
-
-def test_a_simulator_that_connects_later_is_sent_the_elapsed_time_of_a_break(lab):
-    lab.begin(tasks=["task-1"], questionnaires=[], trialRunMin=0)
-    lab.skip("the headset's battery was empty")
-    lab.room.run_until(lambda: sent_step(lab).get("minutes") == 10.0)
-    lab.spend_in_step(4.0)
-    lab.reconnect()
-    assert sent_step(lab)["minutes"] == 10.0
-    assert sent_step(lab)["over"] == pytest.approx(4.0, abs=0.5)
+    ):
+        answered(enrolled, **wrong)
+        enrolled.tell(phase="running")
+        enrolled.tell(phase="idle")
+        assert enrolled.next == "hmd/before/ssq", wrong
 
 
 def test_the_simulator_waits_until_an_aborted_trial_has_its_reason(enrolled):
@@ -418,23 +393,31 @@ def test_the_simulator_waits_until_an_aborted_trial_has_its_reason(enrolled):
     assert enrolled.logic.offProtocolSentence() == ""
 
 
-def test_a_study_trial_is_started_with_the_method_of_its_protocol(lab):
+def test_a_study_trial_is_started_with_method_procedure_and_skin_of_its_protocol(lab):
     skin = {"shiftMm": 2.0, "indentationMm": 0.0}
-    lab.begin(
-        modes=["desktop"],
-        questionnaires=[],
-        trialRunMin=0,
-        methods={"task-1": "landmarks-surface"},
-        skin={"task-1": skin},
-    )
+    methods, procedures = {"task-1": "landmarks-surface"}, {"task-1": "dbs"}
+    which = {"methods": methods, "procedures": procedures, "skin": {"task-1": skin}}
+    lab.begin(modes=["desktop"], tasks=["task-1"], questionnaires=[], trialRunMin=0, **which)
     assert "by landmarks and a trace" in lab.logic.progress().sentence
     lab.room.run_until(lambda: sent_step(lab).get("method") == "landmarks-surface")
     lab.logic.startStep()
-    lab.logic.startTrial("task-1", "desktop", method="fiducials")
+    lab.logic.startTrial("task-1", "desktop", method="fiducials", procedure="biopsy")
     lab.room.run_until(lambda: len(lab.room.sent("StartTask")) == 2)
-    assert {start["method"] for start in lab.room.sent("StartTask")} == {"landmarks-surface"}
-    assert [start["skin"] for start in lab.room.sent("StartTask")] == [skin, skin]
-    lab.tell(phase="running", mode="desktop", task="task-1", method="landmarks-surface")
-    assert lab.logic.offProtocolSentence() == ""
-    lab.tell(phase="running", mode="desktop", task="task-1", method="fiducials")
-    assert "is doing task-1 by fiducials in the mode desktop" in lab.logic.offProtocolSentence()
+    for start in lab.room.sent("StartTask"):
+        assert (start["method"], start["procedure"], start["skin"]) == (
+            "landmarks-surface",
+            "dbs",
+            skin,
+        )
+    for method, procedure, words in (
+        ("landmarks-surface", "dbs", ""),
+        ("landmarks-surface", "biopsy", "with the procedure biopsy"),
+        ("fiducials", "dbs", "is doing task-1 by fiducials"),
+    ):
+        state = {"task": "task-1", "mode": "desktop", "method": method}
+        lab.room.tell(**state, phase="running", procedure={"name": procedure})
+        wanted = method, procedure
+        lab.room.run_until(lambda wanted=wanted: wanted == lab.played)
+        said = lab.logic.offProtocolSentence()
+        assert words in said
+        assert bool(words) is bool(said)

@@ -102,9 +102,7 @@ def test_fiducials_and_touches_are_on_the_planned_head_while_the_trial_runs(room
     assert transform.GetAttribute(KIND_ATTRIBUTE) == PLANNED
     assert isApplied(transform)
     np.testing.assert_allclose(
-        arrayFromTransformMatrix(transform) @ scenario.head_to_world,
-        np.eye(4),
-        atol=1e-9,
+        arrayFromTransformMatrix(transform) @ scenario.head_to_world, np.eye(4), atol=1e-9
     )
     shown = capturedPointsNode(room.scene).GetNthControlPointPositionWorld(0)
     np.testing.assert_allclose(shown, fiducial, atol=1e-3)

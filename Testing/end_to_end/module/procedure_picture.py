@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import tempfile
 from dataclasses import replace
 from pathlib import Path
 
@@ -24,12 +23,8 @@ from rastrainer.trial.procedure_outcome import (
     score_procedure,
 )
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.virtual.virtual_procedure import (
-    ProcedureHands,
-    VirtualProcedure,
-)
-from Testing.pictures import keep_picture
-from Testing.slicer.host.host import Host
+from rastrainer_simulator.virtual.virtual_procedure import ProcedureHands, VirtualProcedure
+from Testing.end_to_end.module.screenshots import take, temporary_host
 
 PROCEDURE, TASK, TOUCHING_S, FLE_MM = "seeg", "task-3", 90.0, 2.0
 SECTION = "procedureCollapsibleButton"
@@ -65,8 +60,7 @@ def carried_out() -> tuple[ProcedureOutcome, ProcedureRecord, RevealedTruth]:
 def save(picture: Path) -> None:
     """Show the outcome in the module, with the slices along the first instrument."""
     carried = carried_out()
-    with tempfile.TemporaryDirectory() as temporary:
-        host = Host(Path(temporary))
+    with temporary_host() as (host, _folder):
         host.open()
         host.press("showScenarioButton")
         host.finish_work()
@@ -80,9 +74,7 @@ def save(picture: Path) -> None:
         host.find(SECTION).collapsed = False
         host.look_from(120.0, 20.0, 1.2)
         host.idle_for(1.0)
-        host.window_screenshot(picture)
-        host.close()
-    keep_picture(picture, picture.with_suffix(".webp"))
+        take(host, picture)
 
 
 if __name__ == "__main__":

@@ -19,13 +19,7 @@ from rastrainer.registration.fits import extents
 from rastrainer.registration.localization_error import LocalizationError, error_along_surface
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.warnings import SAME_PLACE, RegistrationWarning, find_order
-from rastrainer.slicer.scene.nodes import (
-    isUsed,
-    labelsOf,
-    surfaceOf,
-    usedPoints,
-    worldPoints,
-)
+from rastrainer.slicer.scene.nodes import isUsed, labelsOf, surfaceOf, usedPoints, worldPoints
 from rastrainer.slicer.translation import _
 
 USUAL_FLE_MM = 1.0
