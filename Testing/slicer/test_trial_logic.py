@@ -380,7 +380,7 @@ def test_an_aborted_trial_is_stored_once_and_not_again_after_its_trainee_was_del
         offer(lab, make_aborted())
         lab.run_until(lambda count=count: acknowledged(lab) == count * [ABORTED])
     (stored,) = lab.in_study(lambda study: study.aborted("T-001"))
-    assert stored.record == lab.kept[0]
+    assert stored == lab.kept[0]
     lab.in_study(lambda study: study.delete_trainee("T-001"))
     offer(lab, make_aborted())
     lab.run_until(lambda: acknowledged(lab) == 3 * [ABORTED])

@@ -19,7 +19,7 @@ from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.study.journal_check import check_journal
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.analysis import RevealedTruth
-from rastrainer.trial.record import AbortedTrial, TrialRecord
+from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import InterruptedTrial, find_interrupted
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record.trial_archive import interrupted_attempt
