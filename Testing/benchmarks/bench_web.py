@@ -13,8 +13,8 @@ from playwright.sync_api import CDPSession, Page, Playwright, sync_playwright
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
 from Testing.benchmarks.row import row
+from Testing.end_to_end.lab import WITHOUT_GRAPHICS, Place
 from Testing.web.chromium import enter_headset, launch, open_page
-from Testing.web.place import WITHOUT_GRAPHICS, Place
 
 DIST = Path(__file__).parents[2] / "RASTrainerSimulatorServer" / "web" / "dist"
 PAGE_FILES = ("index.html", "page.css", "page.js")
@@ -91,7 +91,7 @@ def _page(
             Place(Path(folder), limits=WITHOUT_GRAPHICS) as place,
             Client(port=place.simulator.port) as client,
         ):
-            page = open_page(browser, place.simulator.url, place.simulator.code, headset)
+            page = open_page(browser, place.url, place.code, headset)
             hello = {"protocolVersion": PROTOCOL_VERSION, "client": "bench"}
             client.send_command("Hello", hello)
             task = {"task": "task-1", "trainee": "bench", "mode": "desktop"}

@@ -17,8 +17,8 @@ from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.transforms import MM_PER_M
 from Testing.end_to_end.hands import KeyHands
 from Testing.end_to_end.lab import Lab
+from Testing.end_to_end.stream_trainee import CarriedTrainee
 from Testing.end_to_end.window_pictures import Photographer
-from Testing.web.place import CarriedTrainee
 
 FOLDER = Path(__file__).parents[2] / "docs" / "pictures"
 SIZE = (1280, 720)

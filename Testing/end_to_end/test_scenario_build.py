@@ -1,7 +1,5 @@
 """Scenarios built through the real processes: a broken or canceled build leaves nothing."""
 
-import os
-import signal
 import subprocess
 import sys
 import tempfile
@@ -15,7 +13,6 @@ from rastrainer.scenario.scenario import SkullKind, load_scenario
 from rastrainer.scenario.writer import HeadDraft, new_folder, write_scenario
 from rastrainer.sections.new_scenario_logic import HEAD_SHARE, planScenario
 from rastrainer_simulator.authoring.make import head_process
-from rastrainer_simulator.cli.main import main
 from Testing.domain.head.spheres import sphere_mesh
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
 from Testing.slicer.head.phantoms import CT, phantom
@@ -89,29 +86,6 @@ def test_canceling_also_ends_the_process_that_extracts_the_head(ct, temporary, m
         process.head(progress, lambda _warning: None)
     assert [process.returncode in (None, 0) for process in started] == [False]
     assert not list(temporary.iterdir())
-
-
-@pytest.mark.soak
-@pytest.mark.skipif(os.name == "nt", reason="Windows ends a process without asking it")
-def test_a_terminated_build_leaves_nothing(ct, tmp_path, temporary):
-    words = ["scenario", "build", str(ct), "-o", str(tmp_path / "made")]
-    build = subprocess.Popen([*RASTRAINER, *words], stdout=subprocess.PIPE, text=True)
-    with build:
-        assert "Reading the volume" in build.stdout.readline()
-        assert list(temporary.iterdir())
-        build.terminate()
-    assert build.returncode == 128 + signal.SIGTERM
-    # It is removed only after the process that works in it has ended.
-    assert not list(temporary.iterdir())
-    assert [path.name for path in tmp_path.iterdir()] == ["temporary"]
-
-
-def test_a_file_that_is_not_a_volume_ends_the_build_with_a_one_sentence_error(tmp_path, capsys):
-    (tmp_path / "noise.nrrd").write_bytes(b"no image" * 100)
-    words = ["scenario", "build", str(tmp_path / "noise.nrrd"), "-o", str(tmp_path / "made")]
-    assert main(words) == 2
-    assert "noise.nrrd could not be read as a volume" in capsys.readouterr().err.splitlines()[-1]
-    assert [path.name for path in tmp_path.iterdir()] == ["noise.nrrd"]
 
 
 PLANNER = """

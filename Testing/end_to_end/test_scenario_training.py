@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
 import sys
 
 import pytest
@@ -15,8 +14,6 @@ from rastrainer.scenario.library import user_library
 from rastrainer.scenario.writer import new_folder, write_scenario
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
 from Testing.end_to_end.simulator_process import SimulatorProcess
-from Testing.slicer.head.phantoms import phantom
-from Testing.slicer.head.volume_file import write_volume
 
 RASTRAINER = [sys.executable, "-m", "rastrainer_simulator.cli.main", "scenario"]
 
@@ -55,25 +52,3 @@ def test_a_scenario_from_the_library_is_loaded_by_name_and_trained_on(environmen
     options = ("--no-views", "--no-gamepad")
     with SimulatorProcess(tmp_path / "records", *options, env=environment) as simulator:
         trains_on(simulator.port, "ball", "A ball")
-
-
-@pytest.mark.soak
-def test_a_volume_is_built_loaded_and_trained_on_by_the_command_line(environment, tmp_path):
-    options = ("--no-views", "--no-gamepad")
-    with SimulatorProcess(tmp_path / "records", *options, env=environment) as simulator:
-        # A smaller head has hardly room for the fiducials of the easiest tasks.
-        volume = write_volume(
-            tmp_path / "head.nrrd", phantom(spacing=(1.0, 1.0, 1.2), size=1.1, noise=2.0)
-        )
-        folder = user_library() / "my-head"
-        words = ["build", str(volume), "-o", str(folder), "--title", "My head"]
-        subprocess.run([*RASTRAINER, *words], check=True, env=environment)
-        listed = subprocess.run(
-            [*RASTRAINER, "list"], check=True, env=environment, capture_output=True, text=True
-        )
-        assert "my-head" in listed.stdout
-        trains_on(simulator.port, "my-head", "My head")
-        package = tmp_path / "my-head.zip"
-        words = ["pack", str(folder), str(package), "--yes"]
-        subprocess.run([*RASTRAINER, *words], check=True, env=environment)
-        assert package.stat().st_size < 10_000_000

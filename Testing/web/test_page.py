@@ -6,9 +6,9 @@ from urllib.parse import unquote
 
 import pytest
 
+from Testing.end_to_end.hands import BrowserPad, PageKeys
+from Testing.end_to_end.lab import Place
 from Testing.web.chromium import draw_for_a_while, open_page
-from Testing.web.hands import BrowserPad, PageKeys
-from Testing.web.place import Place, scored_trial
 
 LARGEST_PAGE = 1_000_000
 LARGEST_SCENE = 5_000_000
@@ -24,50 +24,19 @@ def place(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def page(place, browser):
-    simulator = place.simulator
-    page = open_page(browser, simulator.url, simulator.code, has_pad=True, draws=False)
+    page = open_page(browser, place.url, place.code, has_pad=True, draws=False)
     yield page
     assert page.problems == []
 
 
-def begin_by_keyboard(place, page):
-    """Begin Task 1 by the keyboard; return the trainee."""
+def test_a_trial_is_begun_and_a_touch_undone_by_keyboard(place, page):
     trainee = place.carried_trainee(PageKeys(page))
     trainee.begin("task-1", page)
     page.wait_for_selector("body[data-scene=task-1]")
     page.wait_for_selector("#control:has-text('You drive: keyboard')")
-    return trainee
-
-
-def test_a_trial_is_begun_and_a_touch_undone_by_keyboard(place, page):
-    trainee = begin_by_keyboard(place, page)
     assert draw_for_a_while(page).std() > 20.0
     trainee.touch_all(1)
     trainee.press("undo", lambda: trainee.touched == 0, "the undo")
-
-
-@pytest.mark.soak
-def test_a_trial_by_keyboard_is_registered_and_scored(place, page):
-    trainee = begin_by_keyboard(place, page)
-    trainee.touch_all(1)
-    trainee.have_touched(15)
-    slicer = place.start_slicer()
-    trainee.register()
-    assert scored_trial(slicer)["mode"] == "desktop"
-    trainee.until_menu("result")
-    assert trainee.menu.facts[0].label == "Score"
-    page.wait_for_selector("#menu dl dd[data-tone]")
-
-
-@pytest.mark.soak
-def test_a_browser_gamepad_begins_a_task_and_steers(place, page):
-    trainee = place.trainee(BrowserPad(page))
-    trainee.begin("task-2", page)
-    before = trainee.tip
-    trainee.hands.push(1.0, 0.0, 0.0)
-    trainee.until(lambda: trainee.tip[0] > before[0] + 0.01, "a step to the right")
-    trainee.hands.push(0.0, 0.0, 0.0)
-    page.wait_for_selector("""#control:has-text("You drive: browser's gamepad")""")
 
 
 def test_a_second_gamepad_takes_the_place_of_an_idle_one_and_an_unknown_one_is_reported(
@@ -129,7 +98,7 @@ def test_the_menu_of_heads_shows_the_picture_of_the_focused_one(place, page):
 
 
 def test_the_page_is_smaller_than_a_megabyte_and_loads_nothing_from_elsewhere(place, page):
-    own = (place.simulator.url, "data:")
+    own = (place.url, "data:")
     assert [url for url in page.loaded if not url.startswith(own)] == []
     scenes = [size for url, size in page.loaded.items() if url.endswith(".glb")]
     assert 0 < sum(page.loaded.values()) - sum(scenes) < LARGEST_PAGE
