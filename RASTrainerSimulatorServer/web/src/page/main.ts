@@ -39,7 +39,7 @@ import { TouchRing } from "../scene/touch_ring";
 import { TraceMarks } from "../scene/trace_marks";
 import { ViewMouse } from "../input/view_mouse";
 import { HeadsetView } from "../scene/headset_view";
-import { GuidingPanel } from "../overlay/guiding_panel";
+import { GuidingPanel } from "../panels/guiding_panel";
 import { Headset } from "../xr/headset";
 
 /** Where the processor draws, it has other work, too: no more than 30 pictures a second. */
@@ -106,7 +106,7 @@ export class Page {
   async begin(wasPaired = false): Promise<void> {
     let role = isPairedAgain() ? null : await readRole();
     if (role === null) {
-      await pair(byId("pairing") as HTMLFormElement, wasPaired);
+      await pair(byId("pairing") as HTMLFormElement, say, wasPaired ? say("restarted") : "", say("watch"));
       role = await readRole();
     }
     this.connection.start(role === "spectator" ? SPECTATOR : PAGE);

@@ -18,7 +18,7 @@ import { STATIC } from "./background_cache";
 import { isSoftware } from "./graphics";
 import { batch, ownColor, type Finish } from "./batch";
 import { served } from "../stream/served";
-import { CLEAR_SKIN_OPACITY, COVER_OPACITY, INSTRUMENTS, PULSE_COLOR, PULSE_S, SCENE_COLORS, TOOL_NODES, type Vector, type ProcedureNews, type SceneNews, type StateNews, type TouchStage } from "../generated";
+import { CLEAR_SKIN_OPACITY, COVER_OPACITY, INSTRUMENTS, PULSE_COLOR, PULSE_S, SCENE_COLORS, TOOL_NODES, type ProcedureNews, type SceneNews, type StateNews, type TouchStage } from "../generated";
 import { isTouchError } from "../stream/stages";
 
 const FIDUCIAL = "fiducial_";
@@ -26,22 +26,9 @@ const FURNITURE = ["table", "floor", "room"];
 const AT_THE_TOOL = ["guide", "axis", ...INSTRUMENTS];
 const PULSE = new Color(...PULSE_COLOR);
 
-function srgb([red, green, blue]: Vector): Color {
-  return new Color().setRGB(red, green, blue, "srgb");
-}
-
-export const COLORS = {
-  waiting: srgb(SCENE_COLORS.waiting),
-  next: srgb(SCENE_COLORS.next),
-  touched: srgb(SCENE_COLORS.touched),
-  free: srgb(SCENE_COLORS.free),
-  near: srgb(SCENE_COLORS.near),
-  onSkin: srgb(SCENE_COLORS.onSkin),
-  traced: srgb(SCENE_COLORS.traced),
-  covered: srgb(SCENE_COLORS.covered),
-  error: srgb(SCENE_COLORS.error),
-  ghost: srgb(SCENE_COLORS.ghost),
-};
+export const COLORS = Object.fromEntries(
+  Object.entries(SCENE_COLORS).map(([name, [red, green, blue]]) => [name, new Color().setRGB(red, green, blue, "srgb")]),
+) as Record<keyof typeof SCENE_COLORS, Color>;
 
 const WHITE = new Color(1, 1, 1);
 
