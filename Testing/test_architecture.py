@@ -1,4 +1,7 @@
-"""Allowed imports: layers of rooms (folders), read from every import, also those for types."""
+"""Allowed imports: layers of rooms (folders), read from every import, also those for types.
+
+The folders of the page are layers, too.
+"""
 
 from __future__ import annotations
 
@@ -231,3 +234,38 @@ def test_no_class_of_the_product_has_the_name_of_another():
         node.name for module in FILES for node in nodes_of(module) if isinstance(node, ast.ClassDef)
     ]
     assert [name for name, count in Counter(names).items() if count > 1] == []
+
+
+PAGE = ROOT / "RASTrainerSimulatorServer" / "web" / "src"
+PAGE_FLOORS = (
+    ("texts", "."),
+    ("stream",),
+    ("audio", "panels"),
+    ("scene",),
+    ("input", "overlay"),
+    ("xr",),
+    ("board", "page"),
+)
+
+
+def imported_by_page(path: Path) -> list[Path]:
+    """Return the page's own files that a file imports."""
+    named = re.findall(r'(?:from|import) "(\.[^"]+)"', path.read_text(encoding="utf-8"))
+    places = [(path.parent / name).resolve() for name in named]
+    return [place if place.suffix == ".json" else place.with_suffix(".ts") for place in places]
+
+
+def test_a_folder_of_the_page_imports_only_from_layers_above_its_own():
+    files = {path: imported_by_page(path) for path in PAGE.rglob("*.ts")}
+    folder = {path: path.relative_to(PAGE).parent.as_posix() for path in PAGE.rglob("*.*")}
+    floor_of = {name: number for number, names in enumerate(PAGE_FLOORS) for name in names}
+    assert {folder[path] for path in files} == set(floor_of)
+    upward = [
+        f"{path} → {other}"
+        for path, others in files.items()
+        for other in others
+        if floor_of[folder[other]] > floor_of[folder[path]]
+        or (floor_of[folder[other]] == floor_of[folder[path]] > 0 and folder[other] != folder[path])
+    ]
+    assert upward == []
+    TopologicalSorter(files).prepare()

@@ -516,9 +516,7 @@ class CarriedTrainee(Trainee):
         if self.menu is not None:
             # A machine that is too busy to draw counts as a headset that is not worn.
             self.choose("resume")
-        target = {"positionMm": (MM_PER_M * place).tolist(), "speedMmS": 400}
-        reply = self.client.send_command("MoveTipTo", target, timeout=60)
-        assert reply.ok, reply.error
+        self.send_tip((MM_PER_M * place).tolist())
         give_up = self.view.state["timeS"] + 4.0
         while np.linalg.norm(place - self.tip) > 0.002 and self.view.state["timeS"] < give_up:
             self.view.next_state()
@@ -534,10 +532,15 @@ class CarriedTrainee(Trainee):
         place = self.place_of(label)
         self.steer_to(place, 0.002)
         below = lowered(MM_PER_M * place, MM_PER_M * self.head_center)
-        target = {"positionMm": below, "speedMmS": 400}
-        assert self.client.send_command("MoveTipTo", target, timeout=60).ok
+        self.send_tip(below)
         self.until(lambda: self.view.state["proximity"] == "contact", f"contact at {label}")
         return True
+
+    def send_tip(self, position_mm: list[float], speed_mm_s: float = 400.0) -> None:
+        """Have the tip move to a place in World."""
+        target = {"positionMm": position_mm, "speedMmS": speed_mm_s}
+        reply = self.client.send_command("MoveTipTo", target, timeout=60)
+        assert reply.ok, reply.error
 
     def have_touched(self, most: int) -> None:
         """Have the points touched by commands, up to so many in all."""

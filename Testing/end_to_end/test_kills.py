@@ -140,7 +140,7 @@ def wait_for_study(lab, is_complete):
 
 
 @pytest.mark.parametrize(
-    ("kills", "resumed"), [(8, 4), pytest.param(300, 150, marks=pytest.mark.soak)]
+    ("kills", "resumed"), [(4, 2), pytest.param(300, 150, marks=pytest.mark.soak)]
 )
 def test_a_repeatedly_killed_server_resumes_where_the_trainee_was(
     tmp_path, simulators, capsys, kills, resumed

@@ -21,8 +21,6 @@ from rastrainer_simulator.presentation.screen import (
     Tone,
 )
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
-from Testing.end_to_end.hands import PageKeys
-from Testing.end_to_end.lab import Place
 from Testing.simulator.flow.languages import LONGEST_OR_EACH, screens_in
 from Testing.web.chromium import accessibility_checker, open_page, resize, show
 
@@ -86,21 +84,6 @@ OVERLAPS = """() => {
   }
   return found;
 }"""
-
-
-@pytest.fixture(scope="module")
-def place(tmp_path_factory):
-    """A place in German, whose words are long."""
-    with Place(tmp_path_factory.mktemp("access"), "--speed", "4", language="de") as place:
-        yield place
-
-
-@pytest.fixture(scope="module")
-def page(place, browser):
-    page = checked_page(browser, place.url, place.code)
-    yield page
-    assert page.problems == []
-    page.context.close()
 
 
 def checked_page(browser, url: str, code: str, has_touch: bool = False):
@@ -196,28 +179,6 @@ def test_thumb_controls_overlap_nothing_at_any_size(browser, served):
     assert found == []
 
 
-def shown(page, trainee) -> str:
-    """Wait until the page shows the simulator's menu; return its name."""
-    name = trainee.menu.name if trainee.menu else ""
-    page.wait_for_selector(f'body[data-menu="{name}"]')
-    return name
-
-
-@pytest.mark.soak
-@LOOKED_AT
-def test_no_part_of_a_trial_breaks_an_accessibility_rule_or_overlaps_at_any_size(
-    place, page, sizes
-):
-    trainee = place.carried_trainee(PageKeys(page))
-    trainee.begin("task-1", page)
-    page.wait_for_selector("body[data-scene=task-1]")
-    found = complaints(page, shown(page, trainee) or "trial", sizes)
-    trainee.have_touched(15)
-    trainee.press("touch", lambda: trainee.menu is not None, "the choice")
-    found += complaints(page, shown(page, trainee), sizes)
-    assert found == []
-
-
 def test_the_page_declares_its_language_and_uses_it_for_its_own_texts(told_page, served):
     for language in LANGUAGES:
         served.tell(Screen(language=language))
@@ -229,25 +190,24 @@ def test_the_page_declares_its_language_and_uses_it_for_its_own_texts(told_page,
         told_page.wait_for_selector(f"#control:has-text('{own['nobody']}')")
 
 
-def test_the_browsers_focus_follows_the_simulators_and_has_a_name_and_a_role(place, page):
-    trainee = place.trainee(PageKeys(page))
-    trainee.go_home()
-    shown(page, trainee)
-    for item in trainee.menu.items:
-        trainee.focus(item.name)
-        page.wait_for_selector(f"#menu li[data-name='{item.name}'] button:focus")
-        menu = page.get_by_role("dialog", name=trainee.menu.title)
-        assert menu.get_by_role("button", name=item.label, exact=True).count() == 1
-    trainee.choose("settings")
-    shown(page, trainee)
-    choice = next(item for item in trainee.menu.items if item.name == "volume")
-    trainee.focus(choice.name)
-    before = trainee.value(choice.name)
-    trainee.press("left", lambda: trainee.value(choice.name) != before, "another value")
-    text = f"{choice.label} {trainee.value(choice.name)}"
-    page.wait_for_selector(f"#menu [role=status]:has-text('{text}')", state="attached")
-    assert page.get_by_role("button", name=text, exact=True).count() == 1
-    trainee.press("right", lambda: trainee.value(choice.name) == before, "the value before")
+def test_the_browsers_focus_follows_the_simulators_and_has_a_name_and_a_role(
+    told_page, served, screens
+):
+    menu = screens("de")["settings"].menu
+    for item in menu.items:
+        show(told_page, served, Screen(menu=replace(menu, focus=item.name)))
+        told_page.wait_for_selector(f"#menu li[data-name='{item.name}'] button:focus")
+        name = f"{item.label} {item.value}".strip()
+        dialog = told_page.get_by_role("dialog", name=menu.title)
+        assert dialog.get_by_role("button", name=name, exact=True).count() == 1
+    last = replace(menu.items[-1], value="another value")
+    show(
+        told_page,
+        served,
+        Screen(menu=replace(menu, items=(*menu.items[:-1], last), focus=last.name)),
+    )
+    said = f"#menu [role=status]:has-text('{last.label} another value')"
+    told_page.wait_for_selector(said, state="attached")
 
 
 AROUND_MENU = """() => {
@@ -335,10 +295,9 @@ def test_disabled_items_are_legible(told_page, served):
     assert text.contrast(Color.layer([row, menu])) >= 4.5
 
 
-def test_a_selection_is_visible_with_forced_colors(place, page):
-    trainee = place.trainee(PageKeys(page))
-    trainee.go_home()
-    shown(page, trainee)
+def test_a_selection_is_visible_with_forced_colors(told_page, served, screens):
+    page = told_page
+    show(page, served, screens("de")["start"])
     page.emulate_media(forced_colors="active")
     color = "button => getComputedStyle(button).backgroundColor"
     focused = page.eval_on_selector("#menu [data-focus] button", color)

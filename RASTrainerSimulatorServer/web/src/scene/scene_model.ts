@@ -48,6 +48,7 @@ export class SceneModel {
   private pulses = false;
   /** Where to draw next over the skin, in `head`, m. */
   nextPlace: Vector3 | null = null;
+  private readonly nextTouch = new Vector3();
   private readonly skinColor = new Color();
   private skinMesh: Mesh | null = null;
   private readonly skin = isSoftware ? new MeshLambertMaterial() : new MeshStandardMaterial({ roughness: 0.6 });
@@ -85,6 +86,12 @@ export class SceneModel {
     const head = this.named.get("head");
     if (place === undefined || head === undefined) return null;
     return target.fromArray(place).applyQuaternion(head.quaternion).add(head.position);
+  }
+
+  /** Return where tool and next touch are in World, m, while a trial is worked at. */
+  placesAtWork(state: StateNews, isWorking: boolean): { tip: Vector3 | null; next: Vector3 | null } {
+    const tip = isWorking && state.phase !== "idle" ? (this.named.get("tool")?.position ?? null) : null;
+    return { tip, next: tip && this.next(state.next, this.nextTouch) };
   }
 
   /** The vertices of the skin, in `head`, m. */

@@ -44,7 +44,6 @@ export class Headset {
   private shownNews: SceneNews | null = null;
   private readonly ears = { place: new Vector3(), forward: new Vector3(), up: new Vector3() };
   private readonly tip = new Vector3();
-  private readonly point = new Vector3();
 
   constructor(
     private readonly stage: Stage,
@@ -157,9 +156,9 @@ export class Headset {
     }
     this.hear(model);
     this.panels.closeUp.draw(this.stage, this.panels.room, state);
-    this.arrow.show(this.hasArrow ? model.next(state.next, this.point) : null, this.camera);
-    const isToolWanted = this.isWorking && state.phase !== "idle";
-    this.toolArrow.show((isToolWanted && model.node("tool")?.position) || null, this.camera);
+    const { tip, next } = model.placesAtWork(state, this.isWorking);
+    this.arrow.show(this.hasArrow ? next : null, this.camera);
+    this.toolArrow.show(tip, this.camera);
     model.seeThrough(state.translucent.headset);
     this.stage.renderer.render(this.stage.scene, this.camera);
   }
