@@ -321,7 +321,11 @@ class StreamTrainee:
 
     def approach(self, label: str, near_m: float) -> None:
         """Carry the tip over the head to a place above a fiducial."""
-        point, center = self.place_of(label), self.head_center
+        self.go_above(self.place_of(label), near_m)
+
+    def go_above(self, point: np.ndarray, near_m: float) -> None:
+        """Carry the tip over the head to above a place, (3,) World, m, clear of the skin."""
+        center = self.head_center
         outward = (point - center) / np.linalg.norm(point - center)
         start = self.tip - center
         height = LIFT_M + max(np.linalg.norm(point - center), np.linalg.norm(start))

@@ -122,7 +122,7 @@ class DrawingTrainee(Trainee):
         head = self.view.pose("head")[:3, :3]
         place = self._in_world(np.array(ring["positionMm"]) / MM_PER_M)
         outward = head @ np.array(ring["normal"])
-        self._go_above(place)
+        self.go_above(place, 0.02)
         self.steer_to(place + LIFT_M * outward, 0.008)
         self.steer_to(place + 0.006 * outward, 0.004)
         self.sink_onto_skin(place - SINK_M * outward)
@@ -133,17 +133,6 @@ class DrawingTrainee(Trainee):
         self.hands.push(0.0, 0.0, 0.0, False)
         self.press("touch", lambda: not self.is_drawing, "the end of a stroke")
         self.steer_to(place + LIFT_M * outward, 0.01)
-
-    def _go_above(self, place: np.ndarray) -> None:
-        """Carry the tip over the head to a place, on a path that stays off the skin."""
-        center = self.head_center
-        start, end = self.tip - center, place - center
-        height = LIFT_M + max(np.linalg.norm(start), np.linalg.norm(end))
-        for share in np.linspace(0.0, 1.0, 6):
-            between = (1.0 - share) * start / np.linalg.norm(start) + share * end / np.linalg.norm(
-                end
-            )
-            self.steer_to(center + height * between / np.linalg.norm(between), 0.02)
 
     def _draw_about(self, place: np.ndarray, outward: np.ndarray) -> None:
         """Draw back and forth across a place, on the skin as far as the visible height shows."""
