@@ -129,7 +129,7 @@ def test_trials_arrive_exactly_once_through_faults_and_restarts_on_both_sides(
         server.close()
     with Study.open(study) as opened:
         stored = [trial.record.trial_id for trial in opened.history(TRAINEE)]
-        aborted = [len(each.record.points) for each in opened.aborted("T-001")]
+        aborted = [len(each.points) for each in opened.aborted("T-001")]
     assert sorted(stored) == sorted(scored) == sorted(wanted)
     assert sorted(aborted) == list(range(1, ABORTED + 1))
     assert TrialArchive(records).unacknowledged() == ()
