@@ -161,3 +161,13 @@ def test_the_doctor_prints_one_screen_with_remedies_and_exits_with_1_if_there_is
     assert {"check", "verdict", "sentence", "remedy"} == set(findings[0])
     assert PROBLEM in {finding["verdict"] for finding in findings}
     assert all(bool(each["remedy"]) == (each["verdict"] != OK) for each in findings)
+
+
+def test_a_slicer_older_than_5_10_is_reported(no_slicer):
+    for name in ("Slicer-5.8.1-linux-amd64", "Slicer-5.10.0-linux-amd64", "Slicer"):
+        (no_slicer / name).mkdir()
+        (no_slicer / name / "Slicer").touch()
+    found = [each for each in answers(doctor.check_slicer) if "is older than" in each[1]]
+    ((verdict, sentence),) = found
+    assert verdict == WARNING
+    assert "Slicer-5.8.1" in sentence
