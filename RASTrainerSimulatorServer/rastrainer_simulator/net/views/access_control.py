@@ -149,7 +149,6 @@ def is_public(request: web.Request) -> bool:
 
 
 def session_key(request: web.Request) -> str:
-    """Return the key that a request shows, "" for none."""
     authorization = request.headers.get(hdrs.AUTHORIZATION, "")
     if authorization.startswith(_BEARER):
         return authorization.removeprefix(_BEARER)

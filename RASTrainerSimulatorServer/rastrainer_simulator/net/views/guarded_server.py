@@ -118,7 +118,6 @@ class GuardedServer:
 
     @web.middleware
     async def _check(self, request: web.Request, handler: Handler) -> web.StreamResponse:
-        """Refuse requests from other origins or without a session's key."""
         check_origin(request)
         role = self._sessions.role(session_key(request))
         if role is not None:
