@@ -28,9 +28,8 @@ from rastrainer.procedure.record import (
 )
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
-from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.how_played import PlayRecording, SeedSource
-from rastrainer.trial.record import TouchedPoint, TrialRecord
+from rastrainer.trial.record import AbortedTrial, TouchedPoint, TrialRecord
 from rastrainer_simulator.record.trial_context import DisplayUse, versions
 from rastrainer_simulator.state import SimulationState, TrainingState
 from rastrainer_simulator.trial_state import (

@@ -15,8 +15,7 @@ from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, read_journal
 from rastrainer.journal.recording import Recording
 from rastrainer.protocol import Phase
 from rastrainer.study.database.study import Study
-from rastrainer.trial.aborted_trial import AbortedTrial
-from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.record import AbortedTrial, TrialRecord
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.record.trial_archive import (

@@ -8,7 +8,7 @@ import pytest
 from rastrainer.igtl.client import Client
 from rastrainer.json_records import record_from_json
 from rastrainer.protocol import PROTOCOL_VERSION, Phase
-from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.record import AbortedTrial
 from rastrainer_simulator.net.igtl.simulator_link import OFFERS_AT_ONCE
 from rastrainer_simulator.state import TrainingState
 from Testing.domain.trial.trial_records import make_aborted
