@@ -78,13 +78,20 @@ class GuardedServer:
         )
         self._listening: list[asyncio.Server] = []
 
-    async def listen(self, host: str, port: int, tls: ssl.SSLContext | None = None) -> int:
-        """Listen, by TLS where there is a certificate; return on which port, 0 is any free one."""
+    async def listen(
+        self, host: str, port: int, tls: ssl.SSLContext | None = None, or_any: bool = False
+    ) -> int:
+        """Listen, by TLS where there is a certificate, and return on which port.
+
+        0 is any free one, as is another port that is taken with `or_any`.
+        """
         if self._runner.server is None:
             await self._runner.setup()
         try:
             servers = await listen(self._protocol, host, port, tls, HANDSHAKE_S)
         except (OSError, OverflowError) as error:
+            if or_any:
+                return await self.listen(host, 0, tls)
             raise InputError(f"Cannot listen on {host}:{port}: {error}.") from None
         self._listening += servers
         return servers[0].sockets[0].getsockname()[1]
