@@ -10,7 +10,7 @@ import ssl
 from collections.abc import Sequence
 from pathlib import Path
 
-from aiohttp import web
+from aiohttp import hdrs, web
 from aiohttp.http_exceptions import HttpProcessingError
 from aiohttp.typedefs import Handler
 
@@ -18,6 +18,7 @@ from rastrainer.errors import InputError
 from rastrainer_simulator.assets import NOT_BUILT
 from rastrainer_simulator.net.listener import listen
 from rastrainer_simulator.net.views.access_control import (
+    BEARER,
     COOKIE,
     PAIR_FIRST,
     ROLE,
@@ -31,7 +32,6 @@ from rastrainer_simulator.net.views.access_control import (
     is_public,
     read_body,
     refuse_for,
-    session_key,
 )
 from rastrainer_simulator.presentation.messages import PairingRequest, ViewRole
 
@@ -126,7 +126,10 @@ class GuardedServer:
     @web.middleware
     async def _check(self, request: web.Request, handler: Handler) -> web.StreamResponse:
         check_origin(request)
-        role = self._sessions.role(session_key(request))
+        key = request.headers.get(hdrs.AUTHORIZATION, "")
+        is_bearer = key.startswith(BEARER)
+        key = key.removeprefix(BEARER) if is_bearer else request.cookies.get(COOKIE, "")
+        role = self._sessions.role(key)
         if role is not None:
             request[ROLE] = role
             self._roles[request.protocol] = role
