@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import slicer
+from Testing.slicer.host.stand_ins.plot_view import draw_chart
 
 from rastrainer.errors import InputError
 from rastrainer.procedure.plan import ProcedureKind
@@ -25,15 +26,18 @@ from rastrainer.slicer.scene.tables import showCalibration, showLearningCurve
 from rastrainer.study.database.study import Study
 from rastrainer.study.tidy_csv import write_histories
 from rastrainer.trial.analysis import RevealedTruth
-from rastrainer.trial.ctps import CTPS_WARNING, Trial
+from rastrainer.trial.ctps import CTPS_WARNING, RMSE, TIME
 from rastrainer.trial.scoring import score_trial
+from rastrainer.trial.trial_row import TrialRow
 from Testing.domain.trial.trial_records import REFERENCE, gentle_score, make_traced
 from Testing.simulator.report.studied_procedures import outcome
 from Testing.slicer.host.failures import FAILURES, VtkMessages
-from Testing.slicer.host.stand_ins.plot_view import draw_chart
 from Testing.slicer.recorded_trial import scored_analysis
 
-COHORT = [Trial("desktop", str(n), "1", 80.0 + 10.0 * n, 1.0 + 0.1 * n) for n in range(4)]
+COHORT = [
+    TrialRow(str(n), "desktop", "1", values={TIME: 80.0 + 10.0 * n, RMSE: 1.0 + 0.1 * n})
+    for n in range(4)
+]
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from rastrainer.slicer.settings import HAS_NETWORK, HAS_WINDOW, HOST, INDEX, PORT, PROGRAM, WHEELS
 from rastrainer.slicer.translation import _
 from rastrainer.widgets.controls import (
-    LINK_COLORS,
+    LINK_LOOKS,
     bind,
     connectAsPressed,
     setEnabled,
@@ -239,7 +239,7 @@ class SimulatorPanel(Panel):
             setText(ui.trainingText, "")
 
     def _showWords(self, status: LinkStatus) -> None:
-        setLight(self._ui.stateLight, LINK_COLORS[status.state])
+        setLight(self._ui.stateLight, LINK_LOOKS[status.state][0])
         setText(self._ui.stateText, status.sentence)
         setText(self._ui.remedyText, status.remedy)
 

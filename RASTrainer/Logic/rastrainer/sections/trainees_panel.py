@@ -21,8 +21,9 @@ from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS, Setting
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.database import EXAMPLE, study_place
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import StoredAbortedTrial, StoredTrial, Trainee, day_of
+from rastrainer.study.database.values import StoredTrial, Trainee, day_of
 from rastrainer.study.outcomes import short_mode_title, task_title
+from rastrainer.trial.record import AbortedTrial
 from rastrainer.widgets.controls import (
     CancelableWork,
     chosenData,
@@ -283,9 +284,9 @@ class TraineesPanel(Panel):
         setText(self._ui.traineeText, sentence.rstrip())
 
 
-def _aborted(aborted: Sequence[StoredAbortedTrial]) -> str:
+def _aborted(aborted: Sequence[AbortedTrial]) -> str:
     """Return how many trials were aborted, trial runs counted separately; "" for none."""
-    records = [stored.record for stored in aborted if stored.record.task != TRIAL_RUN]
+    records = [record for record in aborted if record.task != TRIAL_RUN]
     runs = len(aborted) - len(records)
     if not aborted:
         return ""

@@ -18,7 +18,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.outcomes import MOTION_METRICS
 from rastrainer.trial.analysis import published_score
-from rastrainer.trial.ctps import CTPS_WARNING, Trial
+from rastrainer.trial.ctps import CTPS_WARNING, RMSE, TIME
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.scoring import (
     COMMON_BIAS_LIMIT_MM,
@@ -27,6 +27,7 @@ from rastrainer.trial.scoring import (
     DEPTH_LIMIT_MM,
     TrialScore,
 )
+from rastrainer.trial.trial_row import TrialRow
 
 
 @dataclass(frozen=True)
@@ -138,7 +139,7 @@ def _limit(value: float, unit: str) -> str:
     return _("at most {value:g} {unit}").format(value=value, unit=unit)
 
 
-def ctpsRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:
+def ctpsRows(trial: StoredTrial, cohort: Sequence[TrialRow]) -> list[Row]:
     """Return the published scores; CTPS compares with the cohort's trials of the same mode."""
     rigid = trial.registrations.get(RIGID)
     found = None if rigid is None else published_score(trial.record, rigid.fre_mm, cohort)
@@ -159,7 +160,7 @@ def motionRows(trial: StoredTrial) -> list[Row]:
 
 
 def standings(
-    study: Study, trial: StoredTrial, cohort: Sequence[Trial] = ()
+    study: Study, trial: StoredTrial, cohort: Sequence[TrialRow] = ()
 ) -> list[GroupComparison]:
     """Compare a trial with the trainee's own others, with everyone else's, and with a cohort.
 
@@ -187,7 +188,7 @@ def standings(
         (peer, (peer.task, f"task-{peer.task}")) for peer in cohort if peer.mode == record.mode
     ]
     published = [peer for peer, names in tasks if record.task in names]
-    times, errors = [p.completion_time_s for p in published], [p.rmse_mm for p in published]
+    times, errors = ([p.values[name] for p in published] for name in (TIME, RMSE))
     fre = None if rigid is None else rigid.fre_mm
     compared += [
         (_("Completion time"), "s", -1, record.completion_time_s, _("reference"), times),
