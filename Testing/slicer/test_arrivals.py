@@ -4,7 +4,8 @@ import json
 
 import pytest
 
-from rastrainer.slicer.link.link import CHARACTERS_A_TURN, COMMANDS_A_TURN, MAX_KEPT
+from rastrainer.slicer.link.connection import MAX_KEPT
+from rastrainer.slicer.link.link import CHARACTERS_A_TURN, COMMANDS_A_TURN
 from rastrainer_headless.command import HeadlessCommand
 
 
@@ -19,7 +20,7 @@ class Arrivals:
         command = HeadlessCommand()
         command.SetName(name)
         command.SetCommandContent(json.dumps(content))
-        self.link._onCommand(None, "", command)
+        self.link._keepCommand(None, "", command)
 
     def counts(self, turns):
         """Yield how many commands each turn delivers."""

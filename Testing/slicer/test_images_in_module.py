@@ -8,8 +8,7 @@ from PySide6 import QtGui
 from rastrainer import transforms
 from rastrainer.protocol import DeviceName
 from rastrainer.slicer.head.volume import imageOfNode
-from rastrainer.slicer.scene.nodes import Role, findNode
-from rastrainer.slicer.scene.scenario_nodes import VOLUME
+from rastrainer.slicer.scene.nodes import VOLUME, Role, findNode
 from Testing.domain.igtl.sent_pose import transform_of
 from Testing.slicer.recorded_trial import COLIN27
 from Testing.slicer.test_views import place

@@ -23,8 +23,7 @@ from rastrainer.slicer.scene.error_colors import (
     removeHeadColors,
     showResidualArrows,
 )
-from rastrainer.slicer.scene.nodes import Role, findNode, surfaceOf, worldPoints
-from rastrainer.slicer.scene.plan_points import LIST
+from rastrainer.slicer.scene.nodes import LIST, Role, findNode, surfaceOf, worldPoints
 from rastrainer.slicer.scene.registration_input import (
     Choices,
     Pairs,

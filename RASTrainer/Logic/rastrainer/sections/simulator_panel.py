@@ -88,9 +88,8 @@ class SetupPanel(Panel):
         if setup.isRunning and setup.isInstalling:
             return _("All packages are downloaded and are being installed.")
         if setup.isRunning:
-            return _("Package {number} of {count} is being downloaded.").format(
-                number=setup.fetched, count=setup.count
-            )
+            text = _("Package {number} of {count} is being downloaded.")
+            return text.format(number=setup.fetched, count=setup.count)
         if setup.isCurrent:
             size = setup.installedMB
             sentence = _("The simulator is set up in {folder}.").format(folder=setup.folder)
@@ -126,10 +125,8 @@ def costSentence(ui: Any, setup: SimulatorSetup) -> str:
     sizes = setup.package.sizesMB()
     if sizes is None:
         return where
-    size = _("About {download} MB will be downloaded, and {kept} MB kept.").format(
-        download=sizes[0], kept=sizes[1]
-    )
-    return f"{where} {size}"
+    size = _("About {download} MB will be downloaded, and {kept} MB kept.")
+    return f"{where} {size.format(download=sizes[0], kept=sizes[1])}"
 
 
 class SimulatorPanel(Panel):
@@ -148,9 +145,8 @@ class SimulatorPanel(Panel):
         connect = guardedAction(self._connect, _("The connection could not be started."))
         self.connect = connect
         ui.startSimulatorButton.connect("clicked()", self.startAndConnect)
-        connectClick(
-            ui.stopSimulatorButton, self._simulator.stop, _("The simulator could not be stopped.")
-        )
+        notStopped = _("The simulator could not be stopped.")
+        connectClick(ui.stopSimulatorButton, self._simulator.stop, notStopped)
         ui.programPathLineEdit.connect("currentPathChanged(QString)", self._showProgram)
         disconnect = guardedAction(self._link.disconnect, _("The connection could not be closed."))
         connectAsPressed(ui.connectButton, lambda: connect if self._isOff() else disconnect)
