@@ -59,7 +59,7 @@ def test_what_the_gate_lets_through_never_harms_slicer(made, device, metadata, v
     police = WireChecker()
     try:
         content = content_of(kind, arguments)
-        message = Message(device, content, metadata, 1, timestamp, version)
+        message = Message(device, content, metadata, timestamp, version)
         packed = [Outgoing(message).packed(header_version) for header_version in (1, 2)]
     except InputError:
         return
