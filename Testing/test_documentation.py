@@ -8,9 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from rastrainer_simulator.cli.main import read_commands
 from Testing.pictures import MOST_BYTES
-from Testing.test_architecture import FILES, named_in_strings, our_imports
 from tools import command_table
 
 ROOT = Path(__file__).parents[1]
@@ -49,7 +47,6 @@ SHELL = re.compile(r"^(?:```sh\n.*?^```| {4,8}\S.*?)$", re.MULTILINE | re.DOTALL
 RUN = re.compile(r"python3? -m ((?:rastrainer|Testing)[\w.]*)")
 HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
 SOURCE_FILE = re.compile(r"^[\w./-]+/[\w.-]+\.(?:py|ts|ui|md|json|cmake|toml|txt|lock|png|csv)$")
-WALK = re.compile(r"^\d\. \*(From .*?)\.\*(.*?)(?=^\S)", re.MULTILINE | re.DOTALL)
 MODULE = re.compile(r"^(rastrainer(?:_simulator|_headless)?(?:\.[A-Za-z_]\w*)+)$")
 
 
@@ -186,37 +183,6 @@ def test_the_architecture_page_describes_every_folder():
     assert len(folders) > 20
     # `slicer` is described by its own folders.
     assert {name for name in folders if name not in described} <= {"slicer"}
-
-
-def modules_of_walks() -> dict[str, list[str]]:
-    """Return the modules that a value passes through, by the walks on the design page."""
-    walks = WALK.findall(text_of("docs/design.md"))
-    return {name: [module_at(path) for path in CODE.findall(text)] for name, text in walks}
-
-
-def module_at(path: str) -> str:
-    (module,) = (name for name, file in FILES.items() if file.as_posix().endswith(f"/{path}"))
-    return module
-
-
-def modules_of_commands() -> set[str]:
-    return {
-        f"rastrainer_simulator.cli.{command.run.partition('.')[0]}"
-        for command in read_commands().values()
-        if command.run
-    }
-
-
-def test_each_file_of_a_walk_leads_to_another_one_in_it():
-    walks = modules_of_walks()
-    assert len(walks) == 3
-    for modules in walks.values():
-        leads_to = {name: {*our_imports()[name], *named_in_strings(name)} for name in modules}
-        if "rastrainer_simulator.cli.main" in modules:
-            leads_to["rastrainer_simulator.cli.main"] |= modules_of_commands()
-        for module in modules:
-            others = {name for name in modules if module in leads_to[name]} | leads_to[module]
-            assert others & set(modules) - {module}, module
 
 
 def test_a_missing_path_would_be_detected():

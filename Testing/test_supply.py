@@ -28,7 +28,6 @@ audit_packages, bill_of_materials, third_party_notices, wheel_page = map(
 EXTRAS = {
     "base.lock": ("page", "slicer"),
     "test.lock": ("test",),
-    "bench.lock": ("bench",),
     "soak.lock": ("soak",),
     "supply.lock": ("supply",),
     "docs.lock": ("docs",),

@@ -136,8 +136,8 @@ def test_what_slicer_writes_is_read_as_slicer_has_it(tmp_path):
 
 def test_trials_are_read_with_their_units(tmp_path):
     (trial,) = read_trials(file(tmp_path, HEADER + "hmd,Anne,task-1,114.3,1.10\n"))
-    assert (trial.mode, trial.subject, trial.task) == ("hmd", "Anne", "task-1")
-    assert (trial.completion_time_s, trial.rmse_mm) == (114.3, 1.1)
+    assert (trial.mode, trial.trainee, trial.task) == ("hmd", "Anne", "task-1")
+    assert trial.values == {"completion_time_s": 114.3, "rmse_mm": 1.1}
     with pytest.raises(InputError, match="with the header mode,subject,task,ct,rmse"):
         read_trials(file(tmp_path, "mode,subject,task,time,error\nhmd,a,1,10,1\n"))
 
