@@ -44,7 +44,7 @@ soak: .venv/soak-installed page
 	$(BIN)/python tools/system_packages.py soak
 	$(ONE_THREAD) $(BIN)/python -m Testing.soak $(if $(PART),"$(PART)")
 
-bench: .venv/test-installed page
+bench: .venv/bench-installed page
 	$(BIN)/python tools/system_packages.py test
 	$(BIN)/python -m Testing.benchmarks
 
@@ -83,6 +83,7 @@ lock: .venv/installed
 	$(BIN)/pip install -q uv==0.13.9
 	$(COMPILE) --extra page --extra slicer -o requirements/base.lock
 	$(COMPILE) --extra test --constraints requirements/base.lock -o requirements/test.lock
+	$(COMPILE) --extra bench --constraints requirements/test.lock -o requirements/bench.lock
 	$(COMPILE) --extra soak --constraints requirements/test.lock -o requirements/soak.lock
 	$(subst pyproject.toml,requirements/ralph.in,$(COMPILE)) -o requirements/ralph.lock
 	$(subst pyproject.toml,requirements/icp.in,$(COMPILE)) -o requirements/icp.lock
@@ -111,6 +112,10 @@ $(VENV_PYTHON):
 
 .venv/test-installed: .venv/installed requirements/test.lock
 	$(BIN)/python -m pip install -q --no-compile --require-hashes -r requirements/test.lock
+	touch $@
+
+.venv/bench-installed: .venv/test-installed requirements/bench.lock
+	$(BIN)/python -m pip install -q --require-hashes -r requirements/bench.lock
 	touch $@
 
 # A peer has an environment of its own: it wants other versions of the same packages.

@@ -1,7 +1,8 @@
 """`make bench`: run every benchmark, print one table, write build/bench.json.
 
 A benchmark is a file `bench_*.py` here with a function `rows(quick: bool) -> list[dict]`; each row
-has the keys of `COLUMNS`, with None if there is no peer. Before each stands how busy and how fast
+has the keys of `COLUMNS`, with None if there is no peer. Measurements that take minutes are in a
+function `long_rows() -> list[dict]`, which `--long` adds. Before each stands how busy and how fast
 the machine is.
 """
 
@@ -21,6 +22,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="make bench", description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", help="benchmarks to run (default: all)")
     parser.add_argument("--quick", action="store_true", help="fewer repetitions, rougher numbers")
+    parser.add_argument("--long", action="store_true", help="also what takes minutes")
     parser.add_argument("--output", type=Path, default=Path("build/bench.json"))
     arguments = parser.parse_args()
     found = sorted(path.stem.removeprefix("bench_") for path in HERE.glob("bench_*.py"))
@@ -33,6 +35,8 @@ def main() -> None:
             lambda n=name: [load_row(n), host_row(n)],
             lambda m=module: m.rows(arguments.quick),
         ]
+        if arguments.long and hasattr(module, "long_rows"):
+            measures.append(module.long_rows)
         for row in chain.from_iterable(measure() for measure in measures):
             rows.append({column: row[column] for column in COLUMNS})
             print(_line(rows[-1].values()), flush=True)

@@ -44,7 +44,7 @@ REFERENCE = {
     "Right tragus": (86.4, -22.8, -56.3),
     "Left tragus": (-86.9, -22.8, -56.3),
 }
-"""On the head of Colin27, RAS mm; see assets/scenarios/colin27_setup.py."""
+"""On the head of Colin27, RAS mm, found by eye on pictures of the mesh."""
 POINTS, OTHER_POINTS, PATCH_POINTS = 800, 6000, 150
 PATCH_MM, LEAST_PATCH = 30.0, 50
 ROUNDS, PATCH_ROUNDS = 40, 20
