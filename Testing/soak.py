@@ -20,13 +20,11 @@ class Part:
     Attributes:
         places: folders and files below Testing. A test file belongs to the part that names it, or
             the nearest folder that holds it.
-        minutes: as last measured on two cores; None before the first measurement.
     """
 
     name: str
     proves: str
     places: tuple[str, ...]
-    minutes: float | None = None
 
 
 PARTS = (
@@ -51,13 +49,9 @@ PARTS = (
         ("simulator/virtual",),
     ),
     Part(
-        "trainees",
-        "trainees who only see the screen finish a trial, and cheating never helps",
-        (
-            "simulator/virtual/test_cheating_trainees.py",
-            "simulator/virtual/test_seeing_and_reading.py",
-            "simulator/training",
-        ),
+        "cheats",
+        "cheating never helps",
+        ("simulator/virtual/test_cheating_trainees.py", "simulator/training"),
     ),
     Part(
         "simulator",
@@ -71,12 +65,10 @@ PARTS = (
     ),
     Part(
         "headset",
-        "whole trials, procedures and traces in an emulated headset",
+        "eyes, hands and panels in an emulated headset",
         (
             "web/test_headset.py",
             "web/test_headset_panels.py",
-            "web/test_procedure_in_headset.py",
-            "web/test_trace_in_headset.py",
         ),
     ),
     Part(
@@ -86,13 +78,13 @@ PARTS = (
     ),
     Part(
         "devices",
-        "whole sessions by gamepad, keyboard and mouse, also of a procedure and a trace",
+        "whole sessions by each device, also of a procedure and a trace",
         (
             "end_to_end/test_gamepad_session.py",
-            "end_to_end/test_keyboard_session.py",
             "end_to_end/test_mouse_session.py",
-            "end_to_end/test_procedure_by_hand.py",
-            "end_to_end/test_surface_by_hand.py",
+            "web/test_procedure_by_hand.py",
+            "web/test_surface_by_hand.py",
+            "web/test_whole_flow.py",
         ),
     ),
     Part(
@@ -101,7 +93,6 @@ PARTS = (
         (
             "end_to_end/test_kills.py",
             "end_to_end/test_many_seats.py",
-            "end_to_end/test_study_through_crashes.py",
             "end_to_end/test_delivery.py",
         ),
     ),
@@ -140,8 +131,7 @@ def run(part: Part) -> int:
 def main(words: list[str]) -> int:
     if words == ["list"]:
         for number, part in enumerate(PARTS, start=1):
-            minutes = "not yet measured" if part.minutes is None else f"{part.minutes:g} min"
-            print(f"{number:2}  {part.name}: {part.proves} ({minutes}).")
+            print(f"{number:2}  {part.name}: {part.proves}.")
         return 0
     names = {name: part for n, part in enumerate(PARTS, 1) for name in (str(n), part.name)}
     if not set(words) <= set(names):

@@ -1,4 +1,7 @@
-"""Allowed imports: layers of rooms (folders), read from every import, also those for types."""
+"""Allowed imports: layers of rooms (folders), read from every import, also those for types.
+
+The folders of the page are layers, too.
+"""
 
 from __future__ import annotations
 
@@ -157,14 +160,13 @@ def may_import(room: str, other: str) -> bool:
     return room == other or FLOOR_OF[other] < FLOOR_OF[room]
 
 
-@pytest.mark.parametrize("room", TABLE_OF)
-def test_a_room_imports_only_from_rooms_above_its_line(room):
+def test_a_room_imports_only_from_rooms_above_its_line():
     upward = [
         f"{module} → {other}"
         for module, others in our_imports().items()
-        if module in FILES and FILES[module].name != "__init__.py" and room_of(module) == room
         for other in others
-        if FILES[other].name != "__init__.py" and not may_import(room, room_of(other))
+        if "__init__.py" not in (FILES[module].name, FILES[other].name)
+        and not may_import(room_of(module), room_of(other))
     ]
     assert not upward
 
@@ -174,10 +176,6 @@ def test_no_file_imports_itself_through_others():
         TopologicalSorter(our_imports()).prepare()
     except CycleError as error:
         pytest.fail(" → ".join(error.args[1]))
-
-
-def test_no_floor_has_more_than_twelve_rooms():
-    assert max(len(floor) for table in LAYERS for floor in floors(table)) <= 12
 
 
 def named_in_strings(module: str) -> set[str]:
@@ -231,16 +229,43 @@ def test_slicer_and_qt_parts_are_imported_only_where_allowed(part):
     assert not outsiders(modules) & FORBIDDEN[part]
 
 
-def test_only_the_checksum_may_look_for_a_package_that_slicer_lacks():
-    users = [module for module in FILES if "fastcrc" in " ".join(imports()[module])]
-    assert [user for user in users if user.startswith("rastrainer.")] in (
-        [],
-        ["rastrainer.igtl.message"],
-    )
-
-
 def test_no_class_of_the_product_has_the_name_of_another():
     names = [
         node.name for module in FILES for node in nodes_of(module) if isinstance(node, ast.ClassDef)
     ]
     assert [name for name, count in Counter(names).items() if count > 1] == []
+
+
+PAGE = ROOT / "RASTrainerSimulatorServer" / "web" / "src"
+PAGE_FLOORS = (
+    ("texts", "."),
+    ("stream",),
+    ("audio", "panels"),
+    ("scene",),
+    ("input", "overlay"),
+    ("xr",),
+    ("board", "page"),
+)
+
+
+def imported_by_page(path: Path) -> list[Path]:
+    """Return the page's own files that a file imports."""
+    named = re.findall(r'(?:from|import) "(\.[^"]+)"', path.read_text(encoding="utf-8"))
+    places = [(path.parent / name).resolve() for name in named]
+    return [place if place.suffix == ".json" else place.with_suffix(".ts") for place in places]
+
+
+def test_a_folder_of_the_page_imports_only_from_layers_above_its_own():
+    files = {path: imported_by_page(path) for path in PAGE.rglob("*.ts")}
+    folder = {path: path.relative_to(PAGE).parent.as_posix() for path in PAGE.rglob("*.*")}
+    floor_of = {name: number for number, names in enumerate(PAGE_FLOORS) for name in names}
+    assert {folder[path] for path in files} == set(floor_of)
+    upward = [
+        f"{path} → {other}"
+        for path, others in files.items()
+        for other in others
+        if floor_of[folder[other]] > floor_of[folder[path]]
+        or (floor_of[folder[other]] == floor_of[folder[path]] > 0 and folder[other] != folder[path])
+    ]
+    assert upward == []
+    TopologicalSorter(files).prepare()

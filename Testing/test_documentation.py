@@ -8,9 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from rastrainer_simulator.cli.main import read_commands
 from Testing.pictures import MOST_BYTES
-from Testing.test_architecture import FILES, named_in_strings, our_imports
 from tools import command_table
 
 ROOT = Path(__file__).parents[1]
@@ -49,7 +47,6 @@ SHELL = re.compile(r"^(?:```sh\n.*?^```| {4,8}\S.*?)$", re.MULTILINE | re.DOTALL
 RUN = re.compile(r"python3? -m ((?:rastrainer|Testing)[\w.]*)")
 HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
 SOURCE_FILE = re.compile(r"^[\w./-]+/[\w.-]+\.(?:py|ts|ui|md|json|cmake|toml|txt|lock|png|csv)$")
-WALK = re.compile(r"^\d\. \*(From .*?)\.\*(.*?)(?=^\S)", re.MULTILINE | re.DOTALL)
 MODULE = re.compile(r"^(rastrainer(?:_simulator|_headless)?(?:\.[A-Za-z_]\w*)+)$")
 
 
@@ -122,8 +119,9 @@ def defines(module: str, name: str) -> bool:
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_every_link_on_a_page_leads_somewhere(page):
-    folder = (ROOT / page).parent
+def test_every_link_path_module_and_name_on_a_page_exists(page):
+    text, folder = (ROOT / page).read_text(encoding="utf-8"), (ROOT / page).parent
+    assert re.findall(r"^(?:<{7}|>{7}) .*$", text, re.MULTILINE) == [], "conflict markers"
     for target, anchor in LINK.findall(text_of(page)):
         if target.startswith(("http:", "https:", "mailto:")):
             continue
@@ -131,47 +129,15 @@ def test_every_link_on_a_page_leads_somewhere(page):
         assert place.exists(), target
         if anchor and place.suffix == ".md":
             assert anchor in anchors(place.relative_to(ROOT).as_posix()), f"{target}#{anchor}"
-
-
-@pytest.mark.parametrize("page", PAGES)
-def test_no_page_contains_conflict_markers(page):
-    text = (ROOT / page).read_text(encoding="utf-8")
-    assert re.findall(r"^(?:<{7}|>{7}) .*$", text, re.MULTILINE) == []
-
-
-@pytest.mark.parametrize("page", PAGES)
-def test_every_path_named_on_a_page_is_in_the_repository(page):
     assert {path for path in paths_in(page) if not is_there(path)} == set()
-
-
-@pytest.mark.parametrize("page", PAGES)
-def test_every_path_and_module_in_a_command_is_in_the_repository(page):
-    text = (ROOT / page).read_text(encoding="utf-8")
     words = {word for block in SHELL.findall(text) for word in block.split()}
     paths = {word for word in words if "/" in word and word.split("/")[0] in TOP}
     assert {path for path in paths if not is_there(path)} == set()
     run = {name.replace(".", "/") for name in RUN.findall(text)}
     assert {path for path in run if not (is_there(path) or is_there(f"{path}.py"))} == set()
-
-
-@pytest.mark.parametrize("page", PAGES)
-def test_every_module_named_on_a_page_is_in_a_package(page):
-    spans = CODE.findall(text_of(page))
-    named = {match[1] for span in spans if (match := MODULE.match(span))}
+    named = {match[1] for span in CODE.findall(text_of(page)) if (match := MODULE.match(span))}
     assert {name for name in named if not is_module(name)} == set()
-
-
-@pytest.mark.parametrize("page", PAGES)
-def test_every_name_attributed_to_a_file_on_a_page_is_defined_there(page):
     assert {named for named in names_in(page) if not is_named(*named)} == set()
-
-
-def test_files_answer_ten_questions_of_a_newcomer():
-    rows = [line for line in text_of("CONTRIBUTING.md").splitlines() if line.startswith("| **")]
-    assert len(rows) >= 10
-    for row in rows:
-        paths = [span for span in CODE.findall(row) if is_path(span.split("::")[0])]
-        assert paths, row
 
 
 def test_the_architecture_page_describes_every_folder():
@@ -186,51 +152,6 @@ def test_the_architecture_page_describes_every_folder():
     assert len(folders) > 20
     # `slicer` is described by its own folders.
     assert {name for name in folders if name not in described} <= {"slicer"}
-
-
-def modules_of_walks() -> dict[str, list[str]]:
-    """Return the modules that a value passes through, by the walks on the design page."""
-    walks = WALK.findall(text_of("docs/design.md"))
-    return {name: [module_at(path) for path in CODE.findall(text)] for name, text in walks}
-
-
-def module_at(path: str) -> str:
-    (module,) = (name for name, file in FILES.items() if file.as_posix().endswith(f"/{path}"))
-    return module
-
-
-def modules_of_commands() -> set[str]:
-    return {
-        f"rastrainer_simulator.cli.{command.run.partition('.')[0]}"
-        for command in read_commands().values()
-        if command.run
-    }
-
-
-def test_each_file_of_a_walk_leads_to_another_one_in_it():
-    walks = modules_of_walks()
-    assert len(walks) == 3
-    for modules in walks.values():
-        leads_to = {name: {*our_imports()[name], *named_in_strings(name)} for name in modules}
-        if "rastrainer_simulator.cli.main" in modules:
-            leads_to["rastrainer_simulator.cli.main"] |= modules_of_commands()
-        for module in modules:
-            others = {name for name in modules if module in leads_to[name]} | leads_to[module]
-            assert others & set(modules) - {module}, module
-
-
-def test_a_missing_path_would_be_detected():
-    assert is_path("docs/nothing.md")
-    assert not is_there("docs/nothing.md")
-    assert is_there("docs/tutorial.md")
-    assert is_there("tutorial.md")
-    assert not is_there("torial.md")
-    assert not is_module("rastrainer.nothing")
-    assert is_named("test_documentation.py", "is_named")
-    assert not is_named("test_documentation.py", "is_not_named")
-    assert is_module("rastrainer")
-    assert not is_module("rastrainer.nothing_there")
-    assert is_module("rastrainer.__version__")
 
 
 def test_the_table_of_commands_is_made_of_their_entries():

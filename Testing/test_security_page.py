@@ -5,19 +5,14 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-import pytest
-
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "SECURITY.md").read_text(encoding="utf-8")
 NAMED = sorted(set(re.findall(r"`(Testing/[\w/]+\.py)`", PAGE)))
 
 
-@pytest.mark.parametrize("file", NAMED)
-def test_each_named_file_has_tests(file):
-    assert re.search(r"^def test_", (ROOT / file).read_text(encoding="utf-8"), re.MULTILINE)
-
-
 def test_each_row_of_the_tables_names_a_file_of_tests():
+    for file in NAMED:
+        assert re.search(r"^def test_", (ROOT / file).read_text(encoding="utf-8"), re.MULTILINE)
     rows = [line for line in PAGE.splitlines() if line.startswith("| ") and "---" not in line]
     guarded = [row for row in rows if not row.endswith("| tests |")]
     assert len(guarded) > 20

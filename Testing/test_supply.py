@@ -121,12 +121,6 @@ def test_the_simulators_lock_holds_everything_the_project_cannot_do_without():
     assert asked_for(project, ()) - names == set()
 
 
-def test_the_size_of_a_setup_was_measured_for_every_platform_that_slicer_runs_on():
-    sizes = json.loads((RESOURCES / "sizes.json").read_text(encoding="utf-8"))
-    assert set(sizes) == {"linux-x86_64", "darwin-arm64", "darwin-x86_64", "win32-AMD64"}
-    assert sizes["linux-x86_64"]["keptMB"] <= 700
-
-
 def test_a_wheel_includes_the_notices_of_what_its_page_is_made_of(tmp_path):
     build_data = {"force_include": {}}
     hook = wheel_page.WheelPage(str(ROOT), {}, None, None, str(tmp_path), "wheel")

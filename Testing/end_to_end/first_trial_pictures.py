@@ -17,8 +17,8 @@ from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.transforms import MM_PER_M
 from Testing.end_to_end.hands import KeyHands
 from Testing.end_to_end.lab import Lab
+from Testing.end_to_end.stream_trainee import CarriedTrainee
 from Testing.end_to_end.window_pictures import Photographer
-from Testing.web.place import CarriedTrainee
 
 FOLDER = Path(__file__).parents[2] / "docs" / "pictures"
 SIZE = (1280, 720)
@@ -42,7 +42,7 @@ def main() -> None:
             trainee = CarriedTrainee(lab.view, KeyHands(lab.keyboard), client)
             keep_menus(trainee, photographer)
             keep_tutorial(trainee, photographer)
-            keep_trial(trainee, photographer, client)
+            keep_trial(trainee, photographer)
             keep_result(trainee, photographer)
 
 
@@ -76,18 +76,18 @@ def names_in(trainee: CarriedTrainee) -> list[str]:
     return [] if trainee.menu is None else [item.name for item in trainee.menu.items]
 
 
-def keep_trial(trainee: CarriedTrainee, photographer: Photographer, client: Client) -> None:
+def keep_trial(trainee: CarriedTrainee, photographer: Photographer) -> None:
     trainee.begin_task("task-1")
     trainee.until(lambda: trainee.view.state["phase"] == "running", "the trial")
     photographer.keep("first-trial-05-task")
     trainee.approach("1", 0.004)
-    carry_over(trainee, client, "1", NEAR_MM, "near")
+    carry_over(trainee, "1", NEAR_MM, "near")
     photographer.keep("first-trial-06-near")
-    carry_over(trainee, client, "1", -PRESSED_MM, "on skin")
+    carry_over(trainee, "1", -PRESSED_MM, "on skin")
     photographer.keep("first-trial-07-on-skin")
     trainee.have_touched(SLIP_AT)
     label = trainee.view.state["next"]
-    slip(trainee, client, label)
+    slip(trainee, label)
     trainee.have_touched(15)
     trainee.press("touch", lambda: trainee.menu_name == "complete", "the choice")
     photographer.keep("first-trial-08-register")
@@ -95,29 +95,25 @@ def keep_trial(trainee: CarriedTrainee, photographer: Photographer, client: Clie
     trainee.until_menu("result")
 
 
-def carry_over(
-    trainee: CarriedTrainee, client: Client, label: str, height_mm: float, stage: str
-) -> None:
+def carry_over(trainee: CarriedTrainee, label: str, height_mm: float, stage: str) -> None:
     """Carry the tip so far above a point, and wait for a stage of the touch."""
     place, center = MM_PER_M * trainee.place_of(label), MM_PER_M * trainee.head_center
     above = place + height_mm * (place - center) / np.linalg.norm(place - center)
-    target = {"positionMm": above.tolist(), "speedMmS": 20}
-    assert client.send_command("MoveTipTo", target, timeout=60).ok
+    trainee.send_tip(above.tolist(), 20.0)
     trainee.until(lambda: trainee.view.state["touch"] == stage, stage)
 
 
-def slip(trainee: CarriedTrainee, client: Client, label: str) -> None:
+def slip(trainee: CarriedTrainee, label: str) -> None:
     """Touch the skin next to a point."""
     trainee.approach(label, 0.004)
     place, center = trainee.place_of(label), trainee.head_center
     aside = np.cross(place - center, (0.0, 0.0, 1.0))
     beside = place + SLIP_M * aside / np.linalg.norm(aside)
     onto = MM_PER_M * (beside - 0.01 * (beside - center) / np.linalg.norm(beside - center))
-    target = {"positionMm": onto.tolist(), "speedMmS": 100}
-    assert client.send_command("MoveTipTo", target, timeout=60).ok
+    trainee.send_tip(onto.tolist(), 100.0)
     trainee.until(lambda: trainee.view.state["proximity"] == "contact", "the skin beside a point")
     kept = trainee.touched
-    assert client.send_command("Capture", {}, timeout=60).ok
+    assert trainee.client.send_command("Capture", {}, timeout=60).ok
     trainee.until(lambda: trainee.touched > kept, f"touch {label}")
 
 

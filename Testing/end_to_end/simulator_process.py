@@ -9,10 +9,13 @@ import subprocess
 import sys
 import tempfile
 import urllib.request
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from rastrainer_simulator.net.limits import LIMITS_FILE
+from Testing.simulator.net.igtl.servers import LoopThread
+from Testing.simulator.net.views.served import ViewClient
 from Testing.without_tutorial import skip_tutorial
 
 COMMAND = [sys.executable, "-m", "rastrainer_simulator.cli.main", "simulator"]
@@ -113,8 +116,59 @@ class ViewedSimulator(SimulatorProcess):
         self.key = paired_key(self.url, self.code)
 
 
-def paired_key(url: str, code: str) -> str:
+class MenuView(ViewClient):
+    """A view in which somebody clicks through menus, which are read as JSON.
+
+    Attributes:
+        received: all messages so far, as they came.
+    """
+
+    def __init__(self, thread: LoopThread, simulator: ViewedSimulator, role: str = "view"):
+        key = paired_key(simulator.url, simulator.code, role)
+        super().__init__(thread, simulator.url, key)
+        self.received: list[str] = []
+        self.join(kind="page" if role == "view" else role)
+
+    def next_text(self) -> str:
+        self.received.append(super().next_text())
+        return self.received[-1]
+
+    def until(self, is_wanted: Callable[[dict], bool]) -> dict:
+        """Return the next screen that meets a condition."""
+        while not is_wanted(screen := self.next("screen")["screen"]):
+            pass
+        return screen
+
+    def until_menu(self, name: str, is_wanted: Callable[[dict], bool] = bool) -> dict:
+        """Return the next open menu of that name that meets a condition."""
+        screen = self.until(
+            lambda screen: (menu := screen.get("menu")) and menu["name"] == name and is_wanted(menu)
+        )
+        return screen["menu"]
+
+    def go(self, item: str, menu: str) -> dict:
+        """Choose an item, and return the menu to which it leads."""
+        self.send({"type": "item", "name": item})
+        return self.until_menu(menu)
+
+    def type(self, name: str, value: str) -> None:
+        self.send({"type": "text", "name": name, "value": value})
+
+    def go_to_experiment(self, trainee: str) -> None:
+        """Go from the start to the menu of tasks, and enter an ID."""
+        self.go("train", "introduction")
+        self.go("skip", "controls")
+        self.go("next", "experiment")
+        self.type("trainee", trainee)
+
+
+def items_of(menu: dict) -> dict[str, dict]:
+    return {item["name"]: item for item in menu["items"]}
+
+
+def paired_key(url: str, code: str, role: str = "view") -> str:
     """Pair a view by its code, as its page does; return its key."""
-    request = urllib.request.Request(f"{url}/pair", json.dumps({"code": code}).encode())
+    body = json.dumps({"code": code, "role": role}).encode()
+    request = urllib.request.Request(f"{url}/pair", body)
     with urllib.request.urlopen(request, timeout=60) as answer:
         return json.load(answer)["key"]

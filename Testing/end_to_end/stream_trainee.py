@@ -6,15 +6,21 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from itertools import accumulate
 from typing import Protocol
 
 import numpy as np
+from playwright.sync_api import Page
 from scipy.spatial.transform import Rotation
 
+from rastrainer.igtl.client import Client
 from rastrainer.json_records import record_from_json
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.flow_presenter import PICTURE_GRACE_S
+from rastrainer_simulator.flow.session.chosen_trial import FIRST_ID
 from rastrainer_simulator.presentation.screen import Menu, Screen
 from rastrainer_simulator.teleoperation.steering import camera_axes
+from Testing.end_to_end.onto_skin import lowered
 from Testing.end_to_end.window_process import wait_until
 from Testing.simulator.net.views.served import ViewClient
 
@@ -39,6 +45,11 @@ LONGEST_TOUCH_S = 600.0
 """Number of attempts: on a busy machine they are clumsy."""
 STILL_STATES = 10
 """The arm is at rest after this number of equal states in a row."""
+TRAINEE = "P7"
+SETTLED_STATES = 20
+"""For how many states in a row a focus stays that no input moves: a third of a second."""
+LEAVES = {"trial": "abort", "abort": "abort", "complete": "abort", "result": "menu"}
+"""Which item of a menu leads toward the start."""
 
 
 class Hands(Protocol):
@@ -75,6 +86,12 @@ class WatchingView:
         self._has_state = threading.Condition()
         threading.Thread(target=self._watch, daemon=True).start()
         wait_until(lambda: self.state is not None and self.scene is not None, "the stream")
+
+    @property
+    def menu_name(self) -> str | None:
+        """The open menu's name, read once: another thread replaces the screen."""
+        menu = self.screen.menu
+        return None if menu is None else menu.name
 
     def pose(self, body: str) -> np.ndarray:
         """Return (4, 4) float, to World in m."""
@@ -131,9 +148,7 @@ class StreamTrainee:
 
     @property
     def menu_name(self) -> str | None:
-        """The open menu's name, read once: another thread replaces the screen."""
-        menu = self.menu
-        return None if menu is None else menu.name
+        return self.view.menu_name
 
     @property
     def touched(self) -> int:
@@ -306,7 +321,11 @@ class StreamTrainee:
 
     def approach(self, label: str, near_m: float) -> None:
         """Carry the tip over the head to a place above a fiducial."""
-        point, center = self.place_of(label), self.head_center
+        self.go_above(self.place_of(label), near_m)
+
+    def go_above(self, point: np.ndarray, near_m: float) -> None:
+        """Carry the tip over the head to above a place, (3,) World, m, clear of the skin."""
+        center = self.head_center
         outward = (point - center) / np.linalg.norm(point - center)
         start = self.tip - center
         height = LIFT_M + max(np.linalg.norm(point - center), np.linalg.norm(start))
@@ -394,3 +413,144 @@ class StreamTrainee:
         line = np.subtract(camera["focalPoint"], camera["position"])
         axes = camera_axes(tuple(line.tolist()), tuple(camera["viewUp"]))
         return np.array([axes.right, axes.forward, axes.up])
+
+
+class Trainee(StreamTrainee):
+    """Goes through the menus, and touches the points in their order."""
+
+    # A press is seen in the next picture, however late: none is missed.
+    again_s = 60.0
+
+    def focus(self, item: str) -> None:
+        """Move the focus to an item, and see that it stays there.
+
+        A tapped key is held until the next picture: if that takes long, the focus moves on.
+        """
+        settled = 0
+        while settled < SETTLED_STATES:
+            super().focus(item)
+            self.view.next_state()
+            settled = settled + 1 if self.menu.focus == item else 0
+
+    def go_home(self) -> None:
+        """Go to the start menu from wherever the last trainee has stopped."""
+        while self.menu_name != "start":
+            before = self.menu
+            if before is None:
+                self.press("menu", lambda: self.menu is not None, "the menu")
+            elif before.name in LEAVES:
+                self.choose(LEAVES[before.name])
+            else:
+                self.press("back", lambda b=before: self.menu != b, f"before {before.name}")
+
+    def go_to_experiment(self) -> None:
+        """Go from wherever the last trainee has stopped to the choice of head and task."""
+        self.go_home()
+        self.choose("train")
+        while self.menu_name != "experiment":
+            self.choose("skip" if self.menu_name == "introduction" else "next")
+
+    def play_to_result(self) -> None:
+        """Touch all fiducials, register them, and read the score."""
+        self.touch_all()
+        self.register()
+        self.until_menu("result")
+        assert self.menu.facts[0].label == "Score"
+
+    def begin(self, task: str, page: Page | None = None) -> None:
+        """Go from the start menu into a task.
+
+        The ID is typed on the page, or without one on the keyboard that the simulator shows.
+        """
+        self.go_to_experiment()
+        if self.value("trainee") in ("", FIRST_ID):
+            self.type_id(page)
+        self.begin_task(task)
+        self.until(lambda: self.view.state["phase"] == "running", "the trial")
+
+    def type_id(self, page: Page | None) -> None:
+        """Type the ID on the page, or without one on the keyboard that the simulator shows."""
+        if page is not None:
+            self.focus("trainee")
+            page.wait_for_selector("#menu input:focus")
+            for typed in accumulate(TRAINEE):
+                page.keyboard.press(typed[-1])
+                self.until(lambda typed=typed: self.value("trainee") == typed, "the ID")
+                # A field forgets what the simulator took long to answer.
+                shown = f"document.querySelector('#menu input:focus')?.value === '{typed}'"
+                wait_until(lambda shown=shown: page.evaluate(shown), "the ID on the page")
+            return
+        self.choose("trainee")
+        self.press("accept", lambda: self.menu.facts[0].value.startswith("A"), "the letter A")
+        self.choose("done")
+
+    def set_choice(self, item: str, value: str) -> None:
+        """Turn a choice of the menu until it shows a value."""
+        self.focus(item)
+        while (before := self.value(item)) != value:
+            self.press("right", lambda b=before: self.value(item) != b, f"another {item}")
+
+    def resume(self) -> None:
+        """Resume a trial that was paused."""
+        self.until_menu("trial")
+        self.choose("resume")
+        self.until(lambda: self.view.state["phase"] == "running", "the trial again")
+
+    def touch_all(self, most: int = 15) -> None:
+        """Touch the remaining points, up to so many in all."""
+        while self.touched < most:
+            label = self.view.state["next"]
+            self.approach(label, 0.02)
+            self.press_on(label)
+
+    def register(self) -> None:
+        """Have the touched points registered."""
+        self.press("touch", lambda: self.menu is not None, "the choice")
+        self.choose("register")
+
+
+class CarriedTrainee(Trainee):
+    """Is quick: commands carry the tip to its goals."""
+
+    def __init__(self, view: WatchingView, hands: object, client: Client):
+        super().__init__(view, hands)
+        self.client = client
+
+    def steer_to(self, place: np.ndarray, near: float, fine: bool = False) -> None:  # noqa: ARG002
+        if self.menu is not None:
+            # A machine that is too busy to draw counts as a headset that is not worn.
+            self.choose("resume")
+        self.send_tip((MM_PER_M * place).tolist())
+        give_up = self.view.state["timeS"] + 4.0
+        while np.linalg.norm(place - self.tip) > 0.002 and self.view.state["timeS"] < give_up:
+            self.view.next_state()
+
+    def press_on(self, label: str) -> None:
+        """Record the fiducial under the tip."""
+        self.lower_onto(label)
+        kept = self.touched
+        self.press("touch", lambda: self.touched > kept, f"touch {label}")
+
+    def lower_onto(self, label: str) -> bool:
+        """Have the tip lowered onto a fiducial, until it is in contact."""
+        place = self.place_of(label)
+        self.steer_to(place, 0.002)
+        below = lowered(MM_PER_M * place, MM_PER_M * self.head_center)
+        self.send_tip(below)
+        self.until(lambda: self.view.state["proximity"] == "contact", f"contact at {label}")
+        return True
+
+    def send_tip(self, position_mm: list[float], speed_mm_s: float = 400.0) -> None:
+        """Have the tip move to a place in World."""
+        target = {"positionMm": position_mm, "speedMmS": speed_mm_s}
+        reply = self.client.send_command("MoveTipTo", target, timeout=60)
+        assert reply.ok, reply.error
+
+    def have_touched(self, most: int) -> None:
+        """Have the points touched by commands, up to so many in all."""
+        while (kept := self.touched) < most:
+            label = self.view.state["next"]
+            self.approach(label, 0.004)
+            self.lower_onto(label)
+            assert self.client.send_command("Capture", {}, timeout=60).ok
+            self.until(lambda k=kept: self.touched > k, f"touch {label}")

@@ -18,7 +18,7 @@ from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.sections.trial_logic import TrialLogic
 from rastrainer.study.database.study import Study
-from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.record import AbortedTrial
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import ControlLoop
@@ -36,6 +36,7 @@ from Testing.simulator.net.igtl.servers import HOST
 from Testing.slicer.simulator_double import run_logic_until
 
 TIMEOUT_S = 180.0
+ABORTED = 4
 
 
 class Server:
@@ -68,25 +69,42 @@ class Server:
         self._loop.stop()
 
 
-def slicer_side(path, scenario, port, scored):
-    """Return Slicer's side; `scored` gets the UUIDs of scored trials."""
-    side = SlicerSide(path, port, TrialLogic, lambda _name: scenario)
-    side.logic.trialScored.connect(lambda trial: scored.append(trial.record.trial_id))
-    return side
+def write_aborted_trials(folder, count):
+    for number in range(1, count + 1):
+        record = record_from_json(AbortedTrial, make_aborted(number, touches=number))
+        journal = Journal(folder / f"20240517T0930{number:02d}Z_{record.trial_id}{SUFFIX}")
+        attempt = Attempt(record_to_json(record))
+        journal.write_lines([at(0.0, header(trainee="T-001")), at(0.0, attempt)], sync=False)
+        journal.close()
 
 
-def deliver(folder, simulation, thread, trials, seed, longest_s):
-    """Deliver trials through faults and ends of both sides; return the observations."""
-    rng = random.Random(seed)
-    records, study = folder / "records", folder / "study.db"
+@pytest.fixture(scope="module")
+def simulation():
+    return Simulation(load_setup(), 1)
+
+
+@pytest.mark.parametrize(
+    ("trials", "longest_s"), [(4, 0.2), pytest.param(1000, 12.0, marks=pytest.mark.soak)]
+)
+def test_trials_arrive_exactly_once_through_faults_and_restarts_on_both_sides(
+    simulation, loop_thread, tmp_path, capsys, trials, longest_s
+):
+    rng, ends, scored = random.Random(2), [0, 0], []
+    records, study = tmp_path / "records", tmp_path / "study.db"
     wanted = write_finished_trials(records, range(1, trials + 1))
+    write_aborted_trials(records, ABORTED)
     scenario = load_scenario(COLIN)
-    ends, scored = [0, 0], []
-    server = Server(thread, simulation, records)
+    server = Server(loop_thread, simulation, records)
     proxy = FaultyProxy(server.port, rng, longest_s, at_least=3)
-    slicer = slicer_side(study, scenario, proxy.port, scored)
+
+    def slicer_side():
+        side = SlicerSide(study, proxy.port, TrialLogic, lambda _name: scenario)
+        side.logic.trialScored.connect(lambda trial: scored.append(trial.record.trial_id))
+        return side
+
+    slicer = slicer_side()
     try:
-        while server.undelivered:
+        while server.undelivered or 0 in ends:
             server.offer()
             slicer.run_for(rng.randrange(5, 60))
             if rng.random() < 0.04:
@@ -94,15 +112,15 @@ def deliver(folder, simulation, thread, trials, seed, longest_s):
                 slicer.close()
                 # Nothing is collected by itself within a test, and a thousand trials are many.
                 gc.collect()
-                slicer = slicer_side(study, scenario, proxy.port, scored)
+                slicer = slicer_side()
             if rng.random() < 0.04:
                 ends[1] += 1
                 server.close()
-                server = Server(thread, simulation, records)
+                server = Server(loop_thread, simulation, records)
                 proxy.target = server.port
         proxy.stop_faults()
         slicer.close()
-        slicer = slicer_side(study, scenario, proxy.port, scored)
+        slicer = slicer_side()
         with Study.open(study) as opened:
             run_logic_until(slicer.link, slicer.work, lambda: not opened.unrevealed(), TIMEOUT_S)
     finally:
@@ -111,79 +129,11 @@ def deliver(folder, simulation, thread, trials, seed, longest_s):
         server.close()
     with Study.open(study) as opened:
         stored = [trial.record.trial_id for trial in opened.history(TRAINEE)]
+        aborted = [len(each.points) for each in opened.aborted("T-001")]
     assert sorted(stored) == sorted(scored) == sorted(wanted)
+    assert sorted(aborted) == list(range(1, ABORTED + 1))
     assert TrialArchive(records).unacknowledged() == ()
     assert find_unacknowledged(records) == []
-    return proxy.faults, ends
-
-
-@pytest.fixture(scope="module")
-def simulation():
-    return Simulation(load_setup(), 1)
-
-
-def test_four_trials_arrive_exactly_once_through_faults_and_restarts_on_both_sides(
-    simulation, loop_thread, tmp_path
-):
-    faults, _ends = deliver(tmp_path, simulation, loop_thread, trials=4, seed=2, longest_s=0.2)
-    assert sum(faults.values()) >= 3
-
-
-@pytest.mark.soak
-def test_a_thousand_trials_arrive_exactly_once(simulation, loop_thread, tmp_path, capsys):
-    faults, ends = deliver(tmp_path, simulation, loop_thread, trials=1000, seed=3, longest_s=12.0)
-    assert set(faults) == {"cut", "reset", "half-open", "late"}
-    assert min(ends) >= 3
+    assert sum(proxy.faults.values()) >= 3
     with capsys.disabled():
-        print(f"\n1000 trials: {faults}; Slicer's side ended {ends[0]} times, the server {ends[1]}")
-
-
-TRIALS = 12
-
-
-def slicer_side_for_aborted(path, port):
-    return SlicerSide(path, port, TrialLogic)
-
-
-def write_aborted_trials(folder):
-    folder.mkdir()
-    for number in range(1, TRIALS + 1):
-        record = record_from_json(AbortedTrial, make_aborted(number, touches=number))
-        journal = Journal(folder / f"20240517T0930{number:02d}Z_{record.trial_id}{SUFFIX}")
-        attempt = Attempt(record_to_json(record))
-        journal.write_lines([at(0.0, header(trainee="T-001")), at(0.0, attempt)], sync=False)
-        journal.close()
-
-
-def test_trials_arrive_exactly_once_through_faults_and_restarts_on_both_sides(
-    simulation, loop_thread, tmp_path
-):
-    rng = random.Random(6)
-    records, study = tmp_path / "records", tmp_path / "study.db"
-    write_aborted_trials(records)
-    server = Server(loop_thread, simulation, records)
-    proxy = FaultyProxy(server.port, rng, 0.2)
-    slicer = slicer_side_for_aborted(study, proxy.port)
-    ends = [0, 0]
-    try:
-        while server.undelivered or min(ends) < 2:
-            server.offer()
-            slicer.run_for(rng.randrange(5, 60))
-            if rng.random() < 0.2:
-                ends[0] += 1
-                slicer.close()
-                slicer = slicer_side_for_aborted(study, proxy.port)
-            if rng.random() < 0.2:
-                ends[1] += 1
-                server.close()
-                server = Server(loop_thread, simulation, records)
-                proxy.target = server.port
-    finally:
-        slicer.close()
-        proxy.close()
-        server.close()
-    with Study.open(study) as opened:
-        stored = opened.aborted("T-001")
-    assert sorted(len(each.record.points) for each in stored) == list(range(1, TRIALS + 1))
-    assert TrialArchive(records).unacknowledged() == ()
-    assert find_unacknowledged(records) == []
+        print(f"\n{trials} trials: {proxy.faults}; Slicer's side and the server ended {ends}")

@@ -7,45 +7,15 @@ import json
 import pytest
 
 from rastrainer_simulator.ops.instructor_pin import InstructorPin
-from Testing.end_to_end.simulator_process import ViewedSimulator
+from Testing.end_to_end.simulator_process import MenuView, ViewedSimulator, items_of
 from Testing.simulator.net.igtl.servers import LoopThread
-from Testing.simulator.net.views.served import ViewClient, request
 
 PIN = "405816"
 
 
-class Page:
-    """A page that keeps all that it is sent."""
-
-    def __init__(self, simulator, thread, role):
-        pairing = {"code": simulator.code, "role": role}
-        _status, _headers, body = request(simulator.url, "/pair", "POST", data=json.dumps(pairing))
-        self._view = ViewClient(thread, simulator.url, json.loads(body)["key"])
-        kind = "page" if role == "view" else role
-        self.number = self._view.join(kind=kind)["view"]
-        self.received: list[str] = []
-
-    def send(self, **message):
-        self._view.send(message)
-
-    def tap(self, code):
-        for is_down in (True, False):
-            self.send(type="key", code=code, isDown=is_down, text="")
-
-    def until(self, condition):
-        """Read on until a screen is as wanted."""
-        while True:
-            message = json.loads(self._view.next_text())
-            self.received.append(json.dumps(message, ensure_ascii=False))
-            if message["type"] == "screen" and condition(message["screen"]):
-                return message["screen"]
-
-    def until_menu(self, name):
-        return self.until(lambda screen: screen["menu"] and screen["menu"]["name"] == name)
-
-    def choose(self, menu, item):
-        self.until_menu(menu)
-        self.send(type="item", name=item)
+def tap(view, code):
+    for is_down in (True, False):
+        view.send({"type": "key", "code": code, "isDown": is_down, "text": ""})
 
 
 @pytest.fixture
@@ -63,34 +33,32 @@ def place(tmp_path):
 
 def test_a_pin_typed_in_one_page_appears_in_no_other_page_and_in_no_file(place):
     folder, simulator, thread = place
-    page, other = (Page(simulator, thread, "view") for _ in range(2))
-    spectator = Page(simulator, thread, "spectator")
-    page.choose("start", "settings")
-    settings = page.until_menu("settings")
-    locked = {item["name"] for item in settings["menu"]["items"] if not item["isEnabled"]}
+    page, other = (MenuView(thread, simulator) for _ in range(2))
+    spectator = MenuView(thread, simulator, "spectator")
+    page.until_menu("start")
+    settings = items_of(page.go("settings", "settings"))
+    locked = {name for name, item in settings.items() if not item["isEnabled"]}
     assert {"order", "tutorial", "coarse", "guidance"} <= locked
-    other.tap("KeyM")
+    tap(other, "KeyM")
     other.until(lambda screen: "Only an instructor can pass it on" in json.dumps(screen))
-    page.send(type="item", name="unlock")
-    dots = page.until_menu("pin")["menu"]["items"][0]["value"]
-    assert dots == "_"
-    page.send(type="item", name=PIN[0])
+    (dots, *_) = page.go("unlock", "pin")["items"]
+    assert dots["value"] == "_"
+    page.send({"type": "item", "name": PIN[0]})
     for digit in PIN[1:]:
-        page.tap(f"Digit{digit}")
+        tap(page, f"Digit{digit}")
     page.until(lambda screen: "••••••_" in json.dumps(screen, ensure_ascii=False))
     for unseeing in (other, spectator):
-        menu = unseeing.until_menu("pin")["menu"]
+        menu = unseeing.until_menu("pin")
         assert (menu["items"], menu["facts"], menu["focus"]) == ([], [], "")
-    page.tap("Enter")
-    opened = page.until_menu("settings")
-    order = next(item for item in opened["menu"]["items"] if item["name"] == "order")
-    assert order["isEnabled"]
+    tap(page, "Enter")
+    assert items_of(page.until_menu("settings"))["order"]["isEnabled"]
     assert PIN not in "".join(page.received)
     for unseeing in (other, spectator):
         unseeing.until_menu("settings")
         text = "".join(unseeing.received)
         assert PIN not in text
         assert "•" not in text
+        assert "\\u2022" not in text
     status, errors = simulator.stop()
     assert status == 0
     assert PIN not in errors

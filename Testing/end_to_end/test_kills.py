@@ -14,10 +14,9 @@ from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.database.study import Study
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.core.interrupted_trial import InterruptedTrial
 from rastrainer_simulator.record.trial_archive import SUFFIX, TrialArchive, find_unacknowledged
-from Testing.end_to_end.finished_trials import COLIN, TRAINEE, write_finished_trials
+from Testing.end_to_end.finished_trials import COLIN, TRAINEE
 from Testing.end_to_end.process_nursery import SIMULATOR, SLICER_SIDE, Nursery
 from Testing.end_to_end.simulator_process import READY
 from Testing.end_to_end.surviving_player import NOT_REPORTED, Killing, SurvivingPlayer
@@ -43,16 +42,15 @@ def slicer_sides(tmp_path_factory):
 class Lab:
     """A folder of records and one of Slicer's side, and their processes."""
 
-    def __init__(self, folder, nursery, slicer_nursery=None, speed=10):
+    def __init__(self, folder, nursery, slicer_nursery=None):
         self.records, self.output = folder / "records", folder / "slicer"
         self._config = str(folder / "config")
         self._nursery, self._slicer_nursery = nursery, slicer_nursery
-        self._speed = str(speed)
         self.port = free_port()
 
     def start_simulator(self):
         """Return a function that ends it by a signal."""
-        words = ("--no-views", "--speed", self._speed, "--port", str(self.port))
+        words = ("--no-views", "--speed", "10", "--port", str(self.port))
         simulator = self._nursery.fork(
             "simulator", "--records", str(self.records), "--config", self._config, *words
         )
@@ -64,7 +62,9 @@ class Lab:
     def start_slicer(self):
         """Return Slicer's side, which waits for more trials than there are."""
         words = ("--assets", str(asset_path()), "--output", str(self.output), "--trials", "100000")
-        return self._slicer_nursery.fork("--port", str(self.port), *words, "--timeout", "1000")
+        slicer = self._slicer_nursery.fork("--port", str(self.port), *words, "--timeout", "1000")
+        slicer.drain_output()
+        return slicer
 
     @property
     def journals(self):
@@ -79,24 +79,6 @@ class Lab:
             return 0, 0
         assert len({trial.record.trial_id for trial in trials}) == len(trials)
         return len(trials), sum(trial.true_tre_mm is not None for trial in trials)
-
-
-def kill_servers(lab, kills, resumed, seed):
-    """Continue playing through a number of kills, then one trial to its end; return the player.
-
-    A kill between two trials leaves none to resume: there are more kills until so many were.
-    """
-    rng = random.Random(seed)
-    player = SurvivingPlayer(load_scenario(COLIN), rng)
-    killed = 0
-    while killed < kills or player.resumed < resumed:
-        end = lab.start_simulator()
-        assert not player.play(lab.port, Killing(rng, lambda end=end: end(signal.SIGKILL)), 1000)
-        killed += 1
-    end = lab.start_simulator()
-    assert player.play(lab.port, None, 1)
-    end(signal.SIGTERM)
-    return player
 
 
 def check_records(lab, player):
@@ -134,71 +116,15 @@ def check_records(lab, player):
     return found
 
 
-def check_offers(lab, player, replayed):
-    """Trials that Slicer's side has not fetched are offered, and some can be replayed."""
-    offered = {record.trial_id for record in TrialArchive(lab.records).unacknowledged()}
-    assert offered >= player.registered
-    chosen = [path for path in lab.journals if path.stem.partition("_")[2] in player.registered]
-    for path in chosen[:replayed]:
-        assert main(["replay", str(path), "--verify"]) == 0
-
-
-def test_a_repeatedly_killed_server_resumes_where_the_trainee_was(tmp_path, simulators):
-    lab = Lab(tmp_path, simulators)
-    player = kill_servers(lab, kills=8, resumed=4, seed=3)
-    check_records(lab, player)
-    check_offers(lab, player, replayed=0)
-
-
-@pytest.mark.soak
-def test_three_hundred_kills_of_the_server_lose_no_acknowledged_touch(tmp_path, simulators, capsys):
-    lab = Lab(tmp_path, simulators)
-    player = kill_servers(lab, kills=300, resumed=150, seed=4)
-    check_records(lab, player)
-    check_offers(lab, player, replayed=2)
-    with capsys.disabled():
-        touches = sum(map(len, player.kept.values()))
-        print(
-            f"\n300 kills: {len(player.registered)} trials, {touches} touches, {player.resumed} "
-            "times resumed"
-        )
-
-
-def kill_slicer(lab, kills, seed, trials, also_server):
-    """Kill Slicer's side, and the server with it or at another time, until all is stored."""
-    rng = random.Random(seed)
-    wanted = set(write_finished_trials(lab.records, range(1, trials + 1)))
-    end_simulator = lab.start_simulator()
-    slicer = lab.start_slicer()
-    for _ in range(kills):
-        # While it starts, or while trials arrive: they are offered every two seconds.
-        if rng.random() < 0.9:
-            while '"connected"' not in (line := slicer.next_line()):
-                assert line, "Slicer's side has ended"
-        time.sleep(rng.uniform(0.0, 2.5))
-        slicer.end(signal.SIGKILL)
-        if also_server and rng.random() < 0.5:
-            end_simulator(signal.SIGKILL)
-            end_simulator = lab.start_simulator()
-        slicer = lab.start_slicer()
-    deliver_the_rest(lab, slicer, trials)
-    end_simulator(signal.SIGTERM)
-    with Study.open(lab.output / "study.db") as study:
-        assert {trial.record.trial_id for trial in study.history(TRAINEE)} == wanted
-    assert TrialArchive(lab.records).unacknowledged() == ()
-    assert all(read_journal(path).integrity is Integrity.INTACT for path in lab.journals)
-
-
-def deliver_the_rest(lab, slicer, trials):
+def deliver_the_rest(lab, trials):
     """Have trials stored and acknowledged, then their truths revealed, and end Slicer's side.
 
     An answer that came too late on a busy machine is asked for again over the next connection.
     """
-    slicer.drain_output()
+    slicer = lab.start_slicer()
     wait_for_study(lab, lambda stored: stored[0] == trials and not find_unacknowledged(lab.records))
     slicer.end(signal.SIGKILL)
     slicer = lab.start_slicer()
-    slicer.drain_output()
     wait_for_study(lab, lambda stored: stored == (trials, trials))
     slicer.end(signal.SIGKILL)
 
@@ -213,16 +139,38 @@ def wait_for_study(lab, is_complete):
         time.sleep(0.1)
 
 
-def kill_both_during_play(lab, kills, resumed, seed):
-    """Play on while Slicer's side is killed, alone or at once with the server; return the player.
+@pytest.mark.parametrize(
+    ("kills", "resumed"), [(4, 2), pytest.param(300, 150, marks=pytest.mark.soak)]
+)
+def test_a_repeatedly_killed_server_resumes_where_the_trainee_was(
+    tmp_path, simulators, capsys, kills, resumed
+):
+    """A kill between two trials leaves none to resume: there are more kills until so many were."""
+    lab, rng = Lab(tmp_path, simulators), random.Random(3)
+    player, killed = SurvivingPlayer(load_scenario(COLIN), rng), 0
+    while killed < kills or player.resumed < resumed:
+        end = lab.start_simulator()
+        assert not player.play(lab.port, Killing(rng, lambda end=end: end(signal.SIGKILL)), 1000)
+        killed += 1
+    end = lab.start_simulator()
+    assert player.play(lab.port, None, 1)
+    end(signal.SIGTERM)
+    check_records(lab, player)
+    offered = {record.trial_id for record in TrialArchive(lab.records).unacknowledged()}
+    assert offered >= player.registered
+    report(capsys, killed, player)
 
-    Then play one trial to its end and have all delivered. As of `kill_servers`, `resumed` is how
-    many trials were resumed at least.
-    """
-    rng = random.Random(seed)
+
+@pytest.mark.parametrize(
+    ("kills", "resumed"), [(2, 1), pytest.param(300, 100, marks=pytest.mark.soak)]
+)
+def test_a_trainee_whose_server_and_slicer_are_killed_loses_no_touch_and_doubles_no_trial(
+    tmp_path, simulators, slicer_sides, capsys, kills, resumed
+):
+    """Slicer's side is killed, alone or at once with the server; then all is delivered."""
+    lab, rng = Lab(tmp_path, simulators, slicer_sides), random.Random(8)
     player = SurvivingPlayer(load_scenario(COLIN), rng)
     end_simulator, slicer = lab.start_simulator(), lab.start_slicer()
-    slicer.drain_output()
     killed = 0
 
     def kill(with_server):
@@ -241,16 +189,10 @@ def kill_both_during_play(lab, kills, resumed, seed):
             end_simulator = lab.start_simulator()
         if killing.is_done:
             slicer = lab.start_slicer()
-            slicer.drain_output()
     assert player.play(lab.port, None, 1)
     slicer.end(signal.SIGKILL)
-    deliver_the_rest(lab, lab.start_slicer(), len(check_records(lab, player)))
+    deliver_the_rest(lab, len(check_records(lab, player)))
     end_simulator(signal.SIGTERM)
-    return player
-
-
-def check_study(lab, player):
-    """Every registered trial is in the study once, with the touches of its journal."""
     with Study.open(lab.output / "study.db") as study:
         records = [trial.record for trial in study.history(TRAINEE)]
     stored = {
@@ -259,43 +201,13 @@ def check_study(lab, player):
     }
     assert len(stored) == len(records)
     assert stored == check_records(lab, player)
+    report(capsys, killed, player)
 
 
-def test_a_trainee_whose_server_and_slicer_are_killed_at_once_resumes_and_loses_no_touch(
-    tmp_path, simulators, slicer_sides
-):
-    lab = Lab(tmp_path, simulators, slicer_sides)
-    player = kill_both_during_play(lab, kills=2, resumed=1, seed=8)
-    check_study(lab, player)
-
-
-@pytest.mark.soak
-def test_three_hundred_kills_of_both_sides_during_play_lose_no_touch_and_duplicate_no_trial(
-    tmp_path, simulators, slicer_sides, capsys
-):
-    lab = Lab(tmp_path, simulators, slicer_sides)
-    player = kill_both_during_play(lab, kills=300, resumed=100, seed=9)
-    check_study(lab, player)
+def report(capsys, killed, player):
+    touches = sum(map(len, player.kept.values()))
     with capsys.disabled():
-        touches = sum(map(len, player.kept.values()))
         print(
-            f"\n300 kills of both: {len(player.registered)} trials, {touches} touches, "
+            f"\n{killed} kills: {len(player.registered)} trials, {touches} touches, "
             f"{player.resumed} times resumed"
         )
-
-
-@pytest.mark.soak
-def test_slicers_side_and_the_server_killed_at_any_moment_deliver_every_trial_once(
-    tmp_path, simulators, slicer_sides
-):
-    lab = Lab(tmp_path, simulators, slicer_sides, speed=1)
-    kill_slicer(lab, kills=2, seed=6, trials=3, also_server=True)
-
-
-@pytest.mark.soak
-@pytest.mark.parametrize("also_server", [False, True], ids=["alone", "with the server"])
-def test_three_hundred_kills_of_slicers_side_lose_and_duplicate_no_trial(
-    tmp_path, simulators, slicer_sides, also_server
-):
-    lab = Lab(tmp_path, simulators, slicer_sides, speed=1)
-    kill_slicer(lab, kills=300, seed=7, trials=400, also_server=also_server)

@@ -6,10 +6,10 @@ at a message or with a command on its way; Slicer's sides and the database at an
 
 from __future__ import annotations
 
+import contextlib
 import json
 import random
 import signal
-import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 
@@ -39,7 +39,8 @@ TRAINEES = [f"P{number:02d}" for number in range(1, 13)]
 TASKS = ("task-1", "task-2")
 SEATS = 3
 KILLED_SIMULATORS, KILLED_SLICERS, KILLED_DATABASES = 14, 10, 28
-"""Of each seat, of each seat, and in all: 100."""
+"""Of each seat, of each seat, and in all."""
+KILLS = SEATS * (KILLED_SIMULATORS + KILLED_SLICERS) + KILLED_DATABASES
 PROTOCOL = {
     "modes": ["desktop"],
     "modeOrder": "fixed",
@@ -57,7 +58,7 @@ PATIENCE_S = 600.0
 
 
 class Seat:
-    """A simulator and Slicer's side, which come and go; a lock lets only one thread change them."""
+    """A simulator and Slicer's side, which come and go."""
 
     def __init__(self, folder, place, nurseries, seed):
         folder.mkdir()
@@ -67,7 +68,6 @@ class Seat:
         self.rng = random.Random(seed)
         self.player = SurvivingPlayer(load_scenario(COLIN), random.Random(seed + 100))
         self.killed_simulators = self.killed_slicers = 0
-        self.turn = threading.Lock()
         self.start_simulator()
         self.start_slicer()
 
@@ -93,7 +93,7 @@ class Seat:
         """Play a trial to its end, through up to so many deaths of the simulator."""
         self.player.trainee, self.player.task = trainee, task
         while kills:
-            killing = Killing(self.rng, self._kill_simulator)
+            killing = Killing(self.rng, self.kill_simulator)
             is_done = self.player.play(self.port, killing, 1)
             if is_done and not killing.is_done:
                 return
@@ -103,19 +103,25 @@ class Seat:
                 return
         assert self.player.play(self.port, None, 1)
 
-    def _kill_simulator(self):
+    def kill_simulator(self):
         self.killed_simulators += 1
         self.end_simulator(signal.SIGKILL)
 
-    def kill_simulator_at_rest(self):
-        self._kill_simulator()
-        self.start_simulator()
-
     def kill_slicer(self):
-        with self.turn:
-            self.killed_slicers += 1
-            self.end_slicer(signal.SIGKILL)
-            self.start_slicer()
+        self.killed_slicers += 1
+        self.end_slicer(signal.SIGKILL)
+        self.start_slicer()
+
+
+def patiently(ask):
+    """Return the first true answer, while the database may be away; give up after long."""
+    give_up = time.monotonic() + PATIENCE_S
+    while True:
+        with contextlib.suppress(InputError):
+            if found := ask():
+                return found
+        assert time.monotonic() < give_up
+        time.sleep(0.2)
 
 
 class Lab:
@@ -136,42 +142,20 @@ class Lab:
             for number in range(SEATS)
         ]
 
-    def next_step(self, trainee):
-        """Return the name of the trainee's next step after the stored ones; "" if none."""
+    def is_next(self, trainee, name):
         with opened_when_available(self.place) as study:
             step = StudyProgress(study).played(trainee).next_step
-        return "" if step is None else step.name
+        return step is not None and step.name == name
 
-    def until_next(self, trainee, wanted):
-        """Wait until a step comes next."""
-        give_up = time.monotonic() + PATIENCE_S
-        while (name := self.asked(lambda: self.next_step(trainee))) != wanted:
-            assert time.monotonic() < give_up, (trainee, name, wanted)
-            time.sleep(0.2)
-
-    def asked(self, ask):
-        """Return what a function returns, as soon as the database is reachable."""
-        give_up = time.monotonic() + PATIENCE_S
-        while True:
-            try:
-                return ask()
-            except InputError:
-                assert time.monotonic() < give_up
-                time.sleep(0.1)
-
-    def answer(self, trainee):
-        """Answer the questionnaire at some seat, again where the answer was lost in a crash."""
-        while self.asked(lambda: self.next_step(trainee)) != "":
-
-            def store():
-                with opened_when_available(self.place) as study:
-                    StudyProgress(study).count_played(trainee)
-                    step = StudyProgress(study).progress(trainee).next_step
-                    if step is not None:
-                        details = {"answers": [3] * len(SUS.items)}
-                        StudyProgress(study).finish(trainee, step.name, details)
-
-            self.asked(store)
+    def has_answered(self, trainee):
+        """Answer the questionnaire, if it is not; return whether it was."""
+        with opened_when_available(self.place) as study:
+            progress = StudyProgress(study)
+            progress.count_played(trainee)
+            step = progress.progress(trainee).next_step
+            if step is not None:
+                progress.finish(trainee, step.name, {"answers": [3] * len(SUS.items)})
+        return step is None
 
     def lead(self, seat_number):
         """Play the trials of one seat: trainees move on to the next seat for each task."""
@@ -183,14 +167,15 @@ class Lab:
             if (place + number) % SEATS == seat_number
         ]
         for index, (trainee, task) in enumerate(trials):
-            self.until_next(trainee, f"desktop/1/{task}")
+            patiently(lambda who=trainee, what=task: self.is_next(who, f"desktop/1/{what}"))
             left = KILLED_SIMULATORS - seat.killed_simulators
             seat.play(trainee, task, -(-left // (len(trials) - index)))
             if task == TASKS[-1]:
-                self.until_next(trainee, "desktop/after/sus")
-                self.answer(trainee)
+                patiently(lambda who=trainee: self.is_next(who, "desktop/after/sus"))
+                patiently(lambda who=trainee: self.has_answered(who))
         while seat.killed_simulators < KILLED_SIMULATORS:
-            seat.kill_simulator_at_rest()
+            seat.kill_simulator()
+            seat.start_simulator()
 
     def kill_slicers(self, seat, rng):
         for _ in range(KILLED_SLICERS):
@@ -206,7 +191,7 @@ class Lab:
             self.server.start()
 
     def run(self):
-        """Play the whole study while simulators, Slicer's sides and the database are killed."""
+        """Play the whole study while all is killed; then have everything scored and revealed."""
         with ThreadPoolExecutor(2 * SEATS + 1) as threads:
             parts = [threads.submit(self.lead, number) for number in range(SEATS)]
             parts += [
@@ -216,61 +201,46 @@ class Lab:
             parts.append(threads.submit(self.kill_databases, random.Random(60)))
             for part in parts:
                 part.result()
-
-    def deliver_the_rest(self):
-        """Have everything acknowledged, and, over new connections, scored and revealed."""
-        self.until(lambda: not any(find_unacknowledged(seat.records) for seat in self.seats))
+        patiently(lambda: not any(find_unacknowledged(seat.records) for seat in self.seats))
         for seat in self.seats:
-            seat.end_slicer(signal.SIGKILL)
-            seat.start_slicer()
-        self.until(lambda: all(t.score and t.truth for t in self.trials()))
-
-    def until(self, is_so):
-        give_up = time.monotonic() + PATIENCE_S
-        while not is_so():
-            assert time.monotonic() < give_up
-            time.sleep(0.5)
+            # What was answered too late is asked for again over the next connection.
+            seat.kill_slicer()
+        patiently(lambda: all(trial.score and trial.truth for trial in self.trials()))
 
     def trials(self):
         with opened_when_available(self.place) as study:
             return [trial for name in TRAINEES for trial in study.history(name)]
 
 
-@pytest.fixture
-def lab(tmp_path):
+def test_a_study_over_three_seats_survives_a_hundred_kills_of_all_its_parts(tmp_path, capsys):
     with (
         PostgresServer() as server,
         Nursery(SIMULATOR, tmp_path) as simulators,
         Nursery(STUDY_SIDE, tmp_path) as slicers,
     ):
-        yield Lab(tmp_path, server, (simulators, slicers))
-
-
-def test_a_study_over_three_seats_survives_a_hundred_kills_of_all_its_parts(lab, tmp_path, capsys):
-    begun = time.monotonic()
-    lab.run()
-    lab.deliver_the_rest()
-    kills = [
-        sum(seat.killed_simulators for seat in lab.seats),
-        sum(seat.killed_slicers for seat in lab.seats),
-        lab.killed_databases,
-    ]
-    assert sum(kills) >= 100
-    check_trials(lab)
-    check_progress(lab)
-    file = tmp_path / "study.db"
-    assert main(["copy-study", str(lab.place), str(file)]) == 0
-    assert rows_of(lab.place) == rows_of(file)
-    files = [written_files(where, tmp_path / name) for name, where in
-             (("there", lab.place), ("here", file))]  # fmt: skip
-    assert files[0] == files[1]
-    with capsys.disabled():
-        resumed = sum(seat.player.resumed for seat in lab.seats)
-        print(
-            f"\n{sum(kills)} kills ({kills[0]} of simulators, {kills[1]} of Slicer's sides, "
-            f"{kills[2]} of the database) in {time.monotonic() - begun:.0f} s: "
-            f"{len(lab.trials())} trials, {resumed} times resumed, {len(files[0])} equal files"
+        lab = Lab(tmp_path, server, (simulators, slicers))
+        lab.run()
+        simulators, slicers = (
+            sum(getattr(seat, name) for seat in lab.seats)
+            for name in ("killed_simulators", "killed_slicers")
         )
+        assert simulators + slicers + lab.killed_databases >= KILLS
+        check_trials(lab)
+        check_progress(lab)
+        file = tmp_path / "study.db"
+        assert main(["copy-study", str(lab.place), str(file)]) == 0
+        assert rows_of(lab.place) == rows_of(file)
+        there, here = (
+            written_files(where, tmp_path / name)
+            for name, where in (("there", lab.place), ("here", file))
+        )
+        assert there == here
+        with capsys.disabled():
+            resumed = sum(seat.player.resumed for seat in lab.seats)
+            print(
+                f"\n{simulators} simulators, {slicers} Slicer's sides, {lab.killed_databases} "
+                f"databases killed; {len(lab.trials())} trials, {resumed} times resumed"
+            )
 
 
 def check_trials(lab):

@@ -14,8 +14,11 @@ import urllib.request
 import pytest
 
 from rastrainer.igtl.client import Client
+from rastrainer.igtl.content import Command, CommandReply
+from rastrainer.igtl.message import Message, MessageReader, pack
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.protocol import DeviceName
+from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from Testing.end_to_end.simulator_process import COMMAND, SimulatorProcess, ViewedSimulator
 from Testing.end_to_end.window_process import wait_until
@@ -24,13 +27,6 @@ from Testing.simulator.net.views.served import ViewClient
 
 TRAINEE = "Pseudonym-77"
 UNLIMITED = (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
-
-
-class NoViews(SimulatorProcess):
-    """A simulator of OpenIGTLink alone."""
-
-    def __init__(self, records, *arguments):
-        super().__init__(records, "--no-views", *arguments)
 
 
 def do(client, name, **arguments):
@@ -139,16 +135,55 @@ def test_no_secret_and_no_pseudonym_is_in_the_log(ended):
         assert secret not in errors
 
 
-@pytest.mark.soak
-def test_a_view_port_in_use_exits_with_a_one_sentence_error_and_status_2(tmp_path):
+@pytest.mark.parametrize("option", ["--port", pytest.param("--view-port", marks=pytest.mark.soak)])
+def test_a_port_in_use_gives_one_sentence_and_status_2(tmp_path, option):
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = str(other.getsockname()[1])
         places = ["--records", str(tmp_path / "records"), "--config", str(tmp_path / "config")]
-        command = [*COMMAND, *places, "--port", "0", "--view-port", port, "--no-gamepad"]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+        ports = {"--port": "0", "--view-port": "0"} | {option: port}
+        words = [word for each in ports.items() for word in each]
+        command = [*COMMAND, *places, *words, "--no-gamepad"]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 2
     assert done.stderr.startswith(f"rastrainer: Cannot listen on 127.0.0.1:{port}")
     assert len(done.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["--port", "99999"], "--port: must be a whole number from 0 to 65535"),
+        (["--speed", "nan"], "--speed: must be a number from 0.001 to 1000.0"),
+        (["--connect", "slicer"], "--connect must be HOST:PORT, such as 127.0.0.1:18944"),
+        (["--scenario", "nowhere"], "The scenario's folder nowhere does not exist."),
+    ],
+)
+def test_a_wrong_argument_gives_one_sentence_and_status_2(tmp_path, capsys, arguments, sentence):
+    places = ["--records", str(tmp_path), "--config", str(tmp_path)]
+    assert main(["simulator", *places, *arguments]) == 2
+    said = capsys.readouterr().err
+    assert sentence in said
+    assert said.startswith("rastrainer: ")
+    assert said.count("\n") == 1
+
+
+def test_the_simulator_connects_to_a_listening_slicer_and_takes_its_commands(tmp_path):
+    with socket.create_server(("127.0.0.1", 0)) as slicer:
+        address = "{}:{}".format(*slicer.getsockname())
+        with SimulatorProcess(tmp_path, "--no-views", "--connect", address) as simulator:
+            assert simulator.ready == f"RASTrainer simulator ready; it connects to {address}"
+            slicer.settimeout(60)
+            connection, _address = slicer.accept()
+            with connection:
+                connection.settimeout(60)
+                connection.sendall(pack(Message("command", Command(1, "ListTasks"))))
+                reader, reply = MessageReader(), None
+                while reply is None:
+                    for message in reader.feed(connection.recv(65_536)):
+                        if type(message.content) is CommandReply:
+                            reply = message
+            assert reply.metadata["Status"] == "SUCCESS"
+            assert simulator.stop(signal.SIGINT) == (0, "")
 
 
 @pytest.fixture
@@ -172,7 +207,7 @@ def test_an_interrupted_trial_is_reported_on_the_terminal_and_left_alone_on_requ
         with Client(port=simulator.port) as client:
             in_phase(client, "idle")
         assert simulator.stop()[0] == 0
-    with NoViews(records) as simulator:
+    with SimulatorProcess(records, "--no-views") as simulator:
         assert simulator.next_line() == (
             f"RASTrainer simulator resumes the interrupted trial of {TRAINEE} at task-1: "
             "0 of 15 points are kept; resume or abort it"

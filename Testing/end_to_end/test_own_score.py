@@ -9,7 +9,6 @@ import pytest
 
 from rastrainer.commands import check_arguments
 from rastrainer.errors import InputError
-from rastrainer.igtl.client import Client
 from rastrainer.journal.entries import Stamp
 from rastrainer.journal.folder import journals_of
 from rastrainer.journal.journal_file import read_journal
@@ -39,19 +38,13 @@ from rastrainer_simulator.training.local_scorer import (
     registered_alone,
     score_alone,
 )
-from rastrainer_simulator.virtual.scripted_trial import play_trial, send_hello
 from Testing.end_to_end.faulty_proxy import SlicerSide
 from Testing.end_to_end.finished_trials import COLIN, TRAINEE, write_finished_trials
-from Testing.end_to_end.simulator_process import SimulatorProcess, ViewedSimulator
-from Testing.end_to_end.stream_trainee import WatchingView
-from Testing.end_to_end.test_replay_at_the_simulator import BRISK
-from Testing.end_to_end.window_process import wait_until
-from Testing.simulator.net.views.served import ViewClient
+from Testing.end_to_end.simulator_process import SimulatorProcess
 
 TIMEOUT_S = 600.0
-TRIALS = 100
+TRIALS, FEW = 100, 3
 TOO_MANY_AT_ONCE = "Trials arrive faster than they can be scored; they will be offered again later."
-OWN = "the simulator's own and is not stored in a study"
 
 
 @pytest.fixture(scope="module")
@@ -103,15 +96,15 @@ def test_the_result_without_slicer_is_that_of_slicers_study_on_100_seeded_trials
     with Study.open(tmp_path / "study.db") as study:
         for record in archive.unacknowledged():
             assert isinstance(record, TrialRecord)
-            stored = store_delivered(
+            _record, analysis = store_delivered(
                 record_to_json(record), study, lambda each: analyze_trial(each, scenario, cohort)
             )
             registration = check_arguments(
-                "SubmitRegistration", stored.analysis.arguments(stored.analysis.record.trial_id)
+                "SubmitRegistration", analysis.arguments(record.trial_id)
             )
             answer = archive.answer("SubmitRegistration", registration, Stamp.now(0, 0.0))
             truth = record_from_json(RevealedTruth, answer)
-            scored = scored_with_journal(stored.analysis, truth, scenario, score_references(study))
+            scored = scored_with_journal(analysis, truth, scenario, score_references(study))
             study.add_results(record.trial_id, score=scored.score)
             slicers = score_arguments(with_progress(scored, study))
             (own,) = alone.entries(record.trial_id, "scored")
@@ -131,11 +124,10 @@ def test_a_trial_is_not_scored_on_another_head_that_was_loaded_afterward(tmp_pat
     assert alone.entries(trial, "registration") == []
 
 
-@pytest.mark.parametrize("count", [3, pytest.param(TRIALS, marks=pytest.mark.soak)])
 def test_slicer_connecting_later_stores_the_trial_and_its_score_replaces_the_identical_one(
-    tmp_path, scenario, cohort, count
+    tmp_path, scenario, cohort
 ):
-    alone = Alone(tmp_path / "alone", count, scenario)
+    alone = Alone(tmp_path / "alone", FEW, scenario)
 
     find, make = lambda _name: scenario, lambda services: TrialLogic(services, cohort)
     with SimulatorProcess(alone.folder, "--no-views") as simulator:
@@ -144,13 +136,13 @@ def test_slicer_connecting_later_stores_the_trial_and_its_score_replaces_the_ide
         slicer.logic.trialScored.connect(scored.append)
         slicer.logic.problemFound.connect(problems.append)
         give_up = time.monotonic() + TIMEOUT_S
-        while len(scored) < count and time.monotonic() < give_up:
+        while len(scored) < FEW and time.monotonic() < give_up:
             slicer.run_for(10)
         slicer.close()
         assert simulator.stop()[0] == 0
     # A busy machine takes them in several turns.
     assert set(problems) <= {TOO_MANY_AT_ONCE}
-    assert len(scored) == count
+    assert len(scored) == FEW
     for analysis in scored:
         trial = analysis.record.trial_id
         (registered,) = alone.entries(trial, "registration")
@@ -163,36 +155,3 @@ def test_slicer_connecting_later_stores_the_trial_and_its_score_replaces_the_ide
         assert without_its_mark(own) == slicers
     with Study.open(tmp_path / "study.db") as study:
         assert {study.trial(trial).score.version for trial in alone.trials} == {SCORE_VERSION}
-
-
-@pytest.mark.soak
-def test_a_view_of_the_real_simulator_shows_its_own_score_until_slicer_scores_the_trial(
-    tmp_path, scenario, cohort, loop_thread
-):
-    records = tmp_path / "records"
-    with ViewedSimulator(records, "--speed", "8") as simulator:
-        with Client(port=simulator.port) as client:
-            send_hello(client, "player")
-            trial = play_trial(client, scenario, "task-1", "P07", 5, BRISK).trial_id
-        with ViewClient(loop_thread, simulator.url, simulator.key) as joined:
-            view = WatchingView(joined)
-            wait_until(lambda: OWN in said(view), "the simulator's own score")
-            own = view.screen.menu
-            find, make = lambda _name: scenario, lambda services: TrialLogic(services, cohort)
-            slicer = SlicerSide(tmp_path / "study.db", simulator.port, make, find, records)
-
-            def is_replaced():
-                slicer.run_for(5)
-                return OWN not in said(view)
-
-            wait_until(is_replaced, "Slicer's score")
-            assert view.screen.menu.facts == own.facts
-            slicer.close()
-    with Study.open(tmp_path / "study.db") as study:
-        assert study.trial(trial).score is not None
-
-
-def said(view):
-    """Return the text of the result, "" while it is not shown."""
-    menu = view.screen.menu
-    return " ".join(menu.paragraphs) if menu is not None and menu.name == "result" else ""

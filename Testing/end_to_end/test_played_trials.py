@@ -26,9 +26,8 @@ from rastrainer_simulator.record.trial_archive import SUFFIX, TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
 from rastrainer_simulator.replay.resimulation import ReplayReport, replay
 from rastrainer_simulator.virtual.play import play_virtual_trial
-from rastrainer_simulator.virtual.scripted_trainee import Skill
+from Testing.simulator.virtual.conftest import BRISK
 
-BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04, slip_at=None)
 STEP_S = 0.05
 
 

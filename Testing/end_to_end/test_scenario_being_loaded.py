@@ -20,9 +20,8 @@ from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.replay.resimulation import replay
 from rastrainer_simulator.texts.texts import ENGLISH
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
-from Testing.end_to_end.simulator_process import ViewedSimulator
+from Testing.end_to_end.simulator_process import MenuView, ViewedSimulator, items_of
 from Testing.end_to_end.window_process import wait_until
-from Testing.simulator.net.views.served import ViewClient
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="Windows has no named pipes")
 
@@ -87,39 +86,6 @@ class Peer(Client):
         self._pool.shutdown()
 
 
-class Menu:
-    """A view in which a trainee goes through menus."""
-
-    def __init__(self, view):
-        self._view = view
-        view.join(kind="desktop")
-
-    def go(self, item, menu):
-        self._view.send({"type": "item", "name": item})
-        return self.until(lambda screen: screen["name"] == menu)
-
-    def type(self, name, value):
-        self._view.send({"type": "text", "name": name, "value": value})
-
-    def until(self, is_wanted):
-        """Return the items of the next menu that meets a condition, by their names."""
-        while True:
-            menu = self._view.next("screen")["screen"].get("menu")
-            if menu and is_wanted(menu):
-                return items_of(menu)
-
-    def go_to_experiment(self):
-        self.go("train", "introduction")
-        self.go("skip", "controls")
-        self.go("next", "experiment")
-        self.type("trainee", "P07")
-        return self.until(lambda menu: items_of(menu)["trial-run"]["isEnabled"])
-
-
-def items_of(menu):
-    return {item["name"]: item for item in menu["items"]}
-
-
 def phase(peer):
     """Return the phase of a trial that has begun."""
 
@@ -156,14 +122,15 @@ def other(simulator):
 
 @pytest.fixture
 def menu(simulator, loop_thread):
-    with ViewClient(loop_thread, simulator.url, simulator.key) as view:
-        yield Menu(view)
+    with MenuView(loop_thread, simulator) as view:
+        yield view
 
 
 def test_a_trial_waits_until_the_head_is_loaded_no_matter_who_starts_it(
     simulator, instructor, other, menu, ball
 ):
-    menu.go_to_experiment()
+    menu.go_to_experiment("P07")
+    menu.until_menu("experiment", lambda menu: items_of(menu)["trial-run"]["isEnabled"])
     loading = instructor.begin("LoadScenario", folder=str(ball))
     with simulator.being_loaded():
         refused = [other.start("task-1") for _ in range(MORE_THAN_AT_ONCE)]
@@ -171,12 +138,18 @@ def test_a_trial_waits_until_the_head_is_loaded_no_matter_who_starts_it(
         assert {(answer.ok, answer.error) for answer in refused} == {(False, LOADING)}
         assert other.ask("ListTasks").data["scenario"] == "colin27"
         assert not loading.done()
-        items = menu.until(lambda menu: not items_of(menu)["trial-run"]["isEnabled"])
+        items = items_of(
+            menu.until_menu("experiment", lambda menu: not items_of(menu)["trial-run"]["isEnabled"])
+        )
         assert items["trial-run"]["help"] == LOADING
         assert items["scenario"]["value"] == "Colin27 head"
     assert loading.result(PATIENCE_S).data["name"] == "ball"
     task = other.ask("ListTasks").data["tasks"][0]["name"]
-    items = menu.until(lambda menu: items_of(menu).get(task, {}).get("help") != LOADING)
+    items = items_of(
+        menu.until_menu(
+            "experiment", lambda menu: items_of(menu).get(task, {}).get("help") != LOADING
+        )
+    )
     assert items["scenario"]["value"] == "A ball"
     started = other.start(task)
     assert (started.ok, started.error) == (True, "")

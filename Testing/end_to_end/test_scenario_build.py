@@ -1,5 +1,8 @@
-"""Scenarios built through the real processes: a broken or canceled build leaves nothing."""
+"""Scenarios by the real processes: checked, unpacked and loaded; ended builds leave nothing."""
 
+from __future__ import annotations
+
+import json
 import os
 import signal
 import subprocess
@@ -9,20 +12,87 @@ import tempfile
 import numpy as np
 import pytest
 
-from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.scenario.scenario import SkullKind, load_scenario
+from rastrainer.igtl.client import Client
+from rastrainer.protocol import PROTOCOL_VERSION
+from rastrainer.scenario.library import pack, user_library
+from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.writer import HeadDraft, new_folder, write_scenario
 from rastrainer.sections.new_scenario_logic import HEAD_SHARE, planScenario
 from rastrainer_simulator.authoring.make import head_process
 from rastrainer_simulator.cli.main import main
 from Testing.domain.head.spheres import sphere_mesh
-from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
+from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario, png
+from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.slicer.head.phantoms import CT, phantom
 from Testing.slicer.head.volume_file import write_volume
 from Testing.slicer.simulator_double import wait_until
 
 RASTRAINER = [sys.executable, "-m", "rastrainer_simulator.cli.main"]
+
+
+@pytest.fixture
+def volume(tmp_path):
+    return write_volume(tmp_path / "head.nii.gz", phantom(spacing=(3.0, 3.0, 3.0), size=0.75))
+
+
+@pytest.fixture
+def ball(tmp_path):
+    """A scenario with unusable tasks, whose fiducials are inside the head or outside it."""
+    with new_folder(tmp_path / "ball") as made:
+        write_scenario(made, made_up_scenario(), ball_head())
+        (made / "preview.png").write_bytes(png())
+    return tmp_path / "ball"
+
+
+def test_the_check_reports_each_problem_and_reflects_it_in_its_exit_status(ball, tmp_path, capsys):
+    assert main(["scenario", "check", str(ball)]) == 1
+    printed = capsys.readouterr().out.splitlines()
+    assert len(printed) > 3
+    assert all(line.endswith(".") for line in printed)
+    assert any("off the skin" in line for line in printed)
+    assert main(["scenario", "check", str(tmp_path / "none")]) == 2
+    assert "none does not exist" in capsys.readouterr().err
+
+
+def test_a_package_is_unpacked_into_the_library_once(ball, tmp_path, monkeypatch, capsys):
+    for name in ("HOME", "USERPROFILE"):
+        monkeypatch.setenv(name, str(tmp_path / "home"))
+    package = pack(ball, tmp_path / "ball.zip")
+    assert main(["scenario", "unpack", str(package)]) == 0
+    assert capsys.readouterr().out.strip() == str(user_library() / "ball")
+    assert (user_library() / "ball" / "scenario.json").is_file()
+    before = sorted(user_library().rglob("*"))
+    assert main(["scenario", "unpack", str(package)]) == 2
+    assert "already" in capsys.readouterr().err
+    assert sorted(user_library().rglob("*")) == before
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has other signals")
+def test_a_build_interrupted_by_ctrl_c_leaves_nothing(volume, tmp_path):
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    words = [*RASTRAINER, "scenario", "build", str(volume), "-o", str(tmp_path / "made")]
+    # A terminal sends the signal to all processes in front of it, which a new session stands for.
+    build = subprocess.Popen(
+        words,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=os.environ | {"TMPDIR": str(temporary)},
+        start_new_session=True,
+        # A suite that runs in the background ignores Ctrl-C, which its children would inherit.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
+    with build:
+        assert "Reading the volume" in build.stdout.readline()
+        assert list(temporary.iterdir())
+        os.killpg(build.pid, signal.SIGINT)
+        said = build.stderr.read()
+    assert build.returncode == 130
+    assert "Traceback" not in said
+    assert not list(temporary.iterdir())
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["head.nii.gz", "temporary"]
 
 
 class CanceledError(Exception):
@@ -46,33 +116,6 @@ def temporary(tmp_path, monkeypatch):
     return folder
 
 
-def wait_for_head(process):
-    return process.head(lambda _step, _share: None, lambda _warning: None)
-
-
-@pytest.mark.soak
-def test_a_head_can_be_worked_on_before_its_skull_is_made(ct):
-    with head_process(ct, []) as process:
-        first = wait_for_head(process)
-        assert first.skull is None
-        assert "Skull" not in first.method
-        whole = process.whole()
-    assert np.array_equal(whole.head.vertices, first.head.vertices)
-    assert np.array_equal(whole.head.triangles, first.head.triangles)
-    assert len(whole.skull.triangles) > 1000
-    assert whole.skull.kind is SkullKind.BONE
-    assert whole.method == f"{first.method} Skull: bone of the CT."
-
-
-@pytest.mark.soak
-def test_a_ct_without_bone_is_refused_with_a_message_if_its_skull_is_requested(tmp_path):
-    soft = phantom({**CT, "bone": CT["scalp"]}, spacing=(2.0, 2.0, 2.0), lowest=-46.0, size=0.75)
-    with head_process(write_volume(tmp_path / "soft.nrrd", soft), []) as process:
-        assert wait_for_head(process).head.is_closed
-        with pytest.raises(InputError, match="The CT shows no bone"):
-            process.whole()
-
-
 def test_canceling_also_ends_the_process_that_extracts_the_head(ct, temporary, monkeypatch):
     started = []
 
@@ -89,29 +132,6 @@ def test_canceling_also_ends_the_process_that_extracts_the_head(ct, temporary, m
         process.head(progress, lambda _warning: None)
     assert [process.returncode in (None, 0) for process in started] == [False]
     assert not list(temporary.iterdir())
-
-
-@pytest.mark.soak
-@pytest.mark.skipif(os.name == "nt", reason="Windows ends a process without asking it")
-def test_a_terminated_build_leaves_nothing(ct, tmp_path, temporary):
-    words = ["scenario", "build", str(ct), "-o", str(tmp_path / "made")]
-    build = subprocess.Popen([*RASTRAINER, *words], stdout=subprocess.PIPE, text=True)
-    with build:
-        assert "Reading the volume" in build.stdout.readline()
-        assert list(temporary.iterdir())
-        build.terminate()
-    assert build.returncode == 128 + signal.SIGTERM
-    # It is removed only after the process that works in it has ended.
-    assert not list(temporary.iterdir())
-    assert [path.name for path in tmp_path.iterdir()] == ["temporary"]
-
-
-def test_a_file_that_is_not_a_volume_ends_the_build_with_a_one_sentence_error(tmp_path, capsys):
-    (tmp_path / "noise.nrrd").write_bytes(b"no image" * 100)
-    words = ["scenario", "build", str(tmp_path / "noise.nrrd"), "-o", str(tmp_path / "made")]
-    assert main(words) == 2
-    assert "noise.nrrd could not be read as a volume" in capsys.readouterr().err.splitlines()[-1]
-    assert [path.name for path in tmp_path.iterdir()] == ["noise.nrrd"]
 
 
 PLANNER = """
@@ -151,3 +171,39 @@ def test_a_canceled_build_leaves_nothing(tmp_path):
         )
     # The planning process removes its partial results, and ends.
     wait_until(lambda: not list(tmp_path.iterdir()), lambda: None, 60.0)
+
+
+@pytest.fixture
+def environment(tmp_path, monkeypatch):
+    """A separate home for the user, here and in the processes."""
+    for name in ("HOME", "USERPROFILE"):
+        monkeypatch.setenv(name, str(tmp_path))
+    return dict(os.environ)
+
+
+def trains_on(port, name, title):
+    """Load a scenario by its name into a running simulator, and begin a trial on it."""
+    with Client(port=port) as client:
+        assert client.send_command(
+            "Hello", {"protocolVersion": PROTOCOL_VERSION, "client": "test"}, timeout=60
+        ).ok
+        loaded = client.send_command("LoadScenario", {"folder": name}, timeout=60)
+        assert (loaded.ok, loaded.error) == (True, "")
+        assert dict(loaded.data) == {"name": name, "title": title}
+        listed = client.send_command("ListTasks", {}, timeout=60)
+        assert listed.data["scenario"] == name
+        task = listed.data["tasks"][0]["name"]
+        started = client.send_command("StartTask", {"task": task, "trainee": "anna"}, timeout=60)
+        assert (started.ok, started.error) == (True, "")
+        state = client.wait_for(
+            "SimState", lambda message: json.loads(message.content.text)["phase"] == "running", 60
+        )
+        assert json.loads(state.content.text)["task"] == task
+
+
+def test_a_scenario_from_the_library_is_loaded_by_name_and_trained_on(environment, tmp_path):
+    with new_folder(user_library() / "ball") as made:
+        write_scenario(made, made_up_scenario(), ball_head())
+    options = ("--no-views", "--no-gamepad")
+    with SimulatorProcess(tmp_path / "records", *options, env=environment) as simulator:
+        trains_on(simulator.port, "ball", "A ball")

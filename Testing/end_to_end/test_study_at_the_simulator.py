@@ -15,34 +15,14 @@ from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import standing_in
 from rastrainer.study.database.study import Study
 from rastrainer.study_messages import Assignment, StudyStep
-from rastrainer.trial.trial_feedback import PastTrial
+from rastrainer.trial.trial_row import TrialRow
 from Testing.domain.trial.trial_records import gentle_score, make_record
-from Testing.end_to_end.simulator_process import ViewedSimulator
+from Testing.end_to_end.simulator_process import MenuView, ViewedSimulator, items_of
 from Testing.end_to_end.study_side import STUDY, StudySide
-from Testing.simulator.net.views.served import ViewClient
 
 
-def go_to(view, item, menu):
-    """Choose an item, and return the screen when that menu is open."""
-    view.send({"type": "item", "name": item})
-    return screen_where(view, lambda screen: screen["menu"]["name"] == menu)
-
-
-def screen_where(view, is_wanted):
-    """Return the next screen with a menu that meets a condition."""
-    while True:
-        screen = view.next("screen")["screen"]
-        if screen.get("menu") and is_wanted(screen):
-            return screen
-
-
-def enabled(screen):
-    items = screen["menu"]["items"]
-    return [item["name"] for item in items if "task" in item["name"] and item["isEnabled"]]
-
-
-def trainee(screen):
-    return next(item["value"] for item in screen["menu"]["items"] if item["name"] == "trainee")
+def enabled(menu):
+    return [name for name, item in items_of(menu).items() if "task" in name and item["isEnabled"]]
 
 
 TWO = Curriculum(
@@ -50,7 +30,7 @@ TWO = Curriculum(
     "C",
     (Assignment("one", "task-1"), Assignment("two", "task-2", after=("one",))),
 )
-PASSED = PastTrial("", "task-1", "desktop", 60.0, 80.0, acceptable=True)
+PASSED = TrialRow("T-001", "desktop", "task-1", values={"score": 80.0}, acceptable=True)
 
 
 def curriculum(*trials):
@@ -58,56 +38,58 @@ def curriculum(*trials):
     return record_to_json(standing.message("P08"))
 
 
-def states(screen):
-    return [item["value"] for item in screen["menu"]["items"] if item["value"]]
+def states(menu):
+    return [item["value"] for item in menu["items"] if item["value"]]
 
 
 def test_the_trainees_menu_offers_what_slicer_sends_of_a_study_and_of_a_curriculum(
     loop_thread, tmp_path
 ):
     hello = {"protocolVersion": PROTOCOL_VERSION, "client": "Slicer"}
-    step = StudyStep("P07", "trial", 3, 19, "task-2", "desktop")
     with (
         ViewedSimulator(tmp_path / "records") as simulator,
         Client(port=simulator.port) as slicer,
-        ViewClient(loop_thread, simulator.url, simulator.key) as view,
+        MenuView(loop_thread, simulator) as view,
     ):
-        assert slicer.send_command("Hello", hello, timeout=60).ok
-        assert slicer.send_command("StudyStep", record_to_json(step), timeout=60).ok
-        view.join(kind="desktop")
-        go_to(view, "train", "introduction")
-        go_to(view, "skip", "controls")
-        go_to(view, "next", "experiment")
-        view.send({"type": "text", "name": "trainee", "value": "P07"})
-        screen = screen_where(view, lambda screen: enabled(screen))
-        assert enabled(screen) == ["task-2"]
-        assert "play Task 2" in screen["menu"]["paragraphs"][0]
-        done = StudyStep("P07", "all-done", 19, 19)
-        assert slicer.send_command("StudyStep", record_to_json(done), timeout=60).ok
-        screen = screen_where(view, lambda screen: not enabled(screen))
-        assert "All steps of the study are done" in screen["menu"]["paragraphs"][0]
-        refused = slicer.send_command("StudyStep", {"trainee": "P07", "kind": "dance"}, timeout=60)
+
+        def tell(name, content):
+            return slicer.send_command(name, content, timeout=60)
+
+        def tell_step(*step):
+            assert tell("StudyStep", record_to_json(StudyStep("P07", *step))).ok
+
+        assert tell("Hello", hello).ok
+        tell_step("trial", 3, 19, "task-2", "desktop")
+        view.go_to_experiment("P07")
+        menu = view.until_menu("experiment", enabled)
+        assert enabled(menu) == ["task-2"]
+        assert "play Task 2" in menu["paragraphs"][0]
+        tell_step("all-done", 19, 19)
+        menu = view.until_menu("experiment", lambda menu: not enabled(menu))
+        assert "All steps of the study are done" in menu["paragraphs"][0]
+        refused = tell("StudyStep", {"trainee": "P07", "kind": "dance"})
         assert "kind must be one of questionnaire, trial-run" in refused.error
-        assert slicer.send_command("Curriculum", curriculum(), timeout=60).ok
-        view.send({"type": "text", "name": "trainee", "value": "P08"})
-        screen_where(view, lambda screen: "0 of 2 reached" in states(screen))
-        assert states(go_to(view, "assignments", "assignments")) == [with_units("0 / 1"), "locked"]
-        assert slicer.send_command("Curriculum", curriculum(PASSED), timeout=60).ok
-        screen = screen_where(view, lambda screen: "reached" in states(screen))
-        assert states(screen) == ["reached", with_units("0 / 1")]
-        refused = slicer.send_command(
-            "Curriculum", {"trainee": "P08", "assignments": [{}]}, timeout=60
-        )
+        assert tell("Curriculum", curriculum()).ok
+        view.type("trainee", "P08")
+        view.until_menu("experiment", lambda menu: "0 of 2 reached" in states(menu))
+        assert states(view.go("assignments", "assignments")) == [with_units("0 / 1"), "locked"]
+        assert tell("Curriculum", curriculum(PASSED)).ok
+        menu = view.until_menu("assignments", lambda menu: "reached" in states(menu))
+        assert states(menu) == ["reached", with_units("0 / 1")]
+        refused = tell("Curriculum", {"trainee": "P08", "assignments": [{}]})
         assert 'assignments[0] needs the key "name"' in refused.error
         # The Slicer that comes next may have another study: what this one sent is forgotten.
         slicer.close()
-        screen_where(view, lambda screen: screen["menu"]["name"] == "experiment")
+        view.until_menu("experiment")
         with Client(port=simulator.port) as another:
             assert another.send_command("Hello", hello, timeout=60).ok
             for name in ("P09", "P08"):
-                view.send({"type": "text", "name": "trainee", "value": name})
-                screen = screen_where(view, lambda screen, name=name: trainee(screen) == name)
-            assert "assignments" not in [item["name"] for item in screen["menu"]["items"]]
+                view.type("trainee", name)
+                menu = view.until_menu(
+                    "experiment",
+                    lambda menu, name=name: items_of(menu)["trainee"]["value"] == name,
+                )
+            assert "assignments" not in items_of(menu)
 
 
 @pytest.mark.soak
@@ -121,17 +103,13 @@ def test_the_module_sends_the_simulator_a_trainees_progress_including_that_from_
     with (
         ViewedSimulator(tmp_path / "records") as simulator,
         StudySide(tmp_path, simulator.port),
-        ViewClient(loop_thread, simulator.url, simulator.key) as view,
+        MenuView(loop_thread, simulator) as view,
     ):
-        view.join(kind="desktop")
-        go_to(view, "train", "introduction")
-        go_to(view, "skip", "controls")
-        go_to(view, "next", "experiment")
-        view.send({"type": "text", "name": "trainee", "value": "P08"})
-        screen_where(view, lambda screen: "0 of 2 reached" in states(screen))
-        assert states(go_to(view, "assignments", "assignments")) == [with_units("0 / 1"), "locked"]
+        view.go_to_experiment("P08")
+        view.until_menu("experiment", lambda menu: "0 of 2 reached" in states(menu))
+        assert states(view.go("assignments", "assignments")) == [with_units("0 / 1"), "locked"]
         with Study.open(path) as study:
             record = make_record(trialId=str(uuid.uuid4()), trainee="P08")
             study.add_trial(record, score=gentle_score(60.0, 0.2))
-        screen = screen_where(view, lambda screen: "reached" in states(screen))
-        assert states(screen) == ["reached", with_units("0 / 1")]
+        menu = view.until_menu("assignments", lambda menu: "reached" in states(menu))
+        assert states(menu) == ["reached", with_units("0 / 1")]

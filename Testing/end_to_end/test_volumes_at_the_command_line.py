@@ -16,7 +16,7 @@ from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_headless.make_head import main as make_head
 from rastrainer_simulator.cli.main import main
-from Testing.slicer.head.broken_volumes import HEADLESS, UNUSABLE
+from Testing.slicer.head.broken_volumes import HEADLESS
 from Testing.slicer.head.dicom_series import write_series
 from Testing.slicer.head.phantoms import CT, DOUBLE_OBLIQUE, NOSE, SAGITTAL, depth_mm, phantom
 from Testing.slicer.head.placed import fiducials
@@ -60,14 +60,6 @@ def cut(name, is_compressed=True, share=0.6):
     return write
 
 
-def content(name, data):
-    def write(folder):
-        (folder / name).write_bytes(data)
-        return folder / name
-
-    return write
-
-
 def dicom(folder):
     scan = phantom(CT, spacing=(2.0, 2.0, 2.5), size=SIZE)
     # Ours are rows to the left and down from the front, in LPS: turned half about S.
@@ -90,38 +82,19 @@ def dicom_without_a_slice(folder):
     return path.parent
 
 
-NO_FILE_OF_A_VOLUME = {
+BROKEN = {
+    "a block": (nrrd(HEADLESS["a block"][0]), HEADLESS["a block"][1]),
     "an NRRD file cut short": (cut("head.nrrd", False), "head.nrrd could not be read"),
-    "a compressed one": (cut("head.nrrd"), "head.nrrd could not be read"),
     "a NIfTI file cut short": (cut("head.nii", False), "head.nii is cut short"),
-    "one byte of it missing": (cut("head.nii", False, 0.999999), "head.nii is cut short"),
-    "a compressed one of it": (cut("head.nii.gz"), "head.nii.gz is cut short"),
-    "a cut header": (cut("head.nii", share=0.0001), "head.nii could not be read"),
+    "a compressed one": (cut("head.nii.gz"), "head.nii.gz is cut short"),
     "DICOM, one slice cut short": (dicom_with_a_cut_slice, "is cut short"),
     "DICOM, one slice missing": (dicom_without_a_slice, "not evenly spaced"),
-    "a folder without DICOM": (lambda folder: folder / "home", "contains no DICOM files"),
-    "a file of no bytes": (content("head.nrrd", b""), "head.nrrd could not be read"),
-    "a file of something else": (content("head.nii", b"text" * 999), "could not be read"),
     "no file": (lambda folder: folder / "none.nii", "none.nii does not exist"),
 }
-BROKEN = NO_FILE_OF_A_VOLUME | {
-    name: (nrrd(volume), sentence)
-    for name, (volume, sentence) in (UNUSABLE | {"a block": HEADLESS["a block"]}).items()
-}
 
 
-ONE_OF_EACH_KIND = (
-    "a block",
-    *(
-        pytest.param(name, marks=pytest.mark.soak)
-        for name in ("no file", "a NIfTI file cut short", "DICOM, one slice missing")
-    ),
-)
-
-
-@pytest.mark.parametrize("name", ONE_OF_EACH_KIND)
-def test_a_broken_volume_is_reported_in_one_sentence_and_changes_nothing(place, capfd, name):
-    write, sentence = BROKEN[name]
+def test_a_broken_volume_is_reported_in_one_sentence_and_changes_nothing(place, capfd):
+    write, sentence = BROKEN["a block"]
     volume = write(place)
     before = everything_in(place)
     assert main(["scenario", "build", str(volume), "-o", str(place / "made")]) == 2

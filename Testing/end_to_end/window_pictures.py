@@ -18,10 +18,10 @@ from rastrainer_simulator.presentation.look import FLIGHT_S
 from rastrainer_simulator.virtual.scripted_trial import play_trial, send_hello
 from Testing.end_to_end.hands import GamepadHands
 from Testing.end_to_end.lab import Lab
+from Testing.end_to_end.stream_trainee import CarriedTrainee
 from Testing.end_to_end.virtual_display import VirtualKeyboard
 from Testing.end_to_end.window_process import WindowProcess
 from Testing.pictures import keep_picture
-from Testing.web.place import CarriedTrainee
 
 FOLDER = Path(__file__).parents[2] / "Screenshots"
 SIZE = (1400, 788)

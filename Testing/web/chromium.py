@@ -193,6 +193,18 @@ def leave_headset(page: Page) -> None:
         page.wait_for_selector("body:not([data-headset])")
 
 
+def stand(page: Page, x=EYES_M[0], y=EYES_M[1], z=EYES_M[2], yaw=0.0) -> Page:
+    """Have the wearer stand somewhere in their own room, and look there."""
+    page.evaluate(
+        """async ([x, y, z, half]) => {
+          device.position.set(x, y, z);
+          device.quaternion.set(0, Math.sin(half), 0, Math.cos(half));
+          await frames_(4); }""",
+        [x, y, z, yaw / 2],
+    )
+    return page
+
+
 @contextmanager
 def _rejoining(page: Page) -> Iterator[None]:
     """Wait until a page has joined again: earlier input is lost."""

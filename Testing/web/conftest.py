@@ -4,11 +4,11 @@ import pytest
 from playwright.sync_api import sync_playwright
 
 from rastrainer_simulator.loop.control_loop import ControlLoop
+from Testing.end_to_end.lab import PATIENT
 from Testing.simulator.conftest import setup  # noqa: F401
 from Testing.simulator.flow.conftest import outside, presenter, put_back, shared  # noqa: F401
 from Testing.simulator.net.views.served import ServedViews
 from Testing.web.chromium import launch
-from Testing.web.place import PATIENT
 
 
 @pytest.fixture(scope="module")

@@ -7,10 +7,10 @@ from pathlib import Path
 
 from playwright.sync_api import Page, sync_playwright
 
+from Testing.end_to_end.hands import Controllers, PageKeys
+from Testing.end_to_end.lab import WITHOUT_GRAPHICS, Place
 from Testing.pictures import keep_picture
 from Testing.web.chromium import enter_headset, launch, open_page
-from Testing.web.hands import Controllers, PageKeys
-from Testing.web.place import WITHOUT_GRAPHICS, Place
 
 FOLDER = Path(__file__).parents[2] / "Screenshots"
 DESKTOP = {"width": 1600, "height": 900}
@@ -29,7 +29,7 @@ def main() -> None:
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
         browser = launch(playwright)
         with Place(Path(folder), limits=WITHOUT_GRAPHICS) as place:
-            url, code = place.simulator.url, place.simulator.code
+            url, code = place.url, place.code
             page = open_page(browser, url, code, size=DESKTOP)
             trainee = place.carried_trainee(PageKeys(page))
             trainee.begin("task-1", page)

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from Testing.end_to_end.hands import PageKeys
+from Testing.end_to_end.lab import WITHOUT_GRAPHICS, Place
 from Testing.end_to_end.window_process import wait_until
 from Testing.web.chromium import open_page
-from Testing.web.hands import PageKeys
-from Testing.web.place import WITHOUT_GRAPHICS, Place
 
 SIZE = {"width": 960, "height": 540}
 BEHIND = ("9", "10", "11", "12", "13", "14", "15")
@@ -28,7 +28,7 @@ def place(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def page(place, browser):
-    page = open_page(browser, place.simulator.url, place.simulator.code, size=SIZE)
+    page = open_page(browser, place.url, place.code, size=SIZE)
     yield page
     assert page.problems == []
 
@@ -64,26 +64,3 @@ def test_the_page_shows_each_touch_behind_the_head_at_its_best_view(place, page)
         wait_until(lambda: count_of_next(page) > 20, f"{label} in the picture", PATIENCE_S)
         assert page.get_attribute("#inset", "data-name") == "Along the skin"
         trainee.have_touched(int(label))
-
-
-@pytest.mark.soak
-def test_left_is_left_in_the_picture_after_a_drag_with_the_right_button(place, page):
-    trainee = place.carried_trainee(PageKeys(page))
-    trainee.begin("task-1", page)
-    page.wait_for_selector("body[data-scene=task-1]")
-    before = trainee.view.state["view"]
-    trainee.until(lambda: is_at_best(trainee, "1"), "the best view")
-    page.mouse.move(700, 300)
-    page.mouse.down(button="right")
-    page.mouse.move(400, 310, steps=5)
-    page.mouse.up(button="right")
-    trainee.until(lambda: trainee.view.state["view"] != before, "the turn")
-    page.mouse.wheel(0, 300)
-    axes = trainee._stick_axes()
-    start = trainee.tip
-    trainee.hands.push(-1.0, 0.0, 0.0, False)
-    trainee.until(lambda: np.linalg.norm(trainee.tip - start) > 0.03, "a step to the left")
-    trainee.hands.push(0.0, 0.0, 0.0, False)
-    right, ahead, _up = axes @ (trainee.tip - start)
-    assert right < -0.9 * np.linalg.norm(trainee.tip - start)
-    assert abs(ahead) < 0.2 * abs(right)

@@ -8,9 +8,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from Testing.web.chromium import EYES_M, enter_headset, leave_headset, open_page, pixels, wait_for
-from Testing.web.hands import Controllers
-from Testing.web.place import WITHOUT_GRAPHICS, Place
+from Testing.end_to_end.hands import Controllers
+from Testing.end_to_end.lab import WITHOUT_GRAPHICS, Place
+from Testing.web.chromium import (
+    enter_headset,
+    leave_headset,
+    open_page,
+    pixels,
+    stand,
+    wait_for,
+)
 
 # A headset is drawn twice, by a machine without a graphics processor: minutes.
 pytestmark = pytest.mark.soak
@@ -43,7 +50,7 @@ def place(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def page(place, browser):
-    page = open_page(browser, place.simulator.url, place.simulator.code, "metaQuest2")
+    page = open_page(browser, place.url, place.code, "metaQuest2")
     yield page
     assert page.problems == []
 
@@ -72,17 +79,6 @@ def trainee(place, worn):
     yield trainee
     trainee.hands.grab(False)
     trainee.hands.push(0.0, 0.0, 0.0)
-
-
-def stand(page, x=EYES_M[0], y=EYES_M[1], z=EYES_M[2], yaw=0.0):
-    """Have the wearer stand somewhere in their own room, and look there."""
-    page.evaluate(
-        """async ([x, y, z, half]) => {
-          device.position.set(x, y, z);
-          device.quaternion.set(0, Math.sin(half), 0, Math.cos(half));
-          await frames_(3); }""",
-        [x, y, z, yaw / 2],
-    )
 
 
 def eyes(page) -> list[np.ndarray]:
@@ -117,8 +113,6 @@ def test_two_eyes_are_a_pupil_distance_apart_and_see_the_room(worn):
     for half in halves(pixels(worn)):
         assert half.std() > 20.0
 
-
-def test_one_eye_sees_things_farther_right_than_the_other(worn):
     left, right = (half.mean(axis=2)[100:] for half in halves(pixels(worn)))
     width = left.shape[1]
     costs = {
@@ -169,7 +163,9 @@ def test_the_table_can_be_raised_and_lowered_and_stays_there(place, worn):
     np.testing.assert_allclose(eye_place(worn), EYES_HOME, atol=0.01)
 
 
-def test_the_tip_follows_the_grabbing_hand_until_it_lets_go(place, worn, trainee):
+def test_the_tip_follows_the_grabbing_hand_until_it_lets_go_unless_that_is_switched_off(
+    place, worn, trainee
+):
     hands = trainee.hands
     wait_for_arm_to_rest(worn, trainee)
     wanted = trainee.tip
@@ -180,10 +176,26 @@ def test_the_tip_follows_the_grabbing_hand_until_it_lets_go(place, worn, trainee
     hands.grab(False)
     wait_for_arm_to_rest(worn, trainee)
     held = trainee.tip
-    hands.move(-0.03, -0.04, -0.02)
+    check_not_followed(place, trainee, held)
+    switch_grab(trainee)
+    hands.grab(True)
+    check_not_followed(place, trainee, held)
+    hands.grab(False)
+    switch_grab(trainee)
+
+
+def check_not_followed(place, trainee, held):
+    trainee.hands.move(-0.03, 0.04, -0.02)
     for _ in range(30):
         place.view.next_state()
     assert np.linalg.norm(trainee.tip - held) < 0.002
+
+
+def switch_grab(trainee):
+    trainee.press("menu", lambda: trainee.menu is not None, "the menu")
+    trainee.hands.point_at("local grab")
+    trainee.resume()
+    trainee.until_still()
 
 
 def test_the_sticks_follow_the_eyes(worn, trainee):
@@ -198,22 +210,6 @@ def test_the_sticks_follow_the_eyes(worn, trainee):
     ahead, aside = (trainee.tip - start)[:2]
     assert ahead > 0.02
     assert abs(aside) < 0.2 * ahead
-
-
-def test_grabbing_can_be_switched_off(place, worn, trainee):
-    trainee.press("menu", lambda: trainee.menu is not None, "the menu")
-    trainee.hands.point_at("local grab")
-    trainee.resume()
-    wait_for_arm_to_rest(worn, trainee)
-    start = trainee.tip
-    trainee.hands.grab(True)
-    trainee.hands.move(0.0, 0.05, 0.0)
-    for _ in range(30):
-        place.view.next_state()
-    assert np.linalg.norm(trainee.tip - start) < 0.002
-    trainee.hands.grab(False)
-    trainee.press("menu", lambda: trainee.menu is not None, "the menu")
-    trainee.hands.point_at("local grab")
 
 
 class Wand:
@@ -273,28 +269,27 @@ def test_the_holder_of_control_is_shown_while_driving_and_in_menus(worn, trainee
     wait_for(worn, f"page.headset.panels.actions.root.textContent.includes(`{holder}`)")
 
 
-def test_taking_the_headset_off_pauses_the_trial_and_loses_nothing(place, worn, trainee):
+@pytest.mark.parametrize("leaves", [False, True], ids=["taken off", "session left"])
+def test_a_headset_that_is_taken_off_or_left_pauses_the_trial_and_loses_nothing(
+    place, worn, trainee, leaves
+):
     trainee.touch_all(1)
     trainee.hands.push(0.0, 0.0, 0.8)
     trainee.until(lambda: place.view.state["clearanceMm"] > 40, "the tip off the head")
-    worn.evaluate("device.updateVisibilityState('hidden')")
+    if leaves:
+        leave_headset(worn)
+    else:
+        worn.evaluate("device.updateVisibilityState('hidden')")
     trainee.until(lambda: place.view.state["phase"] == "paused", "the pause")
     held = trainee.tip
     for _ in range(30):
         place.view.next_state()
     assert np.linalg.norm(trainee.tip - held) < 0.01
     trainee.hands.push(0.0, 0.0, 0.0)
-    worn.evaluate("device.updateVisibilityState('visible')")
-    trainee.resume()
-    assert trainee.touched == 1
-    trainee.press("undo", lambda: trainee.touched == 0, "the undo")
-
-
-def test_leaving_the_immersive_session_pauses_the_trial_and_loses_nothing(place, worn, trainee):
-    trainee.touch_all(1)
-    leave_headset(worn)
-    trainee.until(lambda: place.view.state["phase"] == "paused", "the pause")
-    enter_headset(worn)
+    if leaves:
+        enter_headset(worn)
+    else:
+        worn.evaluate("device.updateVisibilityState('visible')")
     trainee.resume()
     assert trainee.touched == 1
     trainee.press("undo", lambda: trainee.touched == 0, "the undo")
@@ -316,7 +311,7 @@ def test_the_journal_records_mode_headset_rate_and_frames(place, trainee):
 
 
 def test_a_quest_3_is_recognized_by_its_name_and_drawn_with_maximum_foveation(place, browser):
-    page = open_page(browser, place.simulator.url, place.simulator.code, "metaQuest3")
+    page = open_page(browser, place.url, place.code, "metaQuest3")
     enter_headset(page)
     assert page.evaluate("page.headset.hello().device") == "Meta Quest 3"
     assert page.evaluate("page.stage.renderer.xr.getFoveation()") in (1, None)

@@ -1,4 +1,4 @@
-"""Opening the page: the pairing code, from this computer or the network; and missing parts."""
+"""Opening and using the page: the pairing code, other origins, missing parts, keys and gamepads."""
 
 from __future__ import annotations
 
@@ -7,16 +7,28 @@ import re
 import stat
 import threading
 from http.server import BaseHTTPRequestHandler, HTTPServer
+from urllib.parse import unquote
 
 import pytest
 
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Command
 from rastrainer.igtl.message import Message, pack
-from Testing.web.chromium import PATIENCE_MS, SMALL, draw_nothing, launch, open_page
-from Testing.web.hands import PageKeys
-from Testing.web.place import Place
+from rastrainer_simulator.texts.texts import LANGUAGES
+from Testing.end_to_end.hands import BrowserPad, PageKeys
+from Testing.end_to_end.lab import Place
+from Testing.web.chromium import (
+    PATIENCE_MS,
+    SMALL,
+    draw_for_a_while,
+    draw_nothing,
+    launch,
+    open_page,
+)
 
+LARGEST_PAGE = 1_000_000
+LARGEST_SCENE = 5_000_000
+ACCENT = "#1b6ad6"
 NETWORK = re.compile(r"serves the local network on (https://\S+?:\d+)")
 TRY_TO_COMMAND = """([url, bytes]) =>
   fetch(url, { method: "POST", mode: "no-cors", body: new Uint8Array(bytes) })
@@ -45,7 +57,7 @@ addEventListener("DOMContentLoaded", () => {
 @pytest.fixture(scope="module")
 def place(tmp_path_factory):
     folder = tmp_path_factory.mktemp("opening")
-    with Place(folder, "--lan") as place:
+    with Place(folder, "--lan", "--speed", "4") as place:
         place.network = NETWORK.search(place.simulator.next_line())[1]
         place.cable = place.simulator.next_line()
         yield place
@@ -66,31 +78,33 @@ def stranger(browser):
 
 
 @pytest.fixture(scope="module")
-def paired(place, browser):
-    return open_page(browser, place.simulator.url, place.simulator.code, draws=False)
+def page(place, browser):
+    page = open_page(browser, place.url, place.code, has_pad=True, draws=False)
+    yield page
+    assert page.problems == []
 
 
 @pytest.mark.parametrize("origin", ["loopback", "network"])
 def test_an_unpaired_visitor_sees_the_form_and_nothing_else(place, stranger, origin):
-    url = place.simulator.url if origin == "loopback" else place.network
+    url = place.url if origin == "loopback" else place.network
     stranger.goto(url)
     stranger.wait_for_selector("#pairing:not([hidden])")
     assert stranger.evaluate(TRY_TO_JOIN, url.replace("http", "ws", 1)) == "refused"
     assert stranger.evaluate("fetch('/sounds/touch.wav').then((a) => a.status)") == 401
     # However low the window is, the form can be scrolled to its last button.
     stranger.click("#pairing button.second", trial=True)
-    stranger.fill("#code", "000000" if place.simulator.code != "000000" else "111111")
+    stranger.fill("#code", "000000" if place.code != "000000" else "111111")
     stranger.press("#code", "Enter")
     stranger.wait_for_selector("#pairing output:not(:empty)")
-    stranger.fill("#code", place.simulator.code)
+    stranger.fill("#code", place.code)
     stranger.press("#code", "Enter")
     stranger.wait_for_selector("body[data-scene]")
     assert stranger.evaluate("window.isSecureContext")
     # Only the views of this computer learn how others are paired.
     if origin == "loopback":
-        stranger.wait_for_selector(f"#status:has-text('{place.simulator.code}')")
+        stranger.wait_for_selector(f"#status:has-text('{place.code}')")
     text = stranger.inner_text("#status")
-    assert (place.simulator.code in text, place.network in text) == (origin == "loopback",) * 2
+    assert (place.code in text, place.network in text) == (origin == "loopback",) * 2
 
 
 @pytest.fixture(scope="module")
@@ -111,10 +125,10 @@ def foreign_url():
     server.shutdown()
 
 
-def test_a_page_from_another_origin_cannot_connect(place, paired, foreign_url):
-    foreign = paired.context.new_page()
+def test_a_page_from_another_origin_cannot_connect(place, page, foreign_url):
+    foreign = page.context.new_page()
     foreign.goto(foreign_url)
-    assert foreign.evaluate(TRY_TO_JOIN, place.simulator.url.replace("http", "ws", 1)) == "refused"
+    assert foreign.evaluate(TRY_TO_JOIN, place.url.replace("http", "ws", 1)) == "refused"
     foreign.close()
 
 
@@ -131,10 +145,10 @@ def test_a_page_cannot_send_commands_to_the_openigtlink_port(place, stranger, fo
 
 
 def test_a_code_in_the_address_does_not_stay_there(place, stranger):
-    code = "000000" if place.simulator.code != "000000" else "111111"
-    stranger.goto(f"{place.simulator.url}/#code={code}")
+    code = "000000" if place.code != "000000" else "111111"
+    stranger.goto(f"{place.url}/#code={code}")
     stranger.wait_for_selector("#pairing:not([hidden])")
-    assert stranger.url == f"{place.simulator.url}/"
+    assert stranger.url == f"{place.url}/"
     assert stranger.evaluate("[location.hash, history.length]") == ["", 2]
 
 
@@ -146,17 +160,13 @@ def test_the_private_key_is_readable_only_by_its_owner_and_a_cable_is_recommende
 
 def test_without_javascript_the_page_says_so_in_every_language(place, browser):
     page = new_page(browser, java_script_enabled=False)
-    page.goto(place.simulator.url)
-    assert "RASTrainer needs JavaScript" in page.inner_text("body")
-    assert "RASTrainer braucht JavaScript" in page.inner_text("[lang=de]")
-    assert "RASTrainer a besoin de JavaScript" in page.inner_text("[lang=fr]")
-    assert "RASTrainer necesita JavaScript" in page.inner_text("[lang=es]")
-    assert "RASTrainer 需要 JavaScript" in page.inner_text("[lang=zh-Hans]")
+    page.goto(place.url)
+    assert page.inner_text("body").count("JavaScript") == len(LANGUAGES)
     page.context.close()
 
 
 def address(place) -> str:
-    return f"{place.simulator.url}/#code={place.simulator.code}"
+    return f"{place.url}/#code={place.code}"
 
 
 def test_the_scene_shows_how_much_of_it_has_loaded(place, stranger):
@@ -189,23 +199,99 @@ def test_without_webgl_menus_work_and_the_page_says_what_is_missing(place, drive
     browser.close()
 
 
-def test_a_second_operator_cannot_take_control_unasked(place, paired, browser):
-    other = open_page(browser, place.simulator.url, place.simulator.code, draws=False)
-    first = place.trainee(PageKeys(paired))
+def test_a_second_operator_cannot_take_control_unasked(place, page, browser):
+    other = open_page(browser, place.url, place.code, draws=False)
+    first = place.trainee(PageKeys(page))
     first.go_home()
     first.choose("train")
     # An idle view may lose control, and a slow machine would leave it idle: when the focus has
     # moved, the simulator knows of the key that was pressed before.
-    paired.keyboard.down("ShiftLeft")
+    page.keyboard.down("ShiftLeft")
     focus = first.menu.focus
     first.press("down", lambda: first.menu.focus != focus, "another focus")
     other.keyboard.press("Escape")
     other.wait_for_selector("#warnings li[data-tone=warning]")
     # The warning arrived with the menu that is open now.
     assert other.get_attribute("body", "data-menu") == "introduction"
-    paired.wait_for_selector("#control:has-text('You drive')")
+    page.wait_for_selector("#control:has-text('You drive')")
     assert not other.evaluate("page.control.isYou")
     other.context.close()
+
+
+def test_a_trial_is_begun_and_a_touch_undone_by_keyboard(place, page):
+    trainee = place.carried_trainee(PageKeys(page))
+    trainee.begin("task-1", page)
+    page.wait_for_selector("body[data-scene=task-1]")
+    page.wait_for_selector("#control:has-text('You drive: keyboard')")
+    assert draw_for_a_while(page).std() > 20.0
+    trainee.touch_all(1)
+    trainee.press("undo", lambda: trainee.touched == 0, "the undo")
+
+
+def test_a_second_gamepad_takes_the_place_of_an_idle_one_and_an_unknown_one_is_reported(
+    place, page
+):
+    trainee = place.trainee(BrowserPad(page))
+    trainee.go_home()
+    page.evaluate(
+        """() => {
+          const idle = { ...structuredClone(pad), index: 0, axes: [0.12, 0, 0, 0] };
+          window.pad.index = 1;
+          navigator.getGamepads = () => [null, idle, window.pad]; }"""
+    )
+    before = trainee.menu.focus
+    trainee.press("down", lambda: trainee.menu.focus != before, "a step")
+    page.evaluate("window.pad.mapping = ''; navigator.getGamepads = () => [window.pad]")
+    page.wait_for_selector("text=The browser does not know the layout of this gamepad")
+    page.evaluate("window.pad.mapping = 'standard'; window.pad.index = 0")
+    page.wait_for_selector("text=The browser does not know the layout", state="detached")
+
+
+def test_a_click_chooses_an_item_and_the_text_is_the_simulators(place, page):
+    trainee = place.trainee(PageKeys(page))
+    trainee.go_home()
+    page.wait_for_selector("body[data-menu=start]")
+    page.click("#menu li[data-name=introduction]")
+    trainee.until_menu("introduction")
+    page.wait_for_selector("body[data-menu=introduction]")
+    assert page.inner_text("#menu h2") == trainee.menu.title
+
+
+def test_the_introduction_shows_the_device_in_use_with_its_inputs_colored(place, page):
+    colored = {}
+    for hands in (PageKeys, BrowserPad):
+        trainee = place.trainee(hands(page))
+        trainee.go_home()
+        page.wait_for_selector("body[data-menu=start]")
+        trainee.choose("controls")
+        page.wait_for_selector("body[data-menu=controls]")
+        picture = page.wait_for_selector("#menu img")
+        assert picture.evaluate("image => image.decode().then(() => image.naturalWidth)") == 1000
+        drawing = unquote(picture.get_attribute("src"))
+        colored[hands] = drawing.count(f'fill="{ACCENT}"')
+    # W, A, S, D, R, F, Shift, Space, Backspace, C, P and M, and B, Q, E, T, G, X, Z for the view;
+    # two sticks, RT, Back and Start, and for the view two directions of the D-pad, LB and RB.
+    assert colored == {PageKeys: 19, BrowserPad: 9}
+
+
+def test_the_menu_of_heads_shows_the_picture_of_the_focused_one(place, page):
+    trainee = place.trainee(PageKeys(page))
+    trainee.go_to_experiment()
+    trainee.choose("scenario")
+    trainee.until(lambda: len(trainee.menu.items) > 1, "the available heads")
+    trainee.focus("head colin27")
+    picture = page.wait_for_selector("#menu img[src$='/scenarios/colin27.png']")
+    assert picture.evaluate("image => image.decode().then(() => image.naturalWidth)") == 640
+    trainee.focus("back")
+    page.wait_for_selector("#menu img", state="detached")
+
+
+def test_the_page_is_smaller_than_a_megabyte_and_loads_nothing_from_elsewhere(place, page):
+    own = (place.url, "data:")
+    assert [url for url in page.loaded if not url.startswith(own)] == []
+    scenes = [size for url, size in page.loaded.items() if url.endswith(".glb")]
+    assert 0 < sum(page.loaded.values()) - sum(scenes) < LARGEST_PAGE
+    assert 0 < max(scenes) < LARGEST_SCENE
 
 
 def try_code(page, code):
@@ -217,7 +303,7 @@ def try_code(page, code):
 
 def test_an_expired_code_is_reported_as_such_and_so_is_a_new_one(place, browser):
     # The place has another code afterward: this test is the last.
-    url, code = place.simulator.url, place.simulator.code
+    url, code = place.url, place.code
     with browser.new_context() as other:
         # After a right code, wrong codes of other tests do not count.
         assert other.request.post(f"{url}/pair", data={"code": code}).ok

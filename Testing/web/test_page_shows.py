@@ -16,9 +16,7 @@ from rastrainer_simulator.presentation.screen import (
     ScreenMessage,
     Tone,
 )
-from rastrainer_simulator.texts.texts import LANGUAGES
 from Testing.end_to_end.window_process import wait_until
-from Testing.simulator.flow.every_page import every_screen, names_of_pages
 from Testing.simulator.flow.scored_journals import task_menu
 from Testing.web.chromium import open_page, resize, show, wait_for
 
@@ -104,14 +102,8 @@ def test_a_finger_leads_back_from_what_is_only_watched(browser, served):
 PICTURE = "#menu img"
 
 
-@pytest.mark.parametrize(
-    "language",
-    ["en", *(pytest.param(tag, marks=pytest.mark.soak) for tag in LANGUAGES if tag != "en")],
-)
-def test_the_plot_is_beside_the_tasks_and_every_score_is_in_its_text(
-    page, served, loop, outside, language
-):
-    served.tell(task_menu(loop, outside.services, language=language))
+def test_the_plot_is_beside_the_tasks_and_every_score_is_in_its_text(page, served, loop, outside):
+    served.tell(task_menu(loop, outside.services))
     page.wait_for_selector(PICTURE)
     wait_for(page, f"document.querySelector('{PICTURE}').naturalWidth > 0")
     plot, tasks = page.locator(PICTURE), page.locator("#menu ul")
@@ -220,21 +212,3 @@ def test_reading_stops_when_it_is_switched_off(page, served):
     page.wait_for_selector("#status:has-text('off')")
     wait_for(page, "window.reading.length === 0")
     assert heard(page, 1) == ["A long sentence."]
-
-
-@pytest.mark.soak
-def test_every_page_looks_the_same_when_it_is_opened_again(page, served, presenter):
-    screens = every_screen(presenter)
-    assert names_of_pages() <= screens.keys()
-
-    def look_at(screen):
-        show(page, served, screen)
-        page.evaluate("frames_(2)")
-        return page.inner_html("#menu"), page.is_visible("#menu")
-
-    for name, screen in screens.items():
-        first = look_at(screen)
-        look_at(Screen())
-        assert look_at(screen) == first, name
-        assert first[1] == (screen.menu is not None), name
-        look_at(Screen())

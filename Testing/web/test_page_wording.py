@@ -42,26 +42,11 @@ def test_the_pages_have_the_same_sentences_with_the_same_placeholders(language):
             assert set(re.findall(r"{\w+}", table[name])) == set(re.findall(r"{\w+}", text)), name
 
 
-def test_no_source_joins_texts_by_a_comma_which_not_every_language_has():
-    sources = {path: path.read_text(encoding="utf-8") for path in TEXTS.parent.rglob("*.ts")}
-    found = [
-        path.name
-        for path, text in sources.items()
-        if re.search(r"say\(.*\}, \$\{|\}, \$\{say", text)
-    ]
-    assert len(sources) > 50
-    assert found == []
-
-
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_colored_parts_of_a_drawing_are_named_as_in_the_menus(language):
+def test_parts_of_a_drawing_and_states_on_the_board_are_named_as_in_the_menus(language):
     page, table = tables(language)[0], LANGUAGES[language]
     for part, name in DRAWN.items():
         assert f"{table[name]} ".startswith(f"{page[part]} "), part
-
-
-@pytest.mark.parametrize("language", LANGUAGES)
-def test_the_board_explains_states_in_the_words_that_trainees_read(language):
-    board, table = tables(language)[1], LANGUAGES[language]
+    board = tables(language)[1]
     for state in ("reached", "locked"):
         assert board[f"legend.{state}"].startswith(table[f"assignments.{state}"])

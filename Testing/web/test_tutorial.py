@@ -1,37 +1,68 @@
-"""The tutorial on a touch screen and in a headset, from the ID to the trial run."""
+"""The tutorial on a touch screen, by mouse and in a headset, from the ID to the trial run."""
 
 from __future__ import annotations
 
 import json
 import math
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 
 import pytest
 from playwright.sync_api import Page
 
-from rastrainer_simulator.flow.tutorial.steps import TutorialStep
+from rastrainer_simulator.flow.tutorial.steps import TutorialStep, steps_for
 from rastrainer_simulator.input.inputs import SourceKind
-from Testing.end_to_end.stream_trainee import StreamTrainee
-from Testing.end_to_end.view_learner import ViewLearner
+from Testing.end_to_end.hands import Controllers
+from Testing.end_to_end.lab import Place
+from Testing.end_to_end.stream_trainee import Trainee
+from Testing.end_to_end.window_process import wait_until
 from Testing.tutorial_player import TutorialPlayer
 from Testing.web.chromium import SMALL, enter_headset, open_page
-from Testing.web.hands import Controllers
-from Testing.web.place import WITHOUT_GRAPHICS, Place, Trainee
-from Testing.web.tapping_trainee import PHONE, TappingTrainee
-
-REQUIRED = {"order": "fixed", "tutorial": "required"}
+from Testing.web.trainees_on_page import DESKTOP, PHONE, ClickingTrainee, TappingTrainee
 
 
-class WebLearner(ViewLearner):
-    """A trainee at the page."""
+class Learner:
+    """Does what `TutorialPlayer` asks for, with the mouse; drags with the right button."""
 
-    def __init__(self, trainee, page):
-        super().__init__(trainee)
-        self.page = page
+    def __init__(self, trainee: Trainee, page: Page):
+        self.trainee, self.page = trainee, page
+        self.hands, self.until = trainee.hands, trainee.until
+
+    def turn_view(self):
+        self.hands.turn_view(200)
+
+    @property
+    def screen(self):
+        return self.trainee.view.screen
+
+    def lower(self):
+        label = self.trainee.view.state["next"]
+        while self.trainee.view.state["touch"] != "on skin":
+            self.trainee.approach(label, 0.02)
+            self.trainee.lower_onto(label)
+
+    def touch_next(self):
+        trainee, label = self.trainee, self.trainee.view.state["next"]
+
+        def is_done():
+            return trainee.view.state["next"] != label
+
+        while not is_done():
+            trainee.approach(label, 0.02)
+            if trainee.lower_onto(label):
+                refused = trainee.refused
+                is_answered = lambda r=refused: is_done() or trainee.refused > r  # noqa: E731
+                trainee.hands.tap("touch")
+                with suppress(AssertionError):
+                    wait_until(is_answered, f"touch {label}", trainee.again_s)
+
+    def resume(self):
+        self.trainee.choose("resume")
+        self.trainee.until_menu(None)
 
 
-class PhoneLearner(WebLearner):
+class PhoneLearner(Learner):
     """Turns the view by a finger."""
 
     def turn_view(self):
@@ -42,7 +73,7 @@ class PhoneLearner(WebLearner):
         send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
 
 
-class HeadsetLearner(WebLearner):
+class HeadsetLearner(Learner):
     """Looks aside, and pushes the stick."""
 
     def turn_view(self):
@@ -60,85 +91,71 @@ class HeadsetLearner(WebLearner):
         )
 
 
-class ThumbTrainee(TappingTrainee):
-    """Steers by the thumbs, too."""
-
-    steer_to = StreamTrainee.steer_to
-    press_on = StreamTrainee.press_on
-    lower_onto = StreamTrainee.lower_onto
-
-
 @dataclass(frozen=True)
 class Way:
-    """The trainees, by device."""
+    """A trainee with a device, and what the step of the view says to them."""
 
-    name: str
     device: SourceKind
-    make_trainee: Callable[[Place, Page], Trainee]
-    learner: type[WebLearner]
+    trainee: Callable[[Place, Page], Trainee]
+    learner: type[Learner]
+    says: tuple[TutorialStep, str]
+    size: dict
     headset: str = ""
     speed: str = "1"
 
 
-SLOW = "0.5"
-"""Simulated seconds in a second, for hands on a busy machine."""
 WAYS = (
-    Way("a touch screen", SourceKind.TOUCH_SCREEN, TappingTrainee, PhoneLearner),
     Way(
-        "a headset",
+        SourceKind.TOUCH_SCREEN,
+        TappingTrainee,
+        PhoneLearner,
+        (TutorialStep.TURN_VIEW, "drag a finger"),
+        PHONE,
+    ),
+    Way(
         SourceKind.XR,
         lambda place, page: place.carried_trainee(Controllers(page)),
         HeadsetLearner,
+        (TutorialStep.LOOK_AROUND, "Turn your head"),
+        SMALL,
         "metaQuest2",
     ),
-    Way("thumbs alone", SourceKind.TOUCH_SCREEN, ThumbTrainee, PhoneLearner, speed=SLOW),
     Way(
-        "controllers alone",
-        SourceKind.XR,
-        lambda place, page: place.trainee(Controllers(page)),
-        HeadsetLearner,
-        "metaQuest2",
-        SLOW,
+        SourceKind.MOUSE,
+        ClickingTrainee,
+        Learner,
+        (TutorialStep.TURN_VIEW, "right"),
+        DESKTOP,
+        speed="0.25",
     ),
 )
-SAYS = {
-    SourceKind.TOUCH_SCREEN: (TutorialStep.TURN_VIEW, "drag a finger"),
-    SourceKind.XR: (TutorialStep.LOOK_AROUND, "Turn your head"),
-}
 
 
 @pytest.mark.soak
-@pytest.mark.parametrize("way", WAYS, ids=lambda way: way.name)
+@pytest.mark.parametrize("way", WAYS, ids=lambda way: way.device.value)
 def test_the_tutorial_is_played_from_the_id_to_the_trial_run_with(way, tmp_path, browser):
-    """Every step is done by the device; the first two have the tip carried to the points."""
-    with Place(tmp_path, "--speed", way.speed, limits=WITHOUT_GRAPHICS, **REQUIRED) as place:
-        has_touch = way.device is SourceKind.TOUCH_SCREEN
-        size = PHONE if has_touch else SMALL
-        page = open_page(
-            browser,
-            place.simulator.url,
-            place.simulator.code,
-            way.headset,
-            size=size,
-            has_touch=has_touch,
-            draws=False,
-        )
+    """Every step is done by the device; on phone and headset the tip is carried to the points."""
+    rules = {"order": "fixed", "tutorial": "required"}
+    with Place(tmp_path, "--speed", way.speed, **rules) as place:
+        options = {"size": way.size, "has_touch": way.device is SourceKind.TOUCH_SCREEN}
+        page = open_page(browser, place.url, place.code, way.headset, draws=False, **options)
         if way.headset:
             enter_headset(page)
-        trainee = way.make_trainee(place, page)
+        trainee = way.trainee(place, page)
         trainee.go_to_experiment()
-        if has_touch:
-            trainee.write_id()
-        else:
-            trainee.type_id(page)
+        trainee.type_id(page)
         assert not item(trainee, "trial-run").is_enabled
-        trainee.choose("tutorial")
-        trainee.until(lambda: place.view.scene["task"] == "trial-run", "the scene")
+        if way.device is SourceKind.MOUSE:
+            trainee.begin_task("tutorial")
+        else:
+            trainee.choose("tutorial")
+            trainee.until(lambda: place.view.scene["task"] == "trial-run", "the scene")
         mode = "hmd" if way.headset else "desktop"
         player = TutorialPlayer(way.learner(trainee, page), way.device, mode)
         player.play()
-        step, words = SAYS[way.device]
+        step, words = way.says
         assert words in dict(player.read)[step]
+        assert [step for step, _text in player.read] == list(steps_for(way.device, mode))
         (path,) = place.records.glob("*.tutorial")
         content = json.loads(path.read_text())
         assert (content["device"], content["mode"]) == (way.device.value, mode)

@@ -15,10 +15,9 @@ from pathlib import Path
 
 import numpy as np
 import trimesh
-from colin27_setup import write_table
 
 from rastrainer.files.reading import read_json
-from rastrainer.files.writing import write_json
+from rastrainer.files.writing import write_json, write_text
 from rastrainer.head.mesh import HeadMesh, mesh_crossings, read_head_mesh, write_head_mesh
 from rastrainer.procedure.checks import distances_to_no_go, planned_bone
 from rastrainer.procedure.geometry import axis_distance_mm, segment_distances_mm, skull_angle_deg
@@ -300,7 +299,10 @@ def main() -> int:
     content["skull"] = {"file": "skull.ply", "kind": "approximation"}
     content["procedures"] = [procedure_json(procedure) for procedure in procedures]
     write_json(FOLDER / FILE_NAME, content)
-    write_table(Path(__file__).name, table_of(procedures))
+    readme, start = FOLDER.with_name("README.md"), "<!-- table by make_procedures.py -->\n"
+    before, _, rest = readme.read_text(encoding="utf-8").partition(start)
+    after = rest[rest.index("<!-- end of table -->") :]
+    write_text(readme, before + start + table_of(procedures) + after)
     return 0
 
 

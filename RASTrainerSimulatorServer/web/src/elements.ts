@@ -4,8 +4,13 @@ export function byId(id: string): HTMLElement {
   return document.getElementById(id)!;
 }
 
-export function element<Tag extends keyof HTMLElementTagNameMap>(tag: Tag, text: string): HTMLElementTagNameMap[Tag] {
+/** Return a new element with a text, and properties such as its class. */
+export function element<Tag extends keyof HTMLElementTagNameMap>(
+  tag: Tag,
+  text = "",
+  properties: Partial<HTMLElementTagNameMap[Tag]> = {},
+): HTMLElementTagNameMap[Tag] {
   const made = document.createElement(tag);
   made.textContent = text;
-  return made;
+  return Object.assign(made, properties);
 }

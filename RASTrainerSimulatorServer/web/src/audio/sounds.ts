@@ -1,6 +1,6 @@
 /** The simulator's sounds; in the headset they come from where they belong. */
 
-import type { Vector3 } from "three";
+import { Vector3 } from "three";
 
 const NAMES = [
   "touch", "proximity", "contact", "on-skin", "error", "finish", "undo", "focus", "accept",
@@ -12,7 +12,7 @@ export class Sounds {
   private readonly context = new AudioContext({ latencyHint: "interactive" });
   private readonly buffers = new Map<string, AudioBuffer>();
   private isSpatial = false;
-  private readonly place = { x: 0, y: 0, z: 0 };
+  private readonly place = new Vector3();
 
   constructor() {
     // Browsers are silent until the user does something.
@@ -36,9 +36,7 @@ export class Sounds {
 
   /** Tell where the ears and the tool's tip are. */
   locate(ears: Vector3, forward: Vector3, up: Vector3, tip: Vector3): void {
-    this.place.x = tip.x;
-    this.place.y = tip.y;
-    this.place.z = tip.z;
+    this.place.copy(tip);
     const { listener } = this.context;
     if (listener.positionX === undefined) {
       listener.setPosition(ears.x, ears.y, ears.z);

@@ -11,8 +11,8 @@ const byName = new Intl.Collator(undefined, { numeric: true });
 
 /** A table that keeps its head, so that the focus stays on its buttons, and gets new rows. */
 export class ClassTable {
-  readonly element = document.createElement("div");
-  private readonly body = document.createElement("tbody");
+  readonly element = element("div");
+  private readonly body = element("tbody");
   private readonly heads: Record<SortKey, HTMLTableCellElement>;
   private readonly sort: { key: SortKey; isDown: boolean } = { key: "trainee", isDown: false };
   private seats: ReadonlyMap<string, string> = new Map();
@@ -21,24 +21,20 @@ export class ClassTable {
     private news: CurriculumTable,
     number: number,
   ) {
-    const caption = document.createElement("caption");
+    const caption = element("caption", "", { id: `class-${number}` });
     caption.append(element("span", news.title));
-    caption.id = `class-${number}`;
     this.heads = { trainee: this.sortable("trainee"), reached: this.sortable("reached") };
-    const row = document.createElement("tr");
+    const row = element("tr");
     row.append(...KEYS.map((key) => this.heads[key]), head(say("nextTask")), head(say("seat")));
     row.append(...news.assignments.map(({ label, name }) => head(label, name)));
-    const top = document.createElement("thead");
+    const top = element("thead");
     top.append(row);
-    const table = document.createElement("table");
+    const table = element("table");
     table.append(caption, top, this.body);
-    const scroller = document.createElement("div");
-    scroller.className = "scroller";
-    scroller.tabIndex = 0;
-    scroller.setAttribute("role", "region");
+    const scroller = element("div", "", { className: "scroller", tabIndex: 0, role: "region" });
     scroller.setAttribute("aria-labelledby", caption.id);
     scroller.append(table);
-    const goals = document.createElement("ul");
+    const goals = element("ul");
     goals.append(...news.assignments.map(({ label, name, goal }) => element("li", say("goal", { label, name, goal }))));
     this.element.append(scroller, goals);
     this.fill();
@@ -67,8 +63,7 @@ export class ClassTable {
 
   private sortable(key: SortKey): HTMLTableCellElement {
     const made = head("");
-    const button = element("button", say(key));
-    button.type = "button";
+    const button = element("button", say(key), { type: "button" });
     button.onclick = () => {
       const { sort } = this;
       sort.isDown = sort.key === key ? !sort.isDown : key === "reached";
@@ -101,29 +96,25 @@ function progressOf({ cells }: TraineeRow): number {
 }
 
 function rowOf({ trainee, reached, next, cells }: TraineeRow): HTMLTableRowElement {
-  const row = document.createElement("tr");
-  const name = element("th", trainee);
-  name.scope = "row";
+  const row = element("tr");
+  const name = element("th", trainee, { scope: "row" });
   const places = [`${reached} / ${cells.length}`, next || say("allReached"), say("none")].map((text) => element("td", text));
   row.append(name, ...places, ...cells.map(cellOf));
   return row;
 }
 
 function cellOf({ state, progress, done, needed, reachedUtc }: AssignmentCell): HTMLTableCellElement {
-  const cell = document.createElement("td");
+  const cell = element("td");
   cell.dataset.state = state;
   cell.append(standingMark(state, done / needed), element("span", progress));
   if (reachedUtc !== "") {
-    const when = element("time", date(new Date(reachedUtc)));
-    when.dateTime = reachedUtc;
-    cell.append(when);
+    cell.append(element("time", date(new Date(reachedUtc)), { dateTime: reachedUtc }));
   }
   return cell;
 }
 
 function head(text: string, name = ""): HTMLTableCellElement {
-  const made = element("th", text);
-  made.scope = "col";
+  const made = element("th", text, { scope: "col" });
   if (name !== "") made.append(element("small", name));
   return made;
 }

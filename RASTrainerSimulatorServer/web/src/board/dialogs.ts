@@ -31,20 +31,14 @@ export async function ask(
 ): Promise<Record<string, string> | null> {
   const dialog = byId("dialog") as HTMLDialogElement;
   const shown = dialog.querySelector("form")!;
-  const complaint = document.createElement("output");
-  const title = element("h2", form.title);
-  title.id = "dialog-title";
-  const accept = element("button", say(form.accept));
-  const cancel = element("button", say("cancel"));
-  accept.type = "submit";
-  cancel.type = "button";
-  cancel.className = "second";
-  const doings = document.createElement("div");
-  doings.className = "doings";
+  const complaint = element("output");
+  const title = element("h2", form.title, { id: "dialog-title" });
+  const accept = element("button", say(form.accept), { type: "submit" });
+  const cancel = element("button", say("cancel"), { type: "button", className: "second" });
+  const doings = element("div", "", { className: "doings" });
   doings.append(cancel, accept);
   const parts = (form.fields ?? []).flatMap(rows);
-  const fingerprint = element("output", form.fingerprint ?? "");
-  fingerprint.className = "fingerprint";
+  const fingerprint = element("output", form.fingerprint, { className: "fingerprint" });
   shown.replaceChildren(title, element("p", form.text ?? ""), ...(form.fingerprint ? [fingerprint] : []), ...parts, complaint, doings);
   dialog.showModal();
   shown.querySelector("input")?.focus();
@@ -69,19 +63,11 @@ export async function ask(
 }
 
 function rows({ name, label, help, type, value, maxLength }: Field): HTMLElement[] {
-  const input = document.createElement("input");
-  input.id = `field-${name}`;
-  input.name = name;
-  input.type = type ?? "text";
-  input.value = value ?? "";
-  input.maxLength = maxLength;
-  input.autocomplete = "off";
-  input.required = true;
-  const shown = element("label", say(label));
-  shown.htmlFor = input.id;
+  const id = `field-${name}`;
+  const input = element("input", "", { id, name, type: type ?? "text", value: value ?? "", maxLength, autocomplete: "off", required: true });
+  const shown = element("label", say(label), { htmlFor: id });
   if (help === undefined) return [shown, input];
-  const words = element("p", say(help));
-  words.id = `${input.id}-help`;
+  const words = element("p", say(help), { id: `${id}-help` });
   input.setAttribute("aria-describedby", words.id);
   return [shown, input, words];
 }

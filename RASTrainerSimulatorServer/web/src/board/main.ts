@@ -2,7 +2,7 @@
 
 import { byId } from "../elements";
 import { BOARD_SUBPROTOCOL, type InstructorOrder, type TileNews, type TilesNews } from "../generated";
-import { exchangeCode, type CodeRefusal } from "../stream/pairing";
+import { isCodeGiven, pair } from "../stream/pairing";
 import { streamUrl } from "../stream/served";
 import { ClassSection } from "./class_section";
 import { ask } from "./dialogs";
@@ -27,7 +27,7 @@ class Board {
   }
 
   async begin(): Promise<void> {
-    await pairIfNeeded();
+    if (isCodeGiven() || !(await isPaired())) await pair(byId("pairing") as HTMLFormElement, say);
     byId("add").hidden = false;
     this.join();
     void this.classSection.begin();
@@ -117,13 +117,17 @@ class Board {
       if (values === null) return;
       text = values.text ?? "";
     }
-    const first = await send(path, "POST", { order, text });
-    if (first.problem === "" && first.answer.needsPin === true) {
+    const { problem, answer } = await send(path, "POST", { order, text });
+    if (problem !== "") {
+      this.notify(say("failed", { name, reason: problem }));
+      return;
+    }
+    if (answer.needsPin === true) {
       const fields = [{ name: "pin", label: "pin", help: "pinHelp", type: "password", maxLength: 12 }] as const;
       const values = await ask({ title: name, fields, accept: "send" }, async ({ pin }) => (await send(path, "POST", { order, text, pin })).problem);
-      if (values !== null) this.notify(say(`done.${order}`, { name }), "good");
-    } else if (first.problem === "") this.notify(say(`done.${order}`, { name }), "good");
-    else this.notify(say("failed", { name, reason: first.problem }));
+      if (values === null) return;
+    }
+    this.notify(say(`done.${order}`, { name }), "good");
   }
 
   private notify(text: string, tone: "warning" | "good" = "warning", stays = false): void {
@@ -158,40 +162,6 @@ async function isPaired(): Promise<boolean> {
   } catch {
     return true;
   }
-}
-
-/** Return when the browser is paired with the board; a code in the address, as `#code=123456`, is tried first. */
-async function pairIfNeeded(): Promise<void> {
-  const form = byId("pairing") as HTMLFormElement;
-  const complaint = form.querySelector("output")!;
-  const input = form.querySelector("input")!;
-  const [, given] = /^#code=(\d{1,64})$/.exec(location.hash) ?? [];
-  if (given !== undefined) {
-    history.replaceState(null, "", location.pathname);
-    const refusal = await exchangeCode(given, "view");
-    if (refusal === null) return;
-    complaint.value = refusal.problem === "wrong" ? say("oldCode") : sentence(refusal);
-  } else if (await isPaired()) return;
-  form.querySelector("h2")!.textContent = say("pair");
-  form.querySelector("label")!.textContent = say("code");
-  form.querySelector("p")!.textContent = say("codeHelp");
-  form.querySelector("button")!.textContent = say("join");
-  form.hidden = false;
-  input.focus();
-  await new Promise<void>((done) => {
-    form.onsubmit = async (event) => {
-      event.preventDefault();
-      const refusal = await exchangeCode(input.value.trim(), "view");
-      if (refusal === null) done();
-      else complaint.value = sentence(refusal);
-    };
-  });
-  form.hidden = true;
-}
-
-function sentence({ problem, seconds }: CodeRefusal): string {
-  const names = { wrong: "wrongCode", tooMany: "newCode", away: "lost" } as const;
-  return say(names[problem], { seconds });
 }
 
 void new Board().begin();

@@ -20,25 +20,22 @@ export function isTraining({ seat }: TileNews): boolean {
 
 /** A tile that is changed in place, so that the focus stays on its buttons. */
 export class Tile {
-  readonly element = document.createElement("li");
-  private readonly name = element("b", "");
-  private readonly clock = element("span", "");
-  private readonly who = paragraph("who");
-  private readonly state = paragraph("state");
-  private readonly says = paragraph("says");
-  private readonly progress = document.createElement("progress");
-  private readonly facts = document.createElement("dl");
-  private readonly watch = element("a", say("watch"));
+  readonly element = element("li");
+  private readonly name = element("b");
+  private readonly clock = element("span");
+  private readonly who = element("p", "", { className: "who" });
+  private readonly state = element("p", "", { className: "state" });
+  private readonly says = element("p", "", { className: "says" });
+  private readonly progress = element("progress", "", { ariaLabel: say("points") });
+  private readonly facts = element("dl");
+  private readonly watch = element("a", say("watch"), { className: "second", target: "_blank" });
   private readonly buttons: Record<InstructorOrder | "repair", HTMLButtonElement>;
   private news: TileNews;
 
   constructor(news: TileNews, actions: TileActions) {
     this.news = news;
-    const head = document.createElement("h2");
+    const head = element("h2");
     head.append(this.name, this.clock);
-    this.watch.className = "second";
-    this.watch.target = "_blank";
-    this.progress.setAttribute("aria-label", say("points"));
     const order = (name: InstructorOrder) => button(name, () => actions.order(this.news, name));
     this.buttons = {
       pause: order("pause"),
@@ -46,8 +43,7 @@ export class Tile {
       replay: order("replay"),
       repair: button("repair", () => actions.repair(this.news)),
     };
-    const doings = document.createElement("div");
-    doings.className = "doings";
+    const doings = element("div", "", { className: "doings" });
     doings.append(this.watch, ...Object.values(this.buttons), button("remove", () => actions.remove(this.news)));
     this.element.append(head, this.who, this.state, this.progress, this.says, this.facts, doings);
     this.show(news);
@@ -106,7 +102,7 @@ function factsOf(seat: SeatReport): [string, string][] {
   }
   if (seat.assignments !== "") facts.push([say("assignments"), seat.assignments]);
   facts.push(
-    [say("score"), seat.score === null ? say("none") : `${figure(seat.score, 1)} / 100`],
+    [say("score"), seat.score === null ? say("none") : `${figure(seat.score)} / 100`],
     [say("driven"), seat.holder === "" ? say("none") : holderName(seat.holder)],
     [say("slicer"), say(seat.slicer ? "connected" : "missing")],
   );
@@ -117,16 +113,6 @@ function clock(seconds: number): string {
   return `${String(Math.floor(seconds / 60)).padStart(2, "0")}:${String(seconds % 60).padStart(2, "0")}`;
 }
 
-function paragraph(className: string): HTMLParagraphElement {
-  const made = element("p", "");
-  made.className = className;
-  return made;
-}
-
 function button(name: BoardText, press: () => void): HTMLButtonElement {
-  const made = element("button", say(name));
-  made.type = "button";
-  made.className = "second";
-  made.onclick = press;
-  return made;
+  return element("button", say(name), { type: "button", className: "second", onclick: press });
 }

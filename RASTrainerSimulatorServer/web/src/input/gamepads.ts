@@ -6,6 +6,7 @@ import type { ControlNews, Feedback } from "../generated";
 const AXES = 4;
 const BUTTONS = 17;
 const START = 9;
+const AT_MIDDLE: readonly number[] = new Array<number>(AXES + BUTTONS).fill(0);
 const CHANGE = 0.004;
 /** As far as released sticks may rest from their middle. */
 const AT_REST = 0.15;
@@ -13,8 +14,8 @@ const AT_REST = 0.15;
 const PUSHED = 0.5;
 
 export class Gamepads {
-  private readonly axes = new Array<number>(AXES).fill(0);
-  private readonly buttons = new Array<number>(BUTTONS).fill(0);
+  /** Positions of axes and buttons. */
+  private sent: readonly number[] = AT_MIDDLE;
   private control: ControlNews | null = null;
   private used = -1;
   isHolding = false;
@@ -34,19 +35,22 @@ export class Gamepads {
   poll(): void {
     const pad = this.choose();
     if (pad === null) {
-      if (this.isHolding) this.tellRest();
+      this.release();
       return;
     }
     // A gamepad at this very computer is read by the simulator too: one of both is enough.
     const isReadThere = this.control?.holder === "gamepad" && !this.control.isYou;
     if (isReadThere && !this.isHolding && !(pad.buttons[START]?.pressed ?? false)) return;
-    if (!this.take(pad)) return;
-    this.connection.send({ type: "pad", axes: this.axes, buttons: this.buttons });
+    const positions = AT_MIDDLE.map((_, index) => (index < AXES ? pad.axes[index] : pad.buttons[index - AXES]?.value) ?? 0);
+    this.isHolding = positions.some((value) => Math.abs(value) > AT_REST);
+    if (positions.some((value, index) => Math.abs(value - this.sent[index]!) > CHANGE)) this.tell(positions);
   }
 
   /** Release everything: nobody sees what the pad does. */
   release(): void {
-    if (this.isHolding) this.tellRest();
+    if (!this.isHolding) return;
+    this.isHolding = false;
+    this.tell(AT_MIDDLE);
   }
 
   /** Vibrate, if this pad is what drives the arm. */
@@ -56,28 +60,6 @@ export class Gamepads {
     const strength = { weakMagnitude: event.rumble, strongMagnitude: event.rumble };
     const duration = event.rumbleMs;
     void this.choose()?.vibrationActuator?.playEffect("dual-rumble", { duration, ...strength });
-  }
-
-  /** Take the positions; return whether they differ from those that were sent. */
-  private take(pad: Gamepad): boolean {
-    let differs = false;
-    this.isHolding = false;
-    for (let index = 0; index < AXES; index++) {
-      const value = pad.axes[index] ?? 0;
-      differs = differs || Math.abs(value - this.axes[index]!) > CHANGE;
-      this.isHolding = this.isHolding || Math.abs(value) > AT_REST;
-    }
-    for (let index = 0; index < BUTTONS; index++) {
-      const value = pad.buttons[index]?.value ?? 0;
-      differs = differs || Math.abs(value - this.buttons[index]!) > CHANGE;
-      this.isHolding = this.isHolding || value > AT_REST;
-    }
-    if (!differs) return false;
-    for (let index = 0; index < AXES; index++) this.axes[index] = rounded(pad.axes[index] ?? 0);
-    for (let index = 0; index < BUTTONS; index++) {
-      this.buttons[index] = rounded(pad.buttons[index]?.value ?? 0);
-    }
-    return true;
   }
 
   /** Return the pad that is used: another one takes its place by being pushed while it rests. */
@@ -96,18 +78,12 @@ export class Gamepads {
     return chosen;
   }
 
-  private tellRest(): void {
-    this.axes.fill(0);
-    this.buttons.fill(0);
-    this.isHolding = false;
-    this.connection.send({ type: "pad", axes: this.axes, buttons: this.buttons });
+  private tell(positions: readonly number[]): void {
+    this.sent = positions.map((value) => Math.round(1000 * value) / 1000);
+    this.connection.send({ type: "pad", axes: this.sent.slice(0, AXES), buttons: this.sent.slice(AXES) });
   }
 }
 
 function isPushed(pad: Gamepad): boolean {
   return pad.axes.some((value) => Math.abs(value) >= PUSHED) || pad.buttons.some(({ value }) => value >= PUSHED);
-}
-
-function rounded(value: number): number {
-  return Math.round(1000 * value) / 1000;
 }

@@ -25,7 +25,7 @@ export class TouchControls {
   private hasControl = false;
 
   constructor(private readonly connection: Connection) {
-    const row = element("div", "");
+    const row = element("div");
     for (const control of CONTROLS) this.buttons.set(control, this.button(control));
     const touch = this.buttons.get("touch")!;
     row.append(...[...this.buttons.values()].filter((button) => button !== touch), this.fine, this.tilt);
@@ -61,7 +61,7 @@ export class TouchControls {
     const isOffered = procedure?.aim != null;
     if (isOffered !== this.tilt.hidden) return;
     this.tilt.hidden = !isOffered;
-    if (!isOffered) this.tilt.setAttribute("aria-pressed", "false");
+    if (!isOffered) this.tilt.ariaPressed = "false";
     this.labelRight();
   }
 
@@ -77,14 +77,12 @@ export class TouchControls {
 
   /** Return a button that is switched on and off. */
   private toggle(): HTMLButtonElement {
-    const button = element("button", "");
-    button.type = "button";
+    const button = element("button", "", { type: "button", ariaPressed: "false" });
     button.onclick = () => {
-      button.setAttribute("aria-pressed", String(!isOn(button)));
+      button.ariaPressed = String(!isOn(button));
       this.labelRight();
       this.tell();
     };
-    button.setAttribute("aria-pressed", "false");
     return button;
   }
 
@@ -108,8 +106,7 @@ export class TouchControls {
   }
 
   private button(control: TouchControl): HTMLButtonElement {
-    const button = element("button", "");
-    button.type = "button";
+    const button = element("button", "", { type: "button" });
     button.dataset.control = control;
     // At once, not when the finger leaves: the tip is where it is now.
     button.onpointerdown = () => this.connection.send({ type: "press", control });
@@ -129,5 +126,5 @@ export class TouchControls {
 }
 
 function isOn(button: HTMLButtonElement): boolean {
-  return button.getAttribute("aria-pressed") === "true";
+  return button.ariaPressed === "true";
 }

@@ -3,16 +3,14 @@
 import { element } from "../elements";
 
 export class TouchStick {
-  readonly place = element("div", "");
+  readonly place = element("div", "", { className: "stick", role: "img" });
   /** Right and up, −1 to 1 each. */
   x = 0;
   y = 0;
-  private readonly knob = element("i", "");
+  private readonly knob = element("i");
   private pointer: number | null = null;
 
   constructor(private readonly onChanged: () => void) {
-    this.place.className = "stick";
-    this.place.setAttribute("role", "img");
     this.place.append(this.knob);
     this.place.onpointerdown = (event) => this.begin(event);
     this.place.onpointermove = (event) => this.move(event);
@@ -22,7 +20,7 @@ export class TouchStick {
   }
 
   label(text: string): void {
-    this.place.setAttribute("aria-label", text);
+    this.place.ariaLabel = text;
     this.place.dataset.says = text;
   }
 

@@ -1,14 +1,14 @@
 /** How far the scene has come, in megabytes. */
 
 import { byId, element } from "../elements";
-import { say } from "../texts";
+import { figure, say } from "../texts";
 
 const MB = 1e6;
 
 export class Loading {
   private readonly place = byId("loading");
-  private readonly text = element("span", "");
-  private readonly bar = element("progress", "");
+  private readonly text = element("span");
+  private readonly bar = element("progress");
 
   constructor() {
     this.place.append(this.text, this.bar);
@@ -17,7 +17,7 @@ export class Loading {
   /** Show the number of loaded bytes of `total`, 0 where that is not known. */
   show(loaded: number, total: number): void {
     this.place.hidden = false;
-    const known = { loaded: megabytes(loaded), total: megabytes(total) };
+    const known = { loaded: figure(loaded / MB), total: figure(total / MB) };
     this.text.textContent = total > 0 ? say("loading", known) : say("loadingSome", known);
     this.bar.setAttribute("aria-label", say("scene"));
     if (total > 0) {
@@ -31,11 +31,4 @@ export class Loading {
   hide(): void {
     this.place.hidden = true;
   }
-}
-
-function megabytes(bytes: number): string {
-  return (bytes / MB).toLocaleString(document.documentElement.lang, {
-    minimumFractionDigits: 1,
-    maximumFractionDigits: 1,
-  });
 }

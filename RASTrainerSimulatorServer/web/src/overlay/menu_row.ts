@@ -8,8 +8,8 @@ import { MAX_ITEM_TEXT, type MenuItem } from "../generated";
 const ANSWER_MS = 1000;
 
 export class MenuRow {
-  readonly line = element("li", "");
-  private readonly label = element("span", "");
+  readonly line = element("li");
+  private readonly label = element("span");
   private readonly value: HTMLElement;
   /** The element that takes the focus; a meter cannot. */
   private readonly control: HTMLButtonElement | HTMLInputElement | null;
@@ -28,15 +28,15 @@ export class MenuRow {
     this.line.dataset.kind = item.kind;
     if (item.kind === "axis") {
       this.control = null;
-      this.value = meter();
+      this.value = element("meter", "", { min: -1, max: 1 });
       this.line.append(this.label, this.value);
     } else if (item.kind === "text") {
       this.value = this.control = this.field();
-      const label = element("label", "");
+      const label = element("label");
       label.append(this.label, this.value);
       this.line.append(label);
     } else {
-      this.value = element("b", "");
+      this.value = element("b");
       this.control = this.button();
       this.line.append(this.control);
     }
@@ -54,8 +54,10 @@ export class MenuRow {
     if (this.value instanceof HTMLInputElement) {
       this.value.readOnly = !item.isEnabled;
       this.showText(this.value);
-    } else if (this.value instanceof HTMLMeterElement) showAxis(this.value, item);
-    else this.value.textContent = item.value;
+    } else if (this.value instanceof HTMLMeterElement) {
+      this.value.value = Number(item.value) || 0;
+      this.value.ariaLabel = item.label;
+    } else this.value.textContent = item.value;
   }
 
   /** Text for screen readers. */
@@ -70,8 +72,7 @@ export class MenuRow {
   }
 
   private button(): HTMLButtonElement {
-    const button = element("button", "");
-    button.type = "button";
+    const button = element("button", "", { type: "button" });
     // A space apart, or names would be read as one word with their values.
     button.append(this.label, " ", this.value);
     button.onclick = () => {
@@ -81,10 +82,7 @@ export class MenuRow {
   }
 
   private field(): HTMLInputElement {
-    const field = element("input", "");
-    field.maxLength = MAX_ITEM_TEXT;
-    field.autocomplete = "off";
-    field.spellcheck = false;
+    const field = element("input", "", { maxLength: MAX_ITEM_TEXT, autocomplete: "off", spellcheck: false });
     field.oninput = () => this.tell(field);
     field.onfocus = () => {
       // Typing replaces the present ID. A click would put the cursor into it after this.
@@ -104,17 +102,4 @@ export class MenuRow {
     const isAwaited = performance.now() - this.typed < ANSWER_MS - 1;
     if (!isAwaited && field.value !== this.item.value) field.value = this.item.value;
   }
-}
-
-function meter(): HTMLMeterElement {
-  const made = element("meter", "");
-  made.min = -1;
-  made.max = 1;
-  return made;
-}
-
-function showAxis(made: HTMLMeterElement, item: MenuItem): void {
-  const position = Number(item.value);
-  made.value = Number.isFinite(position) ? position : 0;
-  made.setAttribute("aria-label", item.label);
 }

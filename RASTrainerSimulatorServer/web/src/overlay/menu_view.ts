@@ -7,12 +7,12 @@ import type { Fact, MenuItem, Menu } from "../generated";
 import { say } from "../texts";
 
 export class MenuView {
-  private readonly title = element("h2", "");
-  private readonly text = element("div", "");
-  private readonly list = element("ul", "");
-  private readonly help = element("p", "");
+  private readonly title = element("h2");
+  private readonly text = element("div");
+  private readonly list = element("ul");
+  private readonly help = element("p", "", { className: "help" });
   /** Heard by screen readers when the focused item's value changes. */
-  private readonly spoken = element("p", "");
+  private readonly spoken = element("p", "", { className: "unseen", role: "status" });
   private readonly rows = new Map<string, MenuRow>();
   private shown = "";
   private shownText = "";
@@ -26,9 +26,6 @@ export class MenuView {
     this.title.id = `${parent.id}-title`;
     this.text.id = `${parent.id}-text`;
     this.help.id = `${parent.id}-help`;
-    this.help.className = "help";
-    this.spoken.className = "unseen";
-    this.spoken.setAttribute("role", "status");
     this.parent.append(this.title, this.text, this.list, this.help, this.spoken);
   }
 
@@ -103,7 +100,7 @@ export class MenuView {
 }
 
 function factsOf(facts: readonly Fact[]): HTMLElement {
-  const table = element("dl", "");
+  const table = element("dl");
   for (const fact of facts) {
     const value = element("dd", fact.value);
     value.dataset.tone = fact.tone;
@@ -115,9 +112,5 @@ function factsOf(facts: readonly Fact[]): HTMLElement {
 }
 
 function picture(source: string, name: string, kind: string): HTMLImageElement {
-  const image = new Image();
-  image.className = kind;
-  image.src = source;
-  image.alt = name;
-  return image;
+  return element("img", "", { className: kind, src: source, alt: name });
 }

@@ -18,10 +18,7 @@ export class Overlay {
   /** The page's own sentence in place of the simulator's warnings; "" for none. */
   private notice: TextName | "" = "";
   private control: ControlNews | null = null;
-  private warnings: readonly ScreenMessage[] = [];
-  private menu: Menu | null = null;
-  private facts: readonly string[] = [];
-  private coverage = "";
+  private screen: Screen | null = null;
   private pairing: PairingNews | null = null;
   private readonly menuView: MenuView;
 
@@ -32,15 +29,12 @@ export class Overlay {
   show(screen: Screen): void {
     const { connection } = this;
     document.body.dataset.menu = screen.menu?.name ?? "";
-    this.menu = screen.menu;
-    this.showMenu();
+    this.screen = screen;
+    this.showMenu(screen.menu);
     this.part("instruction", screen.instruction, (parent) => message(screen.instruction, parent));
-    this.facts = screen.status;
-    this.coverage = screen.coverage;
     this.showFacts();
     const choose = (item: string) => connection.send({ type: "item", name: item });
     this.part("hints", screen.hints, (parent) => parent.append(...screen.hints.map((hint) => hintLine(hint, choose))));
-    this.warnings = screen.warnings;
     this.showWarnings();
   }
 
@@ -90,7 +84,7 @@ export class Overlay {
 
   private showWarnings(): void {
     const own: ScreenMessage[] = this.notice === "" ? [] : [{ text: say(this.notice), tone: "error" }];
-    const all = [...own, ...this.warnings].slice(0, 3);
+    const all = [...own, ...(this.screen?.warnings ?? [])].slice(0, 3);
     this.part("warnings", all, (parent) => parent.append(...all.map((warning) => message(warning))));
   }
 
@@ -104,15 +98,15 @@ export class Overlay {
   }
 
   private showFacts(): void {
-    const { pairing } = this;
-    const isTold = pairing !== null && this.menu !== null;
+    const { pairing, screen } = this;
+    const coverage = screen?.coverage ?? "";
+    const isTold = pairing !== null && screen?.menu != null;
     const how = isTold ? [say("pairing", { code: pairing.code, address: pairing.addresses[1] ?? pairing.addresses[0]! })] : [];
-    const facts = [...this.facts, ...how];
-    this.part("status", [facts, this.coverage], (parent) => parent.append(...factLines(facts, this.coverage)));
+    const facts = [...(screen?.status ?? []), ...how];
+    this.part("status", [facts, coverage], (parent) => parent.append(...factLines(facts, coverage)));
   }
 
-  private showMenu(): void {
-    const { menu } = this;
+  private showMenu(menu: Menu | null): void {
     let drawn = menu?.picture ? controlsPicture(menu.picture, inputsOf(menu)) : "";
     if (menu?.trend) drawn = trendPlot(menu.trend);
     this.menuView.show(menu, drawn);

@@ -4,7 +4,7 @@ import { element } from "../elements";
 import type { Hint, ScreenMessage } from "../generated";
 
 /** Return a message as a line of a list, or fill another element with it. */
-export function message({ text, tone }: ScreenMessage, into: HTMLElement = element("li", "")): HTMLElement {
+export function message({ text, tone }: ScreenMessage, into: HTMLElement = element("li")): HTMLElement {
   into.textContent = text;
   into.dataset.tone = tone;
   return into;
@@ -12,8 +12,8 @@ export function message({ text, tone }: ScreenMessage, into: HTMLElement = eleme
 
 /** Return a hint: a button if it does something when it is chosen. */
 export function hintLine(hint: Hint, choose: (item: string) => void): HTMLElement {
-  const line = element("li", "");
-  const place = hint.item === "" ? line : line.appendChild(element("button", ""));
+  const line = element("li");
+  const place = hint.item === "" ? line : line.appendChild(element("button"));
   place.append(element("kbd", hint.control));
   // Its own text is not repeated.
   if (hint.action !== hint.control) place.append(element("span", hint.action));
@@ -34,8 +34,7 @@ export function hintLine(hint: Hint, choose: (item: string) => void): HTMLElemen
 export function factLines(facts: readonly string[], coverage: string): HTMLElement[] {
   const lines = facts.map((fact) => element("li", fact));
   if (coverage === "") return lines;
-  const legend = element("li", "");
-  legend.className = "legend";
-  legend.append(element("i", ""), coverage);
+  const legend = element("li", "", { className: "legend" });
+  legend.append(element("i"), coverage);
   return [...lines, legend];
 }

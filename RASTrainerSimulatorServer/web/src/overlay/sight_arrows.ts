@@ -3,8 +3,7 @@
 import { type PerspectiveCamera, Vector3 } from "three";
 
 import { byId } from "../elements";
-import type { SceneModel } from "../scene/scene_model";
-import { IN_SIGHT_SHARE, type StateNews } from "../generated";
+import { IN_SIGHT_SHARE } from "../generated";
 import { yUp } from "../scene/viewpoint";
 import { say } from "../texts";
 
@@ -16,16 +15,12 @@ const ROOM = 40;
 export class SightArrows {
   private readonly target = new EdgeArrow("target");
   private readonly tool = new EdgeArrow("tool");
-  private readonly point = new Vector3();
 
-  /** Point at the tool while the trainee works, and if that is wanted at the next point, or at the place to draw next. */
-  show(model: SceneModel, camera: PerspectiveCamera, state: StateNews, isWorking: boolean, isWanted: boolean): void {
-    const tip = isWorking && state.phase !== "idle" ? model.node("tool")?.position : undefined;
-    const point = tip && isWanted ? model.next(state.next, this.point) : null;
-    const name = state.next === null ? "" : `${state.next}: `;
-    const distance = tip && point ? `${name}${Math.round(tip.distanceTo(point) * 200) * 5} mm` : "";
-    this.target.show(point, camera, distance);
-    this.tool.show(tip ?? null, camera, say("tool"));
+  /** Point at places in World, m: the tool, and the next point, which has a `label`, or the place to draw next. */
+  show(tip: Vector3 | null, next: Vector3 | null, label: string | null, camera: PerspectiveCamera): void {
+    const distance = tip && next ? `${Math.round(tip.distanceTo(next) * 200) * 5} mm` : "";
+    this.target.show(next, camera, label === null ? distance : `${label}: ${distance}`);
+    this.tool.show(tip, camera, say("tool"));
   }
 }
 

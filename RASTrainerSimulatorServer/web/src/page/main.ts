@@ -31,7 +31,7 @@ import { Sounds } from "../audio/sounds";
 import { Speech } from "../audio/speech";
 import { isPairedAgain, onlyRead, showWatching, SPECTATOR } from "../overlay/spectator";
 import { Stage } from "../scene/stage";
-import { ClearSight } from "../overlay/clear_sight";
+import { clearSight } from "../overlay/clear_sight";
 import { SightArrows } from "../overlay/sight_arrows";
 import { say, useLanguage } from "../texts";
 import { TouchControls } from "../input/touch_controls";
@@ -39,7 +39,7 @@ import { TouchRing } from "../scene/touch_ring";
 import { TraceMarks } from "../scene/trace_marks";
 import { ViewMouse } from "../input/view_mouse";
 import { HeadsetView } from "../scene/headset_view";
-import { GuidingPanel } from "../overlay/guiding_panel";
+import { GuidingPanel } from "../panels/guiding_panel";
 import { Headset } from "../xr/headset";
 
 /** Where the processor draws, it has other work, too: no more than 30 pictures a second. */
@@ -64,7 +64,6 @@ export class Page {
   private readonly frames = new FrameCount(this.connection);
   private readonly picture = new PictureReport(this.connection);
   private readonly arrows = new SightArrows();
-  private readonly sight = new ClearSight();
   private readonly ring = this.stage && new TouchRing(this.stage.scene);
   private readonly headsetView = this.stage && new HeadsetView(this.stage.world);
   private readonly errors = new ErrorArrows();
@@ -106,7 +105,7 @@ export class Page {
   async begin(wasPaired = false): Promise<void> {
     let role = isPairedAgain() ? null : await readRole();
     if (role === null) {
-      await pair(byId("pairing") as HTMLFormElement, wasPaired);
+      await pair(byId("pairing") as HTMLFormElement, say, wasPaired ? say("restarted") : "", say("watch"));
       role = await readRole();
     }
     this.connection.start(role === "spectator" ? SPECTATOR : PAGE);
@@ -326,8 +325,9 @@ export class Page {
     this.overlay.showInset(inset);
     this.overlay.showError(isWorking && isTouchError(state.touch));
     this.ring?.show(model, state, flat.camera, isWorking);
-    this.arrows.show(model, flat.camera, state, isWorking, this.screen?.hasArrow ?? false);
-    this.sight.show(model, flat.camera, state, isWorking);
+    const { tip, next } = model.placesAtWork(state, isWorking);
+    this.arrows.show(tip, this.screen?.hasArrow ? next : null, state.next, flat.camera);
+    clearSight([tip, next].filter((place) => place !== null), flat.camera);
     this.isDue = flat.draw(inset !== "", now);
     this.frames.drawn();
     this.picture.drawn(model.news.task);

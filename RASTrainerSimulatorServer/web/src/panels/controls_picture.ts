@@ -21,7 +21,15 @@ const GAP = 8;
 export function controlsPicture(kind: Kind, inputs: readonly string[]): string {
   const sketch = new Sketch(inputs);
   DRAW[kind](sketch);
-  return `data:image/svg+xml,${encodeURIComponent(sketch.svg())}`;
+  return svgPicture(sketch.parts, PICTURE_HEIGHT);
+}
+
+/** Return a drawing of these parts as the address of a picture. */
+export function svgPicture(parts: readonly string[], height: number): string {
+  const size = `width="${PICTURE_WIDTH}" height="${height}" viewBox="0 0 ${PICTURE_WIDTH} ${height}"`;
+  const font = 'font-family="system-ui, sans-serif" font-weight="700" text-anchor="middle"';
+  const svg = `<svg xmlns="http://www.w3.org/2000/svg" ${size} ${font}>${parts.join("")}</svg>`;
+  return `data:image/svg+xml,${encodeURIComponent(svg)}`;
 }
 
 /** Return the inputs that a menu's table names, such as "W" of "W / A". */
@@ -36,16 +44,9 @@ const DRAW: Readonly<Record<Kind, (sketch: Sketch) => void>> = {
 };
 
 class Sketch {
-  private readonly parts: string[] = [];
+  readonly parts: string[] = [];
 
   constructor(private readonly inputs: readonly string[]) {}
-
-  svg(): string {
-    const size = `width="${PICTURE_WIDTH}" height="${PICTURE_HEIGHT}"`;
-    const box = `viewBox="0 0 ${PICTURE_WIDTH} ${PICTURE_HEIGHT}"`;
-    const font = 'font-family="system-ui, sans-serif" font-weight="700" text-anchor="middle"';
-    return `<svg xmlns="http://www.w3.org/2000/svg" ${size} ${box} ${font}>${this.parts.join("")}</svg>`;
-  }
 
   /** Tell whether an input, or one of those that begin with its name, does something. */
   isUsed(name: string): boolean {

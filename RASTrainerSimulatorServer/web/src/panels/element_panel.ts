@@ -30,7 +30,7 @@ export interface Region {
  */
 export class ElementPanel extends Panel {
   /** Parent of the elements. */
-  readonly root = element("div", "");
+  readonly root = element("div");
   regions: readonly Region[] = [];
   private readonly context: CanvasRenderingContext2D;
   private picture: HTMLImageElement | null = null;
@@ -42,7 +42,7 @@ export class ElementPanel extends Panel {
 
   /** Make a panel of `width` × `height` pixels, `wide` m wide. */
   constructor(width: number, height: number, wide: number) {
-    const canvas = element("canvas", "");
+    const canvas = element("canvas");
     canvas.width = width;
     canvas.height = height;
     super(canvas, wide);

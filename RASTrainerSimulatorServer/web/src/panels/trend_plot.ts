@@ -1,7 +1,7 @@
 /** A trainee's scores as bars, with the pass mark as a line: a drawing as in controls_picture. */
 
 import { TARGET_COLOR, TONES, type ScoreTrend } from "../generated";
-import { PICTURE_WIDTH } from "./controls_picture";
+import { PICTURE_WIDTH, svgPicture } from "./controls_picture";
 import { COLORS } from "./pen";
 
 const HEIGHT = 580;
@@ -23,10 +23,7 @@ export function trendPlot(trend: ScoreTrend): string {
   const number = `<text x="${Math.max(30, middle)}" y="${level(last) - 12}" font-size="36" fill="${COLORS.text}">${last.toFixed(0)}</text>`;
   const mark = trend.mark > 0 ? rect(0, level(trend.mark) - 2, PICTURE_WIDTH, 4, TARGET_COLOR) : "";
   const floor = rect(0, BOTTOM, PICTURE_WIDTH, 4, COLORS.pale);
-  const size = `width="${PICTURE_WIDTH}" height="${HEIGHT}" viewBox="0 0 ${PICTURE_WIDTH} ${HEIGHT}"`;
-  const font = 'font-family="system-ui, sans-serif" font-weight="700" text-anchor="middle"';
-  const svg = `<svg xmlns="http://www.w3.org/2000/svg" ${size} ${font}>${bars.join("")}${floor}${mark}${number}</svg>`;
-  return `data:image/svg+xml,${encodeURIComponent(svg)}`;
+  return svgPicture([...bars, floor, mark, number], HEIGHT);
 }
 
 function level(score: number): number {

@@ -1,10 +1,9 @@
 /** A headset as a spectator sees it: its eyes' place for the camera, and its controllers in the room. */
 
-import { Object3D, Vector3 } from "three";
+import { CapsuleGeometry, Group, Mesh, MeshLambertMaterial, Object3D, Vector3 } from "three";
 
 import type { CameraPose, Pose, HeadsetPose } from "../generated";
 import { PoseStream } from "./pose_stream";
-import { controllerBody } from "./controller_body";
 
 /** Vertical field of view, wide enough to see the wearer's hands. */
 const ANGLE_DEG = 70;
@@ -49,4 +48,11 @@ export class HeadsetView {
       viewAngleDeg: ANGLE_DEG,
     };
   }
+}
+
+/** Return a controller's body: a dark capsule behind the origin of its ray, along −z. */
+export function controllerBody(): Group {
+  const body = new Mesh(new CapsuleGeometry(0.018, 0.09, 4, 10).rotateX(Math.PI / 2), new MeshLambertMaterial({ color: 0x2a3444 }));
+  body.position.z = 0.05;
+  return new Group().add(body);
 }

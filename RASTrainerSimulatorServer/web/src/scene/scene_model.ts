@@ -18,7 +18,7 @@ import { STATIC } from "./background_cache";
 import { isSoftware } from "./graphics";
 import { batch, ownColor, type Finish } from "./batch";
 import { served } from "../stream/served";
-import { CLEAR_SKIN_OPACITY, COVER_OPACITY, INSTRUMENTS, PULSE_COLOR, PULSE_S, SCENE_COLORS, TOOL_NODES, type Vector, type ProcedureNews, type SceneNews, type StateNews, type TouchStage } from "../generated";
+import { CLEAR_SKIN_OPACITY, COVER_OPACITY, INSTRUMENTS, PULSE_COLOR, PULSE_S, SCENE_COLORS, TOOL_NODES, type ProcedureNews, type SceneNews, type StateNews, type TouchStage } from "../generated";
 import { isTouchError } from "../stream/stages";
 
 const FIDUCIAL = "fiducial_";
@@ -26,22 +26,9 @@ const FURNITURE = ["table", "floor", "room"];
 const AT_THE_TOOL = ["guide", "axis", ...INSTRUMENTS];
 const PULSE = new Color(...PULSE_COLOR);
 
-function srgb([red, green, blue]: Vector): Color {
-  return new Color().setRGB(red, green, blue, "srgb");
-}
-
-export const COLORS = {
-  waiting: srgb(SCENE_COLORS.waiting),
-  next: srgb(SCENE_COLORS.next),
-  touched: srgb(SCENE_COLORS.touched),
-  free: srgb(SCENE_COLORS.free),
-  near: srgb(SCENE_COLORS.near),
-  onSkin: srgb(SCENE_COLORS.onSkin),
-  traced: srgb(SCENE_COLORS.traced),
-  covered: srgb(SCENE_COLORS.covered),
-  error: srgb(SCENE_COLORS.error),
-  ghost: srgb(SCENE_COLORS.ghost),
-};
+export const COLORS = Object.fromEntries(
+  Object.entries(SCENE_COLORS).map(([name, [red, green, blue]]) => [name, new Color().setRGB(red, green, blue, "srgb")]),
+) as Record<keyof typeof SCENE_COLORS, Color>;
 
 const WHITE = new Color(1, 1, 1);
 
@@ -61,6 +48,7 @@ export class SceneModel {
   private pulses = false;
   /** Where to draw next over the skin, in `head`, m. */
   nextPlace: Vector3 | null = null;
+  private readonly nextTouch = new Vector3();
   private readonly skinColor = new Color();
   private skinMesh: Mesh | null = null;
   private readonly skin = isSoftware ? new MeshLambertMaterial() : new MeshStandardMaterial({ roughness: 0.6 });
@@ -98,6 +86,12 @@ export class SceneModel {
     const head = this.named.get("head");
     if (place === undefined || head === undefined) return null;
     return target.fromArray(place).applyQuaternion(head.quaternion).add(head.position);
+  }
+
+  /** Return where tool and next touch are in World, m, while a trial is worked at. */
+  placesAtWork(state: StateNews, isWorking: boolean): { tip: Vector3 | null; next: Vector3 | null } {
+    const tip = isWorking && state.phase !== "idle" ? (this.named.get("tool")?.position ?? null) : null;
+    return { tip, next: tip && this.next(state.next, this.nextTouch) };
   }
 
   /** The vertices of the skin, in `head`, m. */

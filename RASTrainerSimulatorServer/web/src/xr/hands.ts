@@ -16,7 +16,7 @@ import type { Connection } from "../stream/connection";
 import type { Feedback } from "../generated";
 import type { ElementPanel } from "../panels/element_panel";
 import type { RoomPanels } from "./room_panels";
-import { controllerBody } from "../scene/controller_body";
+import { controllerBody } from "../scene/headset_view";
 import type { Grab } from "./grab";
 
 const DEAD = 0.12;
@@ -70,8 +70,8 @@ export class Hands {
     fine: false,
     yawDeg: 0,
   };
-  private readonly sent = new Float32Array(6);
-  private sentYaw = 0;
+  /** What was sent last: translation, rotation, and whether finely. */
+  private sent = [0, 0, 0, 0, 0, 0];
   private hovered = "";
   private repeated = "";
   private repeatIn = 0;
@@ -212,22 +212,17 @@ export class Hands {
   }
 
   private tellSticks(): void {
-    const { translation, rotation, fine } = this.message;
-    let differs = false;
-    let isPushed = fine;
-    for (let index = 0; index < 6; index++) {
-      const value = index < 3 ? translation[index]! : index < 5 ? rotation[index - 3]! : Number(fine);
-      const isEnd = value === 0 && this.sent[index] !== 0;
-      if (Math.abs(value - this.sent[index]!) > CHANGE || isEnd) differs = true;
-      if (value !== 0) isPushed = true;
-    }
-    this.isHolding = isPushed;
-    const hasTurned = isPushed && Math.abs(this.yawDeg - this.sentYaw) > YAW_CHANGE_DEG;
+    const { translation, rotation, fine, yawDeg } = this.message;
+    const pushes = [...translation, ...rotation, Number(fine)];
+    this.isHolding = pushes.some((value) => value !== 0);
+    const differs = pushes.some((value, index) => {
+      const before = this.sent[index]!;
+      return Math.abs(value - before) > CHANGE || (value === 0 && before !== 0);
+    });
+    const hasTurned = this.isHolding && Math.abs(this.yawDeg - yawDeg) > YAW_CHANGE_DEG;
     if (!differs && !hasTurned) return;
-    this.message.yawDeg = this.sentYaw = this.yawDeg;
-    this.sent.set(translation);
-    this.sent.set(rotation, 3);
-    this.sent[5] = Number(fine);
+    this.message.yawDeg = this.yawDeg;
+    this.sent = pushes;
     this.connection.send(this.message);
   }
 

@@ -42,9 +42,9 @@ export class Headset {
   private mustRecenter = false;
   private looked = 0;
   private shownNews: SceneNews | null = null;
-  private readonly ears = { place: new Vector3(), forward: new Vector3(), up: new Vector3() };
+  /** Of both eyes together: place, line of sight, up, and level ahead. */
+  private readonly eyes = { place: new Vector3(), gaze: new Vector3(), up: new Vector3(), ahead: new Vector3() };
   private readonly tip = new Vector3();
-  private readonly point = new Vector3();
 
   constructor(
     private readonly stage: Stage,
@@ -145,26 +145,23 @@ export class Headset {
       this.shownNews = model.news;
       this.takeScene(model);
     }
-    this.lookAround(frame);
-    this.camera.updateWorldMatrix(true, false);
-    this.turnSticks(model.news);
-    this.bringPanels();
+    this.recenter(frame);
+    this.lookAround(model);
     this.hands.poll(Math.min(1, now - this.looked));
     this.looked = now;
     // A device may go on asking for pictures of a headset that was taken off.
     if (this.session.visibilityState !== "hidden") {
       this.poses.send(now, this.camera, this.hands.controller("left"), this.hands.controller("right"));
     }
-    this.hear(model);
     this.panels.closeUp.draw(this.stage, this.panels.room, state);
-    this.arrow.show(this.hasArrow ? model.next(state.next, this.point) : null, this.camera);
-    const isToolWanted = this.isWorking && state.phase !== "idle";
-    this.toolArrow.show((isToolWanted && model.node("tool")?.position) || null, this.camera);
+    const { tip, next } = model.placesAtWork(state, this.isWorking);
+    this.arrow.show(this.hasArrow ? next : null, this.camera);
+    this.toolArrow.show(tip, this.camera);
     model.seeThrough(state.translucent.headset);
     this.stage.renderer.render(this.stage.scene, this.camera);
   }
 
-  private lookAround(frame: XRFrame): void {
+  private recenter(frame: XRFrame): void {
     if (!this.mustRecenter || this.base === null) return;
     const pose = frame.getViewerPose(this.base);
     if (!pose) return;
@@ -180,33 +177,23 @@ export class Headset {
     this.panels.arrange(this.seating);
   }
 
-  /** Have the panels follow a person who has walked or turned away from them. */
-  private bringPanels(): void {
-    const eyes = this.camera.getWorldPosition(this.ears.place);
-    const hasMoved = this.seating.follow(eyes, this.ears.forward, this.panels.isMenu);
-    if (hasMoved) this.panels.arrange(this.seating);
-  }
-
-  /** Turn the sticks' and the grab's directions with the eyes. */
-  private turnSticks(news: SceneNews): void {
-    const { forward, up } = this.ears;
-    this.camera.getWorldDirection(forward);
+  /** Have sticks, grab, panels and sounds follow the eyes. */
+  private lookAround(model: SceneModel): void {
+    const { camera, tip } = this;
+    const { place, gaze, up, ahead } = this.eyes;
+    camera.updateWorldMatrix(true, false);
+    camera.getWorldPosition(place);
+    camera.getWorldDirection(gaze);
+    up.setFromMatrixColumn(camera.matrixWorld, 1);
     // For eyes that look down or up, ahead is at the top or the bottom of the picture.
-    if (Math.abs(forward.y) > STEEP) {
-      forward.copy(up.setFromMatrixColumn(this.camera.matrixWorld, 1)).multiplyScalar(-Math.sign(forward.y));
-    }
-    forward.setY(0).normalize();
-    this.hands.yawDeg = (Math.atan2(-forward.z, forward.x) * 180) / Math.PI;
-    if (news.sticks === "camera") this.grab.turn(forward);
-  }
-
-  private hear(model: SceneModel): void {
-    const { place, forward, up } = this.ears;
-    this.camera.getWorldDirection(forward);
-    this.camera.getWorldPosition(place);
-    up.setFromMatrixColumn(this.camera.matrixWorld, 1);
-    model.node("tool")?.getWorldPosition(this.tip);
-    this.sounds.locate(place, forward, up, this.tip);
+    if (Math.abs(gaze.y) > STEEP) ahead.copy(up).multiplyScalar(-Math.sign(gaze.y));
+    else ahead.copy(gaze);
+    ahead.setY(0).normalize();
+    this.hands.yawDeg = (Math.atan2(-ahead.z, ahead.x) * 180) / Math.PI;
+    if (model.news.sticks === "camera") this.grab.turn(ahead);
+    if (this.seating.follow(place, ahead, this.panels.isMenu)) this.panels.arrange(this.seating);
+    model.node("tool")?.getWorldPosition(tip);
+    this.sounds.locate(place, gaze, up, tip);
   }
 
   private choose(name: string): void {

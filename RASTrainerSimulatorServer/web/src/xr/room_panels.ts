@@ -4,7 +4,7 @@ import { Group, Vector3 } from "three";
 
 import { element } from "../elements";
 import type { ControlNews, DepthRuler, GuideAim, Screen, ScreenMessage } from "../generated";
-import { GuidingPanel } from "../overlay/guiding_panel";
+import { GuidingPanel } from "../panels/guiding_panel";
 import { MenuView } from "../overlay/menu_view";
 import { factLines, hintLine, message } from "../overlay/parts";
 import { controlsPicture, inputsOf, PICTURE_HEIGHT, PICTURE_WIDTH } from "../panels/controls_picture";
@@ -63,7 +63,7 @@ export class RoomPanels {
   private readonly actions = new ElementPanel(1024, 236, WIDE);
   private readonly picture = new ElementPanel(PICTURE_WIDTH + 2 * PAD, PICTURE_HEIGHT + 2 * PAD, PICTURE_WIDE);
   private readonly warning = new ElementPanel(1024, 256, WARNING_WIDE);
-  private readonly aim = new GuidingPanel(element("canvas", ""));
+  private readonly aim = new GuidingPanel(element("canvas"));
   private readonly guiding = new Panel(this.aim.canvas, GUIDING_WIDE);
   private readonly menuView: MenuView;
   private readonly drawing = new Image();
@@ -81,7 +81,7 @@ export class RoomPanels {
       panel.mesh.material.depthTest = false;
       panel.mesh.renderOrder = ON_TOP + order;
     }
-    const section = element("section", "");
+    const section = element("section");
     section.id = "room-menu";
     menu.root.append(section);
     this.menuView = new MenuView(section, connection);

@@ -1,4 +1,4 @@
-/** Paint the bull's-eye along the guide's axis, or the depth ruler of the instrument fed through it. */
+/** The bull's-eye along the guide's axis, or the depth ruler, on a canvas: flat, or in the room. */
 
 import {
   BULLS_EYE_FARTHEST_MM,
@@ -15,10 +15,11 @@ import {
   type GuideAim,
   type DepthRuler,
 } from "../generated";
-import { COLORS, type Pen } from "./pen";
+import { figure } from "../texts";
+import { COLORS, Pen } from "./pen";
 
-export const GUIDING_WIDTH = 360;
-export const GUIDING_HEIGHT = 440;
+const WIDTH = 360;
+const HEIGHT = 440;
 const PAD = 24;
 const GOOD = TONES.good;
 const OFF = TONES.warning;
@@ -29,22 +30,42 @@ const SMALL = { size: 26, color: COLORS.soft };
 
 const TRACK = { left: 74, width: 36, top: 84, bottom: 416 };
 
+export class GuidingPanel {
+  private readonly context: CanvasRenderingContext2D;
+  private shown = "";
+
+  constructor(readonly canvas: HTMLCanvasElement) {
+    canvas.width = WIDTH;
+    canvas.height = HEIGHT;
+    this.context = canvas.getContext("2d")!;
+  }
+
+  /** Show how the line lies to the guide, or a depth (mm); neither hides the panel. Return whether anything has changed. */
+  show(aim: GuideAim | null, ruler: DepthRuler | null, depth: number): boolean {
+    const content = contentOf(aim, ruler, depth);
+    if (content === this.shown) return false;
+    this.shown = content;
+    this.canvas.hidden = content === "";
+    this.context.clearRect(0, 0, WIDTH, HEIGHT);
+    if (content === "") return true;
+    const pen = new Pen(this.context);
+    pen.box(0, 0, WIDTH, HEIGHT, "rgba(14, 23, 38, 0.84)");
+    if (ruler !== null) paintRuler(pen, ruler, depth);
+    else if (aim !== null) paintAim(pen, aim);
+    return true;
+  }
+}
+
 /** Return a text that changes with all that is painted. */
-export function guidingContent(aim: GuideAim | null, ruler: DepthRuler | null, depth: number): string {
+function contentOf(aim: GuideAim | null, ruler: DepthRuler | null, depth: number): string {
   if (ruler !== null) return JSON.stringify([ruler, depth.toFixed(1)]);
   if (aim === null) return "";
   const places = [...aim.entryMm, ...aim.targetMm, aim.entryDistanceMm, aim.angleDeg];
   return places.map((value) => value.toFixed(1)).join(" ");
 }
 
-export function paintGuiding(pen: Pen, aim: GuideAim | null, ruler: DepthRuler | null, depth: number): void {
-  pen.box(0, 0, GUIDING_WIDTH, GUIDING_HEIGHT, "rgba(14, 23, 38, 0.84)");
-  if (ruler !== null) paintRuler(pen, ruler, depth);
-  else if (aim !== null) paintAim(pen, aim);
-}
-
 function paintAim(pen: Pen, aim: GuideAim): void {
-  const middle = GUIDING_WIDTH / 2;
+  const middle = WIDTH / 2;
   for (const ring of [...BULLS_EYE_RINGS_MM, BULLS_EYE_FARTHEST_MM]) pen.circle(middle, middle, BULLS_EYE_RADIUS * shownRadius(ring), COLORS.pale, 3);
   pen.stroke(middle - BULLS_EYE_RADIUS, middle, middle + BULLS_EYE_RADIUS, middle, COLORS.pale, 2);
   pen.stroke(middle, middle - BULLS_EYE_RADIUS, middle, middle + BULLS_EYE_RADIUS, COLORS.pale, 2);
@@ -55,15 +76,9 @@ function paintAim(pen: Pen, aim: GuideAim): void {
   pen.stroke(entryX, entryY, targetX, targetY, color, 4);
   pen.circle(targetX, targetY, TARGET_RING, color, 5);
   pen.circle(entryX, entryY, ENTRY_DOT, color);
-  const y = GUIDING_WIDTH + 36;
+  const y = WIDTH + 36;
   pen.line(`${figure(aim.entryDistanceMm)} mm`, PAD, y, PAIR);
-  pen.lineTo(`${figure(aim.angleDeg)}°`, GUIDING_WIDTH - PAD, y, PAIR);
-}
-
-/** Write a number with one decimal, as the page's language does. */
-function figure(value: number): string {
-  const digits = { minimumFractionDigits: 1, maximumFractionDigits: 1 };
-  return value.toLocaleString(document.documentElement.lang, digits);
+  pen.lineTo(`${figure(aim.angleDeg)}°`, WIDTH - PAD, y, PAIR);
 }
 
 /** Return the drawn radius of a distance, as a share of the whole; small distances are spread. */
@@ -105,6 +120,6 @@ function paintRuler(pen: Pen, ruler: DepthRuler, depth: number): void {
     pen.stroke(left - 4, y(mm), left + width + 20, y(mm), color, 4);
     // Outer and inner table are near each other: their figures must not cover each other.
     lowest = Math.max(y(mm), lowest + 30);
-    pen.line(`${mm.toFixed(0)} ${ruler.names[index]}`, begin, lowest, { size: 22, color }, GUIDING_WIDTH - begin - 8);
+    pen.line(`${mm.toFixed(0)} ${ruler.names[index]}`, begin, lowest, { size: 22, color }, WIDTH - begin - 8);
   }
 }

@@ -1,18 +1,33 @@
-"""A trainee who touches landmarks, and draws over the skin where the ring leads, by any hands."""
+"""A registration by surface from the menu to the result, by a gamepad and by a headset alone.
+
+The trainee draws where the ring is. The simulator registers the trace and scores it itself.
+"""
 
 from __future__ import annotations
 
 import re
 
 import numpy as np
+import pytest
 
+from rastrainer.number_text import with_units
+from rastrainer.protocol import MIN_TRACE_POINTS
 from rastrainer.transforms import MM_PER_M
+from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.presentation.screen import Menu
-from Testing.end_to_end.stream_trainee import LEAST_FINE_PUSH, LIFT_M, SINK_M, StreamTrainee
-from Testing.simulator.landmarked import LANDMARKS
+from Testing.end_to_end.hands import Controllers, GamepadHands
+from Testing.end_to_end.lab import Lab, Place
+from Testing.end_to_end.stream_trainee import LEAST_FINE_PUSH, LIFT_M, SINK_M, Trainee
+from Testing.simulator.landmarked import LANDMARKS, write_landmarked
+from Testing.web.chromium import enter_headset, open_page
+from Testing.web.test_whole_flow import SLOW, XR
+
+# Drawing takes minutes, in a headset many.
+pytestmark = pytest.mark.soak
 
 METHOD = "trace over the skin"
 """As the experiment menu calls it."""
+POINTS = 70
 CENTER_M = np.array([0.001, -0.012, 0.016])
 """In the head's RAS frame."""
 COARSE = LANDMARKS[:3]
@@ -22,9 +37,13 @@ TURN_BACK_M = 0.006
 STROKE_POINTS = 12
 TRACING = "over parts that face different ways"
 """Readings during a stroke."""
+DRAWN = """() => {
+  const { marks, ring } = page.trace;
+  return [marks.count, ring.visible, page.stage.model.skin.vertexColors];
+}"""
 
 
-class DrawingTrainee(StreamTrainee):
+class DrawingTrainee(Trainee):
     """Knows the landmarks of the head by sight, and of the trace what all views receive."""
 
     @property
@@ -56,12 +75,6 @@ class DrawingTrainee(StreamTrainee):
     def head_center(self) -> np.ndarray:
         """(3,) float, World, m."""
         return self._in_world(CENTER_M)
-
-    def choose_method(self, method: str) -> None:
-        """Choose the method of registration in the experiment menu."""
-        self.focus("method")
-        while (before := self.value("method")) != method:
-            self.press("right", lambda b=before: self.value("method") != b, "another method")
 
     def begin_task(self, task: str) -> None:
         """Choose a task in the experiment's menu; landmarks are marked in no scene."""
@@ -109,7 +122,7 @@ class DrawingTrainee(StreamTrainee):
         head = self.view.pose("head")[:3, :3]
         place = self._in_world(np.array(ring["positionMm"]) / MM_PER_M)
         outward = head @ np.array(ring["normal"])
-        self._go_above(place)
+        self.go_above(place, 0.02)
         self.steer_to(place + LIFT_M * outward, 0.008)
         self.steer_to(place + 0.006 * outward, 0.004)
         self.sink_onto_skin(place - SINK_M * outward)
@@ -120,17 +133,6 @@ class DrawingTrainee(StreamTrainee):
         self.hands.push(0.0, 0.0, 0.0, False)
         self.press("touch", lambda: not self.is_drawing, "the end of a stroke")
         self.steer_to(place + LIFT_M * outward, 0.01)
-
-    def _go_above(self, place: np.ndarray) -> None:
-        """Carry the tip over the head to a place, on a path that stays off the skin."""
-        center = self.head_center
-        start, end = self.tip - center, place - center
-        height = LIFT_M + max(np.linalg.norm(start), np.linalg.norm(end))
-        for share in np.linspace(0.0, 1.0, 6):
-            between = (1.0 - share) * start / np.linalg.norm(start) + share * end / np.linalg.norm(
-                end
-            )
-            self.steer_to(center + height * between / np.linalg.norm(between), 0.02)
 
     def _draw_about(self, place: np.ndarray, outward: np.ndarray) -> None:
         """Draw back and forth across a place, on the skin as far as the visible height shows."""
@@ -153,3 +155,71 @@ class DrawingTrainee(StreamTrainee):
     def _in_world(self, place: np.ndarray) -> np.ndarray:
         head = self.view.pose("head")
         return head[:3, :3] @ place + head[:3, 3]
+
+
+@pytest.fixture(scope="module", params=["gamepad", XR])
+def drawn(tmp_path_factory, browser, request) -> dict:
+    """Choose the method, touch landmarks, draw, accept the match; return the results."""
+    folder, device = tmp_path_factory.mktemp("drawn"), request.param
+    options = ("--scenario", str(write_landmarked(folder / "scenario")), "--speed")
+    if device == "gamepad":
+        with Lab(folder, *options, "2", "--seed", "9", guidance="arrow") as lab:
+            return draw(lab, GamepadHands(lab.simulator), device)
+    with Place(folder, *options, SLOW, guidance="arrow") as place:
+        # No picture is needed: the panels are drawn, and an empty scene.
+        page = open_page(browser, place.url, place.code, "metaQuest2", draws=False)
+        enter_headset(page)
+        seen = draw(place, Controllers(page), device, lambda: page.evaluate(DRAWN))
+        assert page.problems == []
+        return seen
+
+
+def draw(place: Place, hands: object, device: str, look=lambda: None) -> dict:
+    trainee = DrawingTrainee(place.view, hands)
+    trainee.go_to_experiment()
+    trainee.type_id(None)
+    trainee.set_choice("method", METHOD)
+    trainee.begin_task("task-1")
+    trainee.touch_landmarks()
+    seen = {"device": device, "rings": trainee.draw_until(POINTS), "shown": look()}
+    seen["match"] = trainee.accept_match()
+    seen["result"] = {fact.label: fact.value for fact in trainee.menu.facts}
+    (registered,), (scored,) = place.entries("registration"), place.entries("scored")
+    seen["registered"], seen["scored"] = registered["arguments"], scored["arguments"]
+    seen["touched"] = [entry["label"] for entry in place.entries("touch")]
+    seen["traced"], seen["operators"] = place.entries("trace"), place.operators
+    return seen
+
+
+def test_landmarks_and_trace_are_recorded_with_that_device_alone(drawn):
+    assert drawn["operators"] == {drawn["device"]}
+    assert drawn["touched"] == [landmark.name for landmark in COARSE]
+    assert len(drawn["traced"]) >= POINTS > MIN_TRACE_POINTS
+
+
+def test_the_headset_shows_the_points_the_paint_and_the_ring(drawn):
+    if drawn["device"] == XR:
+        count, has_ring, is_painted = drawn["shown"]
+        assert 0 < count <= len(drawn["traced"])
+        assert (has_ring, is_painted) == (True, True)
+
+
+def test_each_ring_leads_to_another_place(drawn):
+    places = np.array([ring["positionMm"] for ring in drawn["rings"]])
+    assert len(places) >= POINTS // 20
+    assert np.linalg.norm(np.diff(places, axis=0), axis=1).min() > 10.0
+
+
+def test_the_match_shown_to_the_trainee_is_the_one_that_is_registered(drawn):
+    shown, registered = drawn["match"], drawn["registered"]
+    assert shown["Residual"] == with_units(f"{registered['freMm']:.2f} mm")
+    expected = with_units(f"{registered['expectedTreMm']:.2f} mm")
+    assert shown["Expected error at the target (TRE)"] == expected
+    assert registered["freMm"] < 1.0
+    assert registered["expectedTreMm"] < 3.0
+
+
+def test_the_trial_is_scored_and_the_true_error_revealed(drawn):
+    assert drawn["scored"]["details"]["scoreVersion"] == SCORE_VERSION
+    true_error = drawn["result"]["True error at the target (TRE)"]
+    assert float(true_error.removesuffix("mm")) < 5.0
