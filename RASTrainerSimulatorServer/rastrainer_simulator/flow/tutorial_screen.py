@@ -10,14 +10,15 @@ from rastrainer_simulator.flow.arm_screen import ArmEvents, ArmScreen
 from rastrainer_simulator.flow.pages.introduction import tutorial_page
 from rastrainer_simulator.flow.pages.trial_review import POOR_MM, error_arrow, error_tone
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.flow.tutorial.steps import (
+from rastrainer_simulator.flow.session.tutorial import (
+    CENTERED_M,
     DONE_DEG,
     DONE_MM,
     STEPS,
+    Tutorial,
     TutorialObservation,
     TutorialStep,
 )
-from rastrainer_simulator.flow.tutorial.tutorial import CENTERED_M, Tutorial
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 from rastrainer_simulator.presentation.screen import ErrorArrow, Hint, Screen, ScreenMessage, Tone

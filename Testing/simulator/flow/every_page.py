@@ -22,7 +22,6 @@ from rastrainer_simulator.flow.pages import (
     controls,
     experiment,
     introduction,
-    procedure,
     result,
     start,
     trainee_id,
@@ -303,7 +302,7 @@ def _pages(session) -> Iterator[SessionPage]:
     session.state = replace(session.state, training=AT_PROCEDURE)
     yield procedure_screen.procedure_page(session)
     session.state = replace(session.state, training=PROCEDURE_SCORED)
-    yield procedure.procedure_errors_page(session)
+    yield result.procedure_errors_page(session)
     yield trial_review.ErrorsPage(session, has_lines=True)
     session.state = replace(session.state, training=SCORED)
     yield introduction.tutorial_page(session)

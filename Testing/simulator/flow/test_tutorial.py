@@ -16,7 +16,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.arm import start_tip
 from rastrainer_simulator.flow.session.session import TUTORIAL_VIEW
 from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
-from rastrainer_simulator.flow.tutorial.steps import TutorialStep
+from rastrainer_simulator.flow.session.tutorial import TutorialStep
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.state import TOUCH_ERRORS
