@@ -45,11 +45,7 @@ def go_to_experiment(trainee, rule="required"):
     session = session_of(trainee)
     session.prefer(tutorial=rule)
     session.trainee = "P07"
-    trainee.choose("train")
-    for menu, item in (("introduction", "skip"), ("controls", "next")):
-        trainee.until_menu(menu)
-        trainee.choose(item)
-    trainee.until_menu("experiment")
+    trainee.open_experiment()
 
 
 @pytest.fixture

@@ -210,12 +210,9 @@ class Trainee:
 
     def open_experiment(self) -> None:
         """Go from the start menu past introduction and controls to the experiment menu."""
-        for choice, menu in (
-            ("train", "introduction"),
-            ("skip", "controls"),
-            ("next", "experiment"),
-        ):
-            self.choose(choice, menu)
+        self.choose("train", "introduction")
+        self.choose("skip", "controls")
+        self.choose("next", "experiment")
 
     def start(self, task: str, trainee: str = "P07", procedure: str = "") -> None:
         """Begin a task as Slicer would, and wait for its screen."""
