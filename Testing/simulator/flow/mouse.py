@@ -47,8 +47,6 @@ class Mouse:
 class ClickingTrainee(Trainee):
     """Goes through the menus by clicks."""
 
-    hands: Mouse
-
     def choose(self, item: str, *menu: str | None) -> None:
         """Click on an item, once its menu takes clicks."""
         self.until(lambda: self.menu.focus, "a focus")

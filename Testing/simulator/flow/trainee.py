@@ -5,7 +5,6 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Mapping
-from typing import Protocol
 
 import numpy as np
 
@@ -31,16 +30,6 @@ ATTEMPTS = 3
 SHORT_PUSHES = 40
 LIFT_M = 0.035
 """How far the tip is taken off the skin before it is carried to the next fiducial."""
-
-
-class Hands(Protocol):
-    """The input device of a trainee."""
-
-    def tap(self, control: str) -> None:
-        """Press a control and release it."""
-
-    def push(self, right: float, forward: float, up: float, fine: bool) -> None:
-        """Push the sticks, −1…1."""
 
 
 class Watcher:
@@ -94,17 +83,9 @@ class LockStep:
 
 
 class Trainee:
-    """Goes through menus by their names, and to fiducials by the sticks.
+    """Goes through menus by their names, and to fiducials by the sticks of its hands.
 
-    Args:
-        loop: a control loop that ticks as fast as it can, `RATE_HZ` times a simulated second.
-        presenter: its presenter.
-        make_hands: gives what the trainee works with.
-        advance: lets the presenter, and what belongs to it, go on for some seconds.
-
-    Attributes:
-        step_s: duration of a step, s.
-        ticks_a_step: how often the loop ticks in it.
+    In a step of `step_s` seconds the presenter advances, and the loop ticks `ticks_a_step` times.
     """
 
     step_s, ticks_a_step = STEP_S, 1
@@ -113,7 +94,7 @@ class Trainee:
         self.loop, self.presenter, self._advance = loop, presenter, advance or presenter.advance
         self.watcher = Watcher(presenter)
         self._lock_step = LockStep(loop)
-        self.hands: Hands = make_hands(self)
+        self.hands = make_hands(self)
 
     def close(self) -> None:
         self._lock_step.free()

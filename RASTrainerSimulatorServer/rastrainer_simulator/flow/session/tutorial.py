@@ -148,7 +148,7 @@ STEPS: Mapping[TutorialStep, StepRule] = {
     TutorialStep.GUIDED: StepRule(_REPEATING, GUIDED_TOUCHES, "tutorial.done points"),
     TutorialStep.AGAIN: StepRule(_TOUCHING),
 }
-_WAYS: Mapping[TutorialStep, Vector] = {
+WAYS: Mapping[TutorialStep, Vector] = {
     TutorialStep.RIGHT: (1.0, 0.0, 0.0),
     TutorialStep.LEFT: (-1.0, 0.0, 0.0),
     TutorialStep.FORWARD: (0.0, 1.0, 0.0),
@@ -190,7 +190,7 @@ def amount_done(
         case TutorialStep.TOUCH | TutorialStep.GUIDED | TutorialStep.AGAIN:
             return now.touched
     # Since the tip last moved the other way.
-    way = now.axes.to_world(_WAYS[step])
+    way = now.axes.to_world(WAYS[step])
     return max(0.0, done + MM_PER_M * dot(subtract(now.tip, before.tip), way))
 
 
@@ -199,7 +199,6 @@ PRAISE_S = 0.8
 """How long a completed step is praised before the next one begins."""
 CENTERED_M = 0.003
 """The longest distance of a touch to its point: trials allow more, but the center is aimed at."""
-_MAY_TOUCH = (TutorialStep.LOWER, TutorialStep.TOUCH, TutorialStep.GUIDED, TutorialStep.AGAIN)
 
 
 class TouchPractice:
@@ -218,12 +217,9 @@ class TouchPractice:
         rest: Vector | None = None,
         task: str = TRIAL_RUN,
     ) -> None:
-        """Begin; the head stays where it is.
+        """Begin by checked arguments of StartTask, with `trialId`; the head stays where it is.
 
-        Args:
-            arguments: checked arguments of StartTask, with `trialId`.
-            points: which are touched.
-            rest: where the tip may still be on the skin from a touch before, World, m.
+        `rest` is where the tip may still be on the skin from a touch before, World, m.
         """
         self._rest = rest
         self._settings = replace(setup.settings.training, acceptance_radius=CENTERED_M)
@@ -290,10 +286,8 @@ def _tip(state: SimulationState) -> Vector:
 class Tutorial:
     """Leads through the steps; a step is done when the arm, the view or a touch has really changed.
 
-    Attributes:
-        points: that are touched: label → World, m.
-        praised: the step that was just done, while it is praised; else None.
-        practiced: the point that is practiced instead of all that; "" in the tutorial itself.
+    `practiced` is the point of a trial that is practiced instead; "" in the tutorial itself.
+    `praised` is the step that was just done, for a moment.
     """
 
     def __init__(
@@ -362,7 +356,14 @@ class Tutorial:
 
     @property
     def may_touch(self) -> bool:
-        return self.step in _MAY_TOUCH
+        return self.step is TutorialStep.LOWER or self._asks_for(ControlName.TOUCH)
+
+    @property
+    def may_undo(self) -> bool:
+        return self._asks_for(ControlName.UNDO)
+
+    def _asks_for(self, control: ControlName) -> bool:
+        return self.step is not None and control in STEPS[self.step].controls
 
     def use(self, device: SourceKind) -> None:
         self.steps = OF_PRACTICE if self.practiced else steps_for(device, self.mode)
