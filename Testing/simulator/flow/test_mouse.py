@@ -6,7 +6,7 @@ import pytest
 
 from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
 from rastrainer_simulator.input.inputs import ControlName
-from Testing.simulator.flow.mouse import VIEW, ClickingTrainee, Mouse
+from Testing.simulator.flow.trainee import VIEW, ClickingTrainee, Mouse
 
 
 @pytest.fixture

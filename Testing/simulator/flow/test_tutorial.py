@@ -19,7 +19,7 @@ from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
 from rastrainer_simulator.flow.session.tutorial import TutorialStep
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.record.trial_context import TutorialOutcome
-from Testing.simulator.flow.learner import FlowLearner
+from Testing.simulator.flow.trainee import FlowLearner
 from Testing.tutorial_player import TutorialPlayer
 
 FIRST = "The tutorial comes first, with the device that you use now: it takes two minutes."
