@@ -250,7 +250,7 @@ class SkinPlace:
 
 @dataclass(frozen=True)
 class TraceNews(ViewMessage):
-    """Points of a trace over the skin, in the head's frame, after the first `known` ones.
+    """New points of a trace over the skin, in the head's frame; `known` earlier points remain.
 
     Within `covered_mm` around the points the skin is painted; 0 for no paint.
     """

@@ -232,7 +232,7 @@ export interface SkinPlace {
   readonly normal: Vector;
 }
 
-/** Points of a trace over the skin, in the head's frame, after the first `known` ones. */
+/** New points of a trace over the skin, in the head's frame; `known` earlier points remain. */
 export interface TraceNews {
   readonly type: "trace";
   readonly known: number;

@@ -167,13 +167,3 @@ def test_the_ghost_disappears_soon_after_its_last_touch(place, anywhere):
     last = read_track(place.best).trajectory.touches[-1].time_s
     assert ghost.poses(last) is not None
     assert ghost.poses(last + 1.0) is None
-
-
-def test_no_ghost_is_shown_during_a_replay(place):
-    place.prefer(ghost="own best")
-    place.play_and_be_scored(ACCEPTABLE)
-    place.show_again()
-    place.step(20)
-    assert place.replay.training.phase == "running"
-    assert place.ghost is None
-    place.tap_until("back", "result")

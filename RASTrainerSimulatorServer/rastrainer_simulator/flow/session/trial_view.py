@@ -43,7 +43,7 @@ class TrialView:
 
     def __init__(self) -> None:
         self.control = ViewControl()
-        # Of the sticks' right and forward against the scenario's camera, counterclockwise.
+        # The sticks' right and forward are turned so far from the scenario's camera.
         self.stick_turn_deg = 0.0
         # Where the eyes look, from World's x; None without a headset's controllers.
         self.yaw_deg: float | None = None
