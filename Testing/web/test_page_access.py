@@ -21,7 +21,7 @@ from rastrainer_simulator.presentation.screen import (
     Tone,
 )
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
-from Testing.simulator.flow.languages import LONGEST_OR_EACH, screens_in
+from Testing.simulator.flow.every_page import LONGEST_OR_EACH, screens_in
 from Testing.web.chromium import accessibility_checker, open_page, resize, show
 
 WEB = Path(__file__).parents[2] / "RASTrainerSimulatorServer" / "web"

@@ -24,7 +24,7 @@ export interface CameraPose {
   readonly viewAngleDeg: number;
 }
 
-/** The scene's file, and what goes with it. */
+/** The scene's file, and what goes with it: fiducials by label in the head's frame, m. */
 export interface SceneNews {
   readonly type: "scene";
   readonly url: string;
@@ -64,7 +64,7 @@ export interface GuideAim {
   readonly angleDeg: number;
 }
 
-/** State of the tool in a procedure. */
+/** State of the tool in a procedure: how far it is fed beyond the guide's tip. */
 export interface ProcedureNews {
   readonly name: string;
   readonly tool: Tool;
@@ -72,7 +72,7 @@ export interface ProcedureNews {
   readonly aim: GuideAim | null;
 }
 
-/** Where a headset and its controllers are. */
+/** Where a worn headset's eyes and its controllers are; None without one. */
 export interface HeadsetPose {
   readonly eyes: Pose | null;
   readonly left: Pose | null;
@@ -116,7 +116,7 @@ export interface Fact {
 /** The kind of an item. */
 export type ItemKind = "button" | "choice" | "text" | "axis";
 
-/** One line of a menu. */
+/** One line of a menu; a view sends its name back when it is clicked. */
 export interface MenuItem {
   readonly name: string;
   readonly label: string;
@@ -127,14 +127,14 @@ export interface MenuItem {
   readonly picture: string;
 }
 
-/** A trainee's scores as a small plot of bars. */
+/** A trainee's scores as a small plot of bars, oldest first; as text for who cannot see it. */
 export interface ScoreTrend {
   readonly text: string;
   readonly scores: readonly number[];
   readonly mark: number;
 }
 
-/** A panel over the picture. */
+/** A panel over the picture; its name is never shown. */
 export interface Menu {
   readonly name: string;
   readonly title: string;
@@ -201,7 +201,7 @@ export interface ScreenNews {
   readonly screen: Screen;
 }
 
-/** A sound and a vibration, to be played once. */
+/** A sound and a vibration of a `FeedbackEvent`, to be played once. */
 export interface Feedback {
   readonly type: "event";
   readonly number: number;
@@ -232,7 +232,7 @@ export interface SkinPlace {
   readonly normal: Vector;
 }
 
-/** New points of a trace over the skin. */
+/** New points of a trace over the skin, in the head's frame; `known` earlier points remain. */
 export interface TraceNews {
   readonly type: "trace";
   readonly known: number;
