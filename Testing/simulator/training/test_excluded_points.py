@@ -85,10 +85,8 @@ def test_all_touches_are_scored_whatever_registration_was_submitted(scenario, ta
     cheated, honest = (submit(scenario, task, rows) for rows in (choose, everything))
     assert not np.allclose(cheated.submitted, cheated.all_touches, atol=1e-3)
     scored = [
-        analyze_trial(
-            one.record,
-            scenario,
-            truth=record_from_json(RevealedTruth, json.loads(json.dumps(one.reply.data))),
+        analyze_trial(one.record, scenario).scored(
+            scenario, record_from_json(RevealedTruth, json.loads(json.dumps(one.reply.data)))
         )
         for one in (cheated, honest)
     ]
