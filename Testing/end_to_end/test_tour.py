@@ -11,7 +11,17 @@ from Testing.end_to_end.module.installed_simulator import write_program
 from Testing.end_to_end.module.story import FAST
 from Testing.free_port import free_port
 from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
-from Testing.slicer.test_module_widget import NOT_IN_THE_TOUR
+
+NOT_IN_THE_TOUR = {
+    "setupButton": "the button at the top sets up what is not set up yet",
+    "removeSetupButton": "it would remove what is set up",
+    "connectToRunningButton": "it needs a Slicer that has crashed",
+    "endRunningButton": "it needs a Slicer that has crashed",
+    "sampleDataButton": "it needs the Internet",
+    "restoreLineButton": "the tour removes no line; the host's tests press it",
+    "raiseLineButton": "the tour's procedure has one line; the host's tests press it",
+    "placeCheckpointButton": "the tour's procedure has its checkpoints; the host's tests press it",
+}
 
 TOUR = Path(__file__).parents[1] / "slicer" / "real" / "tour.py"
 
