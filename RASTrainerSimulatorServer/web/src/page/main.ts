@@ -10,6 +10,7 @@ import { Ghost } from "../scene/ghost";
 import { Gamepads } from "../input/gamepads";
 import { Keyboard } from "../input/keyboard";
 import {
+  BANNERS,
   TONES,
   type ControlNews,
   type Feedback,
@@ -342,7 +343,9 @@ function browserName(): string {
   return /(Firefox|Edg|OPR|Chrome|Safari)\/\d+/.exec(navigator.userAgent)?.[0] ?? "";
 }
 
-for (const [tone, color] of Object.entries(TONES)) document.documentElement.style.setProperty(`--${tone}`, color);
+for (const [prefix, colors] of [["--", TONES], ["--banner-", BANNERS]] as const) {
+  for (const [tone, color] of Object.entries(colors)) document.documentElement.style.setProperty(prefix + tone, color);
+}
 const page = new Page();
 /** For measurements from outside; the page itself makes no use of it. */
 (window as unknown as { page: Page }).page = page;
