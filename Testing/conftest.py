@@ -14,7 +14,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from Testing.simulator.net.igtl.servers import LoopThread
-from Testing.study_places import postgres_server, study_place  # noqa: F401
+from Testing.study_places import postgres_server, study, study_place  # noqa: F401
 from Testing.touched_head import touched_head  # noqa: F401
 
 HERE = Path(__file__).parent

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.study.study_data import StudyData
+from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.virtual.outcome_model import OutcomeModel, draw_outcomes, model_scores
 from rastrainer_simulator.virtual.population import pseudonym
 
@@ -36,6 +37,7 @@ def draw_study(
                 "rmse_mm": float(errors[i, m, k]),
                 "score": float(scores[i, m, k]),
             },
+            started_utc=f"2026-05-{orders[i].index(mode) + 1:02d}T09:{k:02d}:00Z",
         )
         for i in range(trainees)
         for mode, m in sorted(

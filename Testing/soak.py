@@ -49,13 +49,9 @@ PARTS = (
         ("simulator/virtual",),
     ),
     Part(
-        "trainees",
-        "trainees who only see the screen finish a trial, and cheating never helps",
-        (
-            "simulator/virtual/test_cheating_trainees.py",
-            "simulator/virtual/test_seeing_and_reading.py",
-            "simulator/training",
-        ),
+        "cheats",
+        "cheating never helps",
+        ("simulator/virtual/test_cheating_trainees.py", "simulator/training"),
     ),
     Part(
         "simulator",

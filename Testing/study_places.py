@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from rastrainer.study.database.database import PostgresAddress
+from rastrainer.study.database.study import Study
 from Testing.postgres_server import PostgresServer
 
 
@@ -23,3 +24,10 @@ def study_place(request, tmp_path) -> Path | PostgresAddress:
     if request.param == "sqlite":
         return tmp_path / "study.db"
     return request.getfixturevalue("postgres_server").new_study()
+
+
+@pytest.fixture
+def study(study_place):
+    """An open study without trainees."""
+    with Study.open(study_place) as study:
+        yield study

@@ -13,7 +13,7 @@ import threading
 import time
 import weakref
 from collections import deque
-from typing import Any, NamedTuple
+from typing import Any
 
 import slicer
 
@@ -31,25 +31,6 @@ _CRASHING_TYPE = re.compile(r"(GET|STT|STP|RTS)_")
 _DEVICE_NAME_FIELD = slice(14, 34)
 
 Raw = tuple[Header, bytes]
-
-
-class OutgoingCommand(NamedTuple):
-    """A sent command.
-
-    The real connector keeps what a command says, and reports its events to the object that was made
-    in Python, whether or not that still lives.
-    """
-
-    commandId: int
-    deadline: float
-    command: weakref.ref[HeadlessCommand]
-
-    def alive(self) -> HeadlessCommand:
-        """Return the command; without it Slicer would crash."""
-        command = self.command()
-        if command is None:
-            raise recordCrash("A command was deleted before the connector was done with it.")
-        return command
 
 
 class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
@@ -71,7 +52,7 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         self._socket: PeerSocket | None = None
         self._state = self.StateOff
         self._nextCommandId = 1
-        self._outgoing: list[OutgoingCommand] = []
+        self._outgoing: dict[int, tuple[float, weakref.ref[HeadlessCommand]]] = {}
         self._lock = threading.Lock()
         self._commands: deque[Raw] = deque()
         self._latest: dict[tuple[str, str], Raw] = {}
@@ -134,7 +115,7 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
             return
         command.SetCommandStatus(command.CommandWaiting)
         deadline = time.monotonic() + command.timeoutSec
-        self._outgoing.append(OutgoingCommand(command.commandId, deadline, weakref.ref(command)))
+        self._outgoing[command.commandId] = deadline, weakref.ref(command)
 
     def PeriodicProcess(self) -> None:
         """Put all arrivals into the scene, and notify the observers.
@@ -183,11 +164,10 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
             raise recordCrash(f"A broken command came: {error}") from None
         content = message.content
         if isinstance(content, CommandReply):
-            sent = [each for each in self._outgoing if each.commandId == content.command_id]
-            if not sent:
+            if content.command_id not in self._outgoing:
                 logging.warning("An answer to no command of ours was dropped.")
                 return
-            command = sent[0].alive()
+            command = self._sentCommand(content.command_id)
             metadata = {key: asSlicerHas(text) for key, text in message.metadata.items()}
             command.setResponse(asSlicerHas(content.body), metadata)
             self.InvokeEvent(self.CommandResponseReceivedEvent, command)
@@ -200,18 +180,26 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
             command.SetCommandStatus(command.CommandWaiting)
             self.InvokeEvent(self.CommandReceivedEvent, command)
 
+    def _sentCommand(self, commandId: int) -> HeadlessCommand:
+        """Return the object that was made in Python.
+
+        The real connector reports to it, whether or not it still lives.
+        """
+        command = self._outgoing[commandId][1]()
+        if command is None:
+            raise recordCrash("A command was deleted before the connector was done with it.")
+        return command
+
     def _giveUpOldCommands(self) -> None:
-        now = time.monotonic()
-        for outgoing in self._outgoing:
-            if now > outgoing.deadline and (command := outgoing.alive()).IsInProgress():
-                command.SetCommandStatus(command.CommandExpired)
-                command.InvokeEvent(command.CommandExpiredEvent)
-        sent, self._outgoing = self._outgoing, []
-        for outgoing in sent:
-            ended = outgoing.command()
-            if ended is None or ended.IsInProgress():
-                self._outgoing.append(outgoing)
-            else:
+        for commandId, (deadline, reference) in list(self._outgoing.items()):
+            if time.monotonic() > deadline:
+                command = self._sentCommand(commandId)
+                if command.IsInProgress():
+                    command.SetCommandStatus(command.CommandExpired)
+                    command.InvokeEvent(command.CommandExpiredEvent)
+            ended = reference()
+            if ended is not None and not ended.IsInProgress():
+                del self._outgoing[commandId]
                 self.InvokeEvent(self.CommandCompletedEvent, ended)
                 ended.InvokeEvent(ended.CommandCompletedEvent)
 

@@ -39,6 +39,7 @@ _MAGIC_AT, _MAGIC = 128, b"DICM"
 _FIRST_GROUPS = (b"\x08\x00", b"\x02\x00", b"\x00\x08")
 """How a file without preamble begins."""
 
+_SERIES = ("SeriesInstanceUID", "Rows", "Columns", "ImageType", "EchoTime")
 _NO_HEADS = ("PR", "REG", "RTDOSE", "SEG")
 _LPS_TO_RAS = np.array([-1.0, -1.0, 1.0])
 _DESCRIPTION = ("Rows", "Columns", "BitsAllocated", "BitsStored", "HighBit", "PixelRepresentation")
@@ -93,14 +94,12 @@ def readDicom(path: Path) -> Volume:
             f"{path} has no series of at least {FEWEST_SLICES} slices of one image, side by side."
         )
     largest = stacks[0]
-    rivals = [stack for stack in stacks[1:] if 2 * len(stack) >= len(largest)]
-    notes: tuple[str, ...] = ()
-    if rivals:
-        notes = (
-            f"There are {1 + len(rivals)} series of many slices; the head was made from "
-            f"“{largest[0].name}” with {len(largest)}. To use another one, give it alone.",
-        )
-    return _stacked(path, largest, notes)
+    count = sum(2 * len(stack) >= len(largest) for stack in stacks)
+    note = (
+        f"There are {count} series of many slices; the head was made from “{largest[0].name}” with "
+        f"{len(largest)}. To use another one, give it alone."
+    )
+    return _stacked(path, largest, (note,) if count > 1 else ())
 
 
 def _read(path: Path, read: Callable[[Path], Any]) -> Any:
@@ -146,27 +145,25 @@ def _slices(path: Path) -> Iterator[_Slice]:
         direction = _value(header, groups, "PlaneOrientation", "ImageOrientationPatient")
         place = _value(header, groups, "PlanePosition", "ImagePositionPatient")
         spacing = _value(header, groups, "PixelMeasures", "PixelSpacing")
+        slope = _value(header, groups, "PixelValueTransformation", "RescaleSlope")
+        intercept = _value(header, groups, "PixelValueTransformation", "RescaleIntercept")
         if not (direction and place and spacing):
             continue
         axes = np.array(direction, float).reshape(2, 3).T * _LPS_TO_RAS[:, None]
         yield _Slice(
             path,
             index,
-            tuple(
-                str(header.get(name, ""))
-                for name in ("SeriesInstanceUID", "Rows", "Columns", "ImageType", "EchoTime")
-            ),
+            tuple(str(header.get(key, "")) for key in _SERIES),
             "".join(filter(str.isprintable, str(header.get("SeriesDescription", ""))))[:64],
             axes * np.array(spacing, float)[::-1],
             np.array(place, float) * _LPS_TO_RAS,
-            float(_value(header, groups, "PixelValueTransformation", "RescaleSlope") or 1.0),
-            float(_value(header, groups, "PixelValueTransformation", "RescaleIntercept") or 0.0),
+            float(slope or 1.0),
+            float(intercept or 0.0),
         )
 
 
 def _value(header: Any, groups: tuple[Any, Any], group: str, name: str) -> Any:
-    """Return a frame's value: from its functional groups, from the shared groups, or from the
-    file."""
+    """Return a frame's value: from its functional groups, the shared groups, or the file."""
     for each in groups:
         items = each.get(f"{group}Sequence")
         if items and items[0].get(name) is not None:
@@ -226,10 +223,8 @@ def _numbers(path: Path) -> np.ndarray:
             "1.2.840.10008.1.2" + ("" if isImplicit else ".1" if isLittle else ".2")
         )
     syntax = image.file_meta.TransferSyntaxUID
-    if syntax.is_compressed and syntax != RLELossless and not syntax.is_deflated:
-        numbers = _decompressed(image)
-    else:
-        numbers = image.pixel_array
+    isCoded = syntax.is_compressed and syntax != RLELossless and not syntax.is_deflated
+    numbers = _decompressed(image) if isCoded else image.pixel_array
     return numbers.reshape(-1, image.Rows, image.Columns)
 
 

@@ -59,12 +59,7 @@ class TrialsMissingError(RASTrainerError):
 
 
 class TrialPrinter:
-    """Prints what happens in a session, and writes a line on each scored trial.
-
-    Attributes:
-        latest: the trial that was scored last.
-        scored: number of the scored trials.
-    """
+    """Prints what happens in a session, and writes a line on each scored trial."""
 
     def __init__(self, session: ModuleSession, results: Path) -> None:
         self.latest: TrialAnalysis | None = None
@@ -77,11 +72,8 @@ class TrialPrinter:
         session.trials.abortedKept.connect(
             lambda trial: printEvent("aborted", trialId=trial.trial_id, reason=trial.reason)
         )
-        for problems in (
-            session.trials.problemFound,
-            session.files.problemFound,
-            session.procedure.answered,
-        ):
+        trials, files, procedure = session.trials, session.files, session.procedure
+        for problems in (trials.problemFound, files.problemFound, procedure.answered):
             problems.connect(lambda sentence: printEvent("problem", sentence=sentence))
 
     def _printPoints(self, node: Any) -> None:
@@ -115,11 +107,16 @@ def printEvent(event: str, **values: Any) -> None:
 
 
 def results_json(analysis: TrialAnalysis) -> dict[str, Any]:
-    score, procedure, published = analysis.score, analysis.procedure, analysis.published_score
-    fits = {}
+    results: dict[str, Any] = {
+        "record": record_to_json(analysis.record, with_defaults=True),
+        "fits": {},
+        "targetName": analysis.target_name,
+        "feedback": list(analysis.feedback.sentences),
+        **dict.fromkeys(("truth", "score", "procedure", "ctps")),
+    }
     for kind, fit in analysis.fits.items():
         error = analysis.target_errors[kind]
-        fits[kind] = {
+        results["fits"][kind] = {
             "freMm": fit.fre_mm,
             "matrix": fit.matrix.ravel().tolist(),
             "residualsMm": fit.residuals_mm.tolist(),
@@ -128,23 +125,19 @@ def results_json(analysis: TrialAnalysis) -> dict[str, Any]:
             "treIntervalMm": list(error.interval_mm),
             "warnings": [record_to_json(warning) for warning in fit.warnings],
         }
-    return {
-        "record": record_to_json(analysis.record, with_defaults=True),
-        "fits": fits,
-        "targetName": analysis.target_name,
-        "truth": None if analysis.truth is None else record_to_json(analysis.truth),
-        "score": None if score is None else record_to_json(score, with_defaults=True),
-        "procedure": None
-        if procedure is None
-        else {
-            "score": record_to_json(procedure.score, with_defaults=True),
-            "trajectories": record_to_json(procedure.analysis)["trajectories"],
-        },
-        "feedback": list(analysis.feedback.sentences),
-        "ctps": None
-        if published is None
-        else {**record_to_json(published), "warning": CTPS_WARNING},
-    }
+    if analysis.truth is not None:
+        results["truth"] = record_to_json(analysis.truth)
+    if analysis.score is not None:
+        results["score"] = record_to_json(analysis.score, with_defaults=True)
+    if analysis.procedure is not None:
+        results["procedure"] = {
+            "score": record_to_json(analysis.procedure.score, with_defaults=True),
+            "trajectories": record_to_json(analysis.procedure.analysis)["trajectories"],
+        }
+    if analysis.published_score is not None:
+        ctps = record_to_json(analysis.published_score)
+        results["ctps"] = {**ctps, "warning": CTPS_WARNING}
+    return results
 
 
 def writeOutput(
@@ -180,24 +173,20 @@ def main(argv: Sequence[str] | None = None) -> int:
         prog="python -m rastrainer_headless.main",
         description="Slicer's side without Slicer. Not for clinical use.",
     )
-    parser.add_argument("--host", default=DEFAULT_HOST, help="where the simulator runs")
-    parser.add_argument("--port", type=int, default=DEFAULT_PORT, help="its OpenIGTLink port")
-    parser.add_argument("--scenario", default="colin27", metavar="NAME")
-    parser.add_argument("--output", type=Path, required=True, metavar="DIR")
-    parser.add_argument("--trials", type=int, default=1, metavar="N", help="trials to wait for")
-    parser.add_argument("--timeout", type=float, default=600.0, metavar="S", help="seconds to wait")
-    parser.add_argument(
-        "--assets", type=Path, required=True, metavar="DIR", help="scenarios, robots and studies"
-    )
+    add = parser.add_argument
+    add("--host", default=DEFAULT_HOST, help="where the simulator runs")
+    add("--port", type=int, default=DEFAULT_PORT, help="its OpenIGTLink port")
+    add("--scenario", default="colin27", metavar="NAME")
+    add("--output", type=Path, required=True, metavar="DIR")
+    add("--trials", type=int, default=1, metavar="N", help="trials to wait for")
+    add("--timeout", type=float, default=600.0, metavar="S", help="seconds to wait")
+    add("--assets", type=Path, required=True, metavar="DIR", help="scenarios, robots and studies")
     arguments = parser.parse_args(argv)
     try:
         _run(arguments)
-    except TrialsMissingError as error:
+    except RASTrainerError as error:
         print(f"rastrainer: {error}", file=sys.stderr)
-        return 1
-    except InputError as error:
-        print(f"rastrainer: {error}", file=sys.stderr)
-        return 2
+        return 1 if isinstance(error, TrialsMissingError) else 2
     except KeyboardInterrupt:
         return 130
     return 0

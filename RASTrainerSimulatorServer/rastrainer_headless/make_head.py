@@ -22,7 +22,15 @@ from rastrainer.work_progress import HEAD_MADE, allow_any_text, print_progress, 
 
 def main(argv: Sequence[str] | None = None) -> int:
     allow_any_text()
-    arguments = _parser().parse_args(argv)
+    parser = argparse.ArgumentParser(prog="python -m rastrainer_headless.make_head")
+    parser.add_argument("volume", type=Path)
+    parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR")
+    parser.add_argument("--threshold", type=float, help="value that parts air from skin")
+    parser.add_argument("--cut", type=float, metavar="S", help="height of the base, mm superior")
+    parser.add_argument("--orientation", help="of a file that states none, such as LAS")
+    parser.add_argument("--no-skull", action="store_true")
+    parser.add_argument("--no-volume", action="store_true")
+    arguments = parser.parse_args(argv)
     try:
         from rastrainer.slicer.head.head_draft import makeDraft
         from rastrainer.slicer.head.volume import HeadSettings
@@ -60,18 +68,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return 130
     return 0
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="python -m rastrainer_headless.make_head")
-    parser.add_argument("volume", type=Path)
-    parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR")
-    parser.add_argument("--threshold", type=float, help="value that parts air from skin")
-    parser.add_argument("--cut", type=float, metavar="S", help="height of the base, mm superior")
-    parser.add_argument("--orientation", help="of a file that states none, such as LAS")
-    parser.add_argument("--no-skull", action="store_true")
-    parser.add_argument("--no-volume", action="store_true")
-    return parser
 
 
 if __name__ == "__main__":

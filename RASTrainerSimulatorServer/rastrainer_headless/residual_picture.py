@@ -49,12 +49,9 @@ def writeResidualPicture(
     window.SetMultiSamples(8)
     window.SetSize(WIDTH, HEIGHT)
     window.SetNumberOfLayers(2)
-    page = vtk.vtkRenderer()
-    page.SetViewport(0.0, 0.0, 1.0, 1.0)
-    page.SetBackground(*_PAPER)
+    page = _addRenderer(window, (0.0, 0.0, 1.0, 1.0))
     page.AddViewProp(_text(title, 34, (0.5, 0.955), isBold=True))
     page.AddViewProp(_text("\n".join(caption), 24, (0.5, 0.045)))
-    window.AddRenderer(page)
     low, high = residualRange(registration)
     colors = vtk.vtkColorTransferFunction()
     for share, color in zip(np.linspace(0.0, 1.0, len(_COLORS)), _COLORS, strict=True):
@@ -67,21 +64,21 @@ def writeResidualPicture(
     facing = directions @ outward.T
     shown = np.vstack([head.vertices, arrowTips(registration)])
     for number, viewport in enumerate(_VIEWS):
-        view = vtk.vtkRenderer()
-        view.SetViewport(*viewport)
-        view.SetBackground(*_PAPER)
+        view = _addRenderer(window, viewport)
         skin = _actor(surface)
         skin.GetProperty().SetColor(*_SKIN)
         skin.GetProperty().SetSpecular(0.1)
         view.AddActor(skin)
-        window.AddRenderer(view)
         axes = _look(view, shown, center, directions[number])
         isLabeled = facing[number] == facing.max(axis=0)
         rows = np.flatnonzero((facing[number] > _CLEARLY_FACING) | isLabeled)
-        glyphs = _glyphView(view, registration, rows, colors)
-        _addLabels(glyphs, registration, np.flatnonzero(isLabeled), axes)
-        window.AddRenderer(glyphs)
-    window.AddRenderer(_legend(colors))
+        # A layer over the head, so that arrows that point inward are seen as well.
+        layer = _addRenderer(window, viewport)
+        layer.SetLayer(1)
+        layer.SetActiveCamera(view.GetActiveCamera())
+        layer.AddActor(_glyphs(registration, rows, colors))
+        _addLabels(layer, registration, np.flatnonzero(isLabeled), axes)
+    _addRenderer(window, _LEGEND).AddViewProp(_legend(colors))
     window.Render()
     image = vtk.vtkWindowToImageFilter()
     image.SetInput(window)
@@ -93,6 +90,14 @@ def writeResidualPicture(
     writer.Write()
     partial.replace(path)
     window.Finalize()
+
+
+def _addRenderer(window: vtk.vtkRenderWindow, viewport: tuple[float, ...]) -> vtk.vtkRenderer:
+    renderer = vtk.vtkRenderer()
+    renderer.SetViewport(*viewport)
+    renderer.SetBackground(*_PAPER)
+    window.AddRenderer(renderer)
+    return renderer
 
 
 def _text(
@@ -112,17 +117,9 @@ def _text(
     return actor
 
 
-def _glyphView(
-    headView: vtk.vtkRenderer,
-    registration: Registration,
-    rows: np.ndarray,
-    colors: vtk.vtkColorTransferFunction,
-) -> vtk.vtkRenderer:
-    """Return a layer over the head, so that arrows that point inward are seen as well."""
-    layer = vtk.vtkRenderer()
-    layer.SetLayer(1)
-    layer.SetViewport(headView.GetViewport())
-    layer.SetActiveCamera(headView.GetActiveCamera())
+def _glyphs(
+    registration: Registration, rows: np.ndarray, colors: vtk.vtkColorTransferFunction
+) -> vtk.vtkActor:
     glyphs = _actor(glyphsPolyData(registration, rows))
     mapper = glyphs.GetMapper()
     mapper.ScalarVisibilityOn()
@@ -131,8 +128,7 @@ def _glyphView(
     mapper.SetLookupTable(colors)
     mapper.UseLookupTableScalarRangeOn()
     glyphs.GetProperty().SetAmbient(0.35)
-    layer.AddActor(glyphs)
-    return layer
+    return glyphs
 
 
 def _actor(data: vtk.vtkPolyData) -> vtk.vtkActor:
@@ -145,10 +141,7 @@ def _actor(data: vtk.vtkPolyData) -> vtk.vtkActor:
 
 
 def _addLabels(
-    view: vtk.vtkRenderer,
-    registration: Registration,
-    rows: np.ndarray,
-    axes: np.ndarray,
+    view: vtk.vtkRenderer, registration: Registration, rows: np.ndarray, axes: np.ndarray
 ) -> None:
     """Write number and residual of points next to them, on the side that has most room."""
     _left, bottom, _right, top = view.GetViewport()
@@ -201,10 +194,7 @@ def _look(
     return axes
 
 
-def _legend(colors: vtk.vtkColorTransferFunction) -> vtk.vtkRenderer:
-    legend = vtk.vtkRenderer()
-    legend.SetViewport(*_LEGEND)
-    legend.SetBackground(*_PAPER)
+def _legend(colors: vtk.vtkColorTransferFunction) -> vtk.vtkScalarBarActor:
     bar = vtk.vtkScalarBarActor()
     bar.SetLookupTable(colors)
     bar.SetTitle("Residual (mm)\n")
@@ -221,12 +211,7 @@ def _legend(colors: vtk.vtkColorTransferFunction) -> vtk.vtkRenderer:
     bar.GetPositionCoordinate().SetValue(0.05, 0.15)
     bar.SetWidth(0.75)
     bar.SetHeight(0.7)
-    legend.AddViewProp(bar)
-    return legend
-
-
-_AZIMUTHS = np.radians(np.arange(0.0, 360.0, 15.0))
-_ELEVATIONS = np.radians([0.0, 25.0, 50.0])
+    return bar
 
 
 def chooseTwoViews(outward: np.ndarray) -> np.ndarray:
@@ -235,13 +220,9 @@ def chooseTwoViews(outward: np.ndarray) -> np.ndarray:
     The pair in a grid that maximizes the visibility of the worst visible point, and then of all
     points, which face along `outward` (n, 3).
     """
-    grid = np.array(
-        [
-            (np.sin(a) * np.cos(e), np.cos(a) * np.cos(e), np.sin(e))
-            for e in _ELEVATIONS
-            for a in _AZIMUTHS
-        ]
-    )
+    e, a = np.radians(np.meshgrid((0.0, 25.0, 50.0), np.arange(0.0, 360.0, 15.0), indexing="ij"))
+    directions = [np.sin(a) * np.cos(e), np.cos(a) * np.cos(e), np.sin(e)]
+    grid = np.stack(directions, axis=-1).reshape(-1, 3)
     facing = grid @ outward.T
 
     def worth(pair: Iterable[int]) -> tuple[float, float]:

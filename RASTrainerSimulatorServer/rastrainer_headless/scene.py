@@ -60,7 +60,6 @@ class HeadlessScene:
 
 
 METADATA_PREFIX = "OpenIGTLink."
-UNSELECTED = "Unselected"
 
 
 class HeadlessStatusNode(slicer.vtkMRMLScriptedModuleNode):
@@ -80,7 +79,6 @@ NODE_CLASS = {
     Points.TYPE: "vtkMRMLMarkupsFiducialNode",
     Status.TYPE: "vtkMRMLScriptedModuleNode",
 }
-
 """Class of the node that each type is put into; Slicer knows more types, which we never send."""
 
 
@@ -145,14 +143,7 @@ def _updatePoints(node: Any, points: Sequence[Point]) -> None:
         else:
             node.SetNthControlPointLabel(index, label)
             node.SetNthControlPointPosition(index, point.position)
-        node.SetNthControlPointSelected(index, point.group != UNSELECTED)
         node.SetNthControlPointVisibility(index, point.color[3] > 0)
     display = node.GetDisplayNode()
-    if display is None:
-        return
-    for point in reversed(points):
-        color = [channel / 255.0 for channel in point.color[:3]]
-        if point.group == UNSELECTED:
-            display.SetColor(color)
-        else:
-            display.SetSelectedColor(color)
+    if display is not None and points:
+        display.SetSelectedColor([channel / 255.0 for channel in points[0].color[:3]])

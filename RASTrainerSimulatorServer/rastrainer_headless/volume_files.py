@@ -45,16 +45,7 @@ def readVolume(path: Path, orientation: str | None = None) -> Volume:
         raise InputError(f"{path} does not exist; give a volume such as a .nii.gz or .nrrd file.")
     begin = beginOf(path)
     _checkHeader(path, begin)
-    # A `.nii` or `.nii.gz` file may end too early.
-    opened = gzip.open if path.suffix == ".gz" else open
-    try:
-        with opened(path, "rb") as file:
-            isCut = file.seek(0, os.SEEK_END) < _leastSize(path, begin)
-    except (EOFError, zlib.error):
-        isCut = True
-    except OSError:
-        isCut = False
-    if isCut:
+    if _isCutShort(path, niftiHeader(begin)):
         raise InputError(f"{path} is cut short; copy the file again.")
     missing = missingOrientation(path)
     if missing and orientation is None:
@@ -130,10 +121,9 @@ def _checkNifti(path: Path, nifti: Any) -> None:
         raise _unusable(path, "has an sform whose axes have no length", repair)
     axes = sform / lengths
     isSheared = np.abs(axes.T @ axes - np.eye(3)).max() > _RIGHT_ANGLE
-    if isSheared and qformCode <= 0:
-        raise _unusable(
-            path, "has a sheared sform: its axes are not at right angles", "resample it"
-        )
+    if qformCode <= 0 and isSheared:
+        what = "has a sheared sform: its axes are not at right angles"
+        raise _unusable(path, what, "resample it")
     if qformCode <= 0:
         return
     b, c, d = nifti["rotation"].astype(float)
@@ -141,12 +131,9 @@ def _checkNifti(path: Path, nifti: Any) -> None:
     flip = -1.0 if nifti["spacing"][0] < 0 else 1.0
     qform = Rotation.from_quat([b, c, d, a]).as_matrix() @ np.diag([1.0, 1.0, flip])
     if np.sum(axes * qform, axis=0).min() < _CONTRADICTION:
-        raise _unusable(
-            path,
-            f"has a qform and an sform that contradict each other ({_letters(qform)} and "
-            f"{_letters(axes)})",
-            "remove the wrong one",
-        )
+        both = f"{_letters(qform)} and {_letters(axes)}"
+        what = f"has a qform and an sform that contradict each other ({both})"
+        raise _unusable(path, what, "remove the wrong one")
 
 
 def _letters(axes: np.ndarray) -> str:
@@ -155,12 +142,19 @@ def _letters(axes: np.ndarray) -> str:
     return "".join(("RAS" if axes[row, i] > 0 else "LPI")[row] for i, row in enumerate(main))
 
 
-def _leastSize(path: Path, begin: bytes) -> float:
-    """Return the least number of bytes, unpacked, of a NIfTI-1 file; 0 for any other file."""
-    nifti = niftiHeader(begin)
-    if nifti is None or isAnalyze(nifti) or path.suffix in (".hdr", ".img"):
-        return 0.0
-    return float(nifti["begins"]) + math.prod(_sizesOf(nifti)) * int(nifti["bits"]) / 8
+def _isCutShort(path: Path, nifti: Any | None) -> bool:
+    """Return whether a `.gz` file, or a NIfTI-1 file of any kind, ends too early."""
+    least = 0.0
+    if nifti is not None and not isAnalyze(nifti) and path.suffix not in (".hdr", ".img"):
+        least = float(nifti["begins"]) + math.prod(_sizesOf(nifti)) * int(nifti["bits"]) / 8
+    opened = gzip.open if path.suffix == ".gz" else open
+    try:
+        with opened(path, "rb") as file:
+            return file.seek(0, os.SEEK_END) < least
+    except (EOFError, zlib.error):
+        return True
+    except OSError:
+        return False
 
 
 def _sizesOf(nifti: Any) -> tuple[int, ...]:
@@ -170,11 +164,8 @@ def _sizesOf(nifti: Any) -> tuple[int, ...]:
 
 def _checkSizes(path: Path, sizes: tuple[int, ...]) -> None:
     if math.prod(sizes[3:]) > 1:
-        raise _unusable(
-            path,
-            f"has {len(sizes)} dimensions ({' × '.join(map(str, sizes))})",
-            "extract one 3D image of it",
-        )
+        what = f"has {len(sizes)} dimensions ({' × '.join(map(str, sizes))})"
+        raise _unusable(path, what, "extract one 3D image of it")
 
 
 def _unusable(path: Path, what: str, remedy: str) -> InputError:

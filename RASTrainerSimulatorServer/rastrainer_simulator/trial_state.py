@@ -64,10 +64,6 @@ class TraceState:
         strokes = self.strokes[:-1] if is_empty else self.strokes
         return replace(self, strokes=strokes, is_on=False)
 
-    def cut(self, count: int) -> TraceState:
-        strokes = tuple(before for before in self.strokes if before < count)
-        return TraceState(self.points[:count], strokes, self.is_on and count == len(self.points))
-
     def undone(self) -> TraceState:
         return TraceState(self.points[: self.strokes[-1]], self.strokes[:-1])
 

@@ -17,7 +17,7 @@ from rastrainer.commands import CommandName
 from rastrainer.igtl.content import Command, Transform
 from rastrainer.igtl.message import HEADER_BYTES, Message, pack
 from rastrainer.protocol import PROTOCOL_VERSION
-from Testing.benchmarks.loop_health import between, health_of, on_time
+from Testing.benchmarks.loop_health import health_of, on_time
 from Testing.benchmarks.row import cpu_share, resident_mb, row
 from Testing.end_to_end.simulator_process import ViewedSimulator
 
@@ -58,7 +58,7 @@ class Served:
     @property
     def on_time(self) -> float:
         """Share of the control loop's ticks that were on time, 0…1."""
-        return on_time(between(health_of(self.before), health_of(self.after)))
+        return on_time(health_of(self.before), health_of(self.after))
 
 
 def serve_crowd(

@@ -20,8 +20,8 @@ import numpy as np
 from rastrainer.commands import CommandName
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION, Phase
+from Testing.benchmarks.loop_health import WatchedLoop
 from Testing.benchmarks.row import row
-from Testing.benchmarks.watched_loop import WatchedLoop
 from Testing.end_to_end.lab import Lab
 from Testing.end_to_end.window_process import WindowProcess, wait_until
 from Testing.running_process import started_by
@@ -54,13 +54,6 @@ class Delay(NamedTuple):
     shown: float
 
 
-class Swing(NamedTuple):
-    """How punctual the loop was while the arm moved up and down, and for how long, s."""
-
-    watched: WatchedLoop
-    seconds: float
-
-
 class Drawn(NamedTuple):
     """How many pictures a second a window has drawn, 1/s, and what each costs, ms of CPU."""
 
@@ -69,10 +62,7 @@ class Drawn(NamedTuple):
 
 
 def rows(quick: bool) -> list[dict]:
-    """Return the rows `desktop.*`, and `loop.on_time.*` with and without the window.
-
-    A loop that does nothing runs at the same time as each of these two on the same machine.
-    """
+    """Return the rows `desktop.*`, and `loop.on_time.*` with and without the window."""
     seconds, pushes = (5, 8) if quick else (15, 40)
     with (
         tempfile.TemporaryDirectory() as folder,
@@ -98,8 +88,8 @@ def rows(quick: bool) -> list[dict]:
         row("desktop.stick to stream", streamed, "ms"),
         row("desktop.stick to picture", shown, "ms"),
         *found,
-        _on_time_row("window", beside),
-        _on_time_row("no window", alone),
+        beside.row("loop.on_time.window"),
+        alone.row("loop.on_time.no window"),
     ]
 
 
@@ -113,7 +103,7 @@ def _warm_up(lab: Lab, window: WindowProcess) -> None:
 
 def _count(
     lab: Lab, slicer: Client, window: WindowProcess, size: tuple[int, int], seconds: int
-) -> tuple[Swing, list[dict]]:
+) -> tuple[WatchedLoop, list[dict]]:
     """Count pictures and their cost from near, from afar, and while the view turns."""
     rows = []
     name = "desktop.pictures {}x{}".format(*size)
@@ -204,15 +194,14 @@ def _delay(lab: Lab, window: WindowProcess, random: np.random.Generator) -> Dela
     return Delay(streamed - begin, shown[0] - begin_utc)
 
 
-def _swing(lab: Lab, slicer: Client, seconds: int) -> Swing:
+def _swing(lab: Lab, slicer: Client, seconds: int) -> WatchedLoop:
     with WatchedLoop(slicer) as watched:
         begin = time.monotonic()
         while time.monotonic() < begin + seconds:
             _push(lab, _way(lab))
             time.sleep(LOOK_S)
         _push(lab, 0.0)
-        took = time.monotonic() - begin
-    return Swing(watched, took)
+    return watched
 
 
 def _push(lab: Lab, up: float) -> None:
@@ -228,10 +217,3 @@ def _pixel(lab: Lab, place: np.ndarray) -> float:
     camera = lab.view.scene["cameras"][lab.view.state["camera"]]
     distance = float(np.linalg.norm(place - camera["position"]))
     return 2.0 * distance * math.tan(math.radians(camera["viewAngleDeg"]) / 2.0) / LARGE[1]
-
-
-def _on_time_row(name: str, swing: Swing) -> dict:
-    """Return a row like `loop.on_time`: p99 is the share that 99 of 100 seconds exceed."""
-    measured, bare = swing.watched.measured, swing.watched.bare
-    others = {"success": measured.on_time, "n": measured.ticks, "worst": 1}
-    return row(f"loop.on_time.{name}", measured.shares, "%", "bare loop", bare.shares, **others)

@@ -20,10 +20,9 @@ from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.state import NEUTRAL_STICKS, Motion, OperatorCommand, OperatorInput
-from Testing.benchmarks.loop_health import Punctuality
+from Testing.benchmarks.loop_health import WatchedLoop
 from Testing.benchmarks.procedure_ticks import procedure_rows
 from Testing.benchmarks.row import resident_mb, row, row_of_figures
-from Testing.benchmarks.watched_loop import WatchedLoop
 from Testing.end_to_end.simulator_process import SimulatorProcess
 
 DT = 0.004
@@ -129,11 +128,8 @@ def _on_time(duration_s: float) -> list[dict]:
 
     Three clients watch and one of them jogs; one never reads, one sends garbage. Of `loop.on_time`
     median and p99 are of each second's share of ticks within 1 ms of their time, `success` is that
-    of all ticks; `loop.on_time.bare` is the same of a loop on each processor that does nothing: no
-    loop can do better there and then. `loop.on_time.undisturbed` is of the seconds in which none of
-    these was late: the machine took nothing away in them. `loop.memory` is how much the resident
-    memory grew from the second tenth of the time to the last: median against median, and the most
-    against the most.
+    of all ticks. `loop.memory` is how much the resident memory grew from the second tenth of the
+    time to the last: median against median, and the most against the most.
     """
     with (
         tempfile.TemporaryDirectory() as records,
@@ -151,17 +147,8 @@ def _on_time(duration_s: float) -> list[dict]:
     tenth = max(len(memory) // 10, 1)
     early, late = memory[tenth : 2 * tenth], memory[-tenth:]
     growth = (np.median(late) - np.median(early), max(late) - max(early))
-    still = watched.undisturbed
-    return [
-        _share_row("loop.on_time", watched.measured),
-        _share_row("loop.on_time.bare", watched.bare),
-        *([] if still is None else [_share_row("loop.on_time.undisturbed", still)]),
-        row_of_figures("loop.memory", growth, "MB", n=len(memory)),
-    ]
-
-
-def _share_row(name: str, measured: Punctuality) -> dict:
-    return row(name, measured.shares, "%", success=measured.on_time, n=measured.ticks, worst=1)
+    memory_row = row_of_figures("loop.memory", growth, "MB", n=len(memory))
+    return [watched.row("loop.on_time"), memory_row]
 
 
 def _jog_for_a_second(client: Client) -> None:

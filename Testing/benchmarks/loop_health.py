@@ -1,33 +1,18 @@
 """How punctual the control loop of a running simulator is, by its heartbeat."""
 
 import json
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+import threading
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 from typing import Any
-
-import numpy as np
 
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import DeviceName
 from rastrainer_simulator.loop.timing import LoopStatistics
+from Testing.benchmarks.row import row
 
 TIMEOUT_S = 60.0
-
-
-@dataclass(frozen=True)
-class Punctuality:
-    """The ticks in a stretch of time.
-
-    Attributes:
-        shares: of ticks that were on time in each second, percent.
-        on_time: of all ticks, 0…1.
-        ticks: that were due.
-    """
-
-    shares: np.ndarray
-    on_time: float
-    ticks: int
 
 
 def health_of(beat: Mapping[str, Any]) -> LoopStatistics:
@@ -36,60 +21,44 @@ def health_of(beat: Mapping[str, Any]) -> LoopStatistics:
 
 
 def next_health(client: Client) -> LoopStatistics:
-    """Wait for the next heartbeat, which comes once a second.
-
-    Raises:
-        LinkError: none came in a minute, or the connection is lost.
-    """
+    """Wait for the next heartbeat, which comes once a second."""
     known = client.latest.get(DeviceName.SIM_SERVER)
     beat = client.wait_for(DeviceName.SIM_SERVER, lambda new: new is not known, TIMEOUT_S)
     return health_of(json.loads(beat.content.message))
 
 
-def on_time(health: LoopStatistics) -> float:
-    """Return the share of all ticks that were on time, 0…1; skipped ticks were not."""
-    due = health.ticks + health.skipped
-    return (health.ticks - health.late) / due if due else 1.0
+def on_time(earlier: LoopStatistics, later: LoopStatistics) -> float:
+    """Return the share of ticks that were on time between heartbeats, 0…1; skipped were not."""
+    ticks = later.ticks - earlier.ticks
+    due = ticks + later.skipped - earlier.skipped
+    return (ticks - later.late + earlier.late) / due if due else 1.0
 
 
-def between(earlier: LoopStatistics, later: LoopStatistics) -> LoopStatistics:
-    """Return the counts of the time between two heartbeats."""
-    return LoopStatistics(
-        later.ticks - earlier.ticks, later.late - earlier.late, later.skipped - earlier.skipped
-    )
+class WatchedLoop:
+    """Listens to a simulator's heartbeats while the `with` statement lasts."""
 
+    def __init__(self, client: Client) -> None:
+        self._client = client
+        self._listener = ThreadPoolExecutor(1)
+        self._is_over = threading.Event()
+        self._healths: list[LoopStatistics] = []
 
-def punctuality(healths: Sequence[LoopStatistics]) -> Punctuality:
-    """Return the punctuality between several heartbeats in a row."""
-    return _of_parts([between(earlier, later) for earlier, later in pairwise(healths)])
+    def __enter__(self) -> "WatchedLoop":
+        self._listener.submit(self._listen)
+        return self
 
+    def __exit__(self, *_exception: object) -> None:
+        self._is_over.set()
+        self._listener.shutdown()
 
-def undisturbed(
-    healths: Sequence[tuple[float, LoopStatistics]], was_never_late: Callable[[float, float], bool]
-) -> Punctuality | None:
-    """Return the punctuality in those seconds in which the machine took nothing away.
+    def row(self, name: str) -> dict:
+        """Return the share of ticks on time in each second, %; `success` is that of all ticks."""
+        shares = [100.0 * on_time(*two) for two in pairwise(self._healths)]
+        first, last = self._healths[0], self._healths[-1]
+        ticks, whole = last.ticks - first.ticks, on_time(first, last)
+        return row(name, shares, "%", success=whole, n=ticks, worst=1)
 
-    In these seconds none of the other loops, which do nothing, was late. None if there is no such
-    second.
-
-    Args:
-        healths: each with the time of its arrival (`time.monotonic`, s).
-        was_never_late: whether a bare loop was never late between two such times.
-    """
-    parts = [
-        between(earlier, later)
-        for (start, earlier), (end, later) in pairwise(healths)
-        if later.ticks > earlier.ticks and was_never_late(start, end)
-    ]
-    return _of_parts(parts) if parts else None
-
-
-def _of_parts(parts: Sequence[LoopStatistics]) -> Punctuality:
-    """Return the punctuality of stretches of about a second each."""
-    whole = LoopStatistics(
-        sum(part.ticks for part in parts),
-        sum(part.late for part in parts),
-        sum(part.skipped for part in parts),
-    )
-    shares = np.array([100.0 * on_time(part) for part in parts])
-    return Punctuality(shares, on_time(whole), whole.ticks + whole.skipped)
+    def _listen(self) -> None:
+        self._healths.append(next_health(self._client))
+        while not self._is_over.is_set():
+            self._healths.append(next_health(self._client))

@@ -18,7 +18,7 @@ from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.sections.trial_logic import TrialLogic
 from rastrainer.study.database.study import Study
-from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.record import AbortedTrial
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import ControlLoop
@@ -129,7 +129,7 @@ def test_trials_arrive_exactly_once_through_faults_and_restarts_on_both_sides(
         server.close()
     with Study.open(study) as opened:
         stored = [trial.record.trial_id for trial in opened.history(TRAINEE)]
-        aborted = [len(each.record.points) for each in opened.aborted("T-001")]
+        aborted = [len(each.points) for each in opened.aborted("T-001")]
     assert sorted(stored) == sorted(scored) == sorted(wanted)
     assert sorted(aborted) == list(range(1, ABORTED + 1))
     assert TrialArchive(records).unacknowledged() == ()

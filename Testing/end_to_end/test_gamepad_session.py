@@ -48,6 +48,12 @@ class Photographer:
         """Wait until the window shows what this test has read, so that no two sounds coincide."""
         self._window.wait_for_tick(self._lab.view.state["tick"])
 
+    def begin(self, trainee: StreamTrainee, task: str) -> None:
+        """Begin a task, and wait until presses count: the window has drawn its scene."""
+        trainee.begin_task(task)
+        self._window.page.wait_for_selector(f"body[data-scene={task}]")
+        trainee.until_running()
+
     def keep(self, name: str) -> None:
         if self._lab.view.screen.menu is None:
             self.catch_up()
@@ -92,7 +98,7 @@ def session(tmp_path_factory) -> dict:
         photographer = Photographer(lab, window, folder)
         to_experiment(trainee, photographer)
         practice(trainee, photographer)
-        trainee.begin_task("task-1")
+        photographer.begin(trainee, "task-1")
         play(trainee, photographer, range(1, CRASH_AFTER + 1))
         slicer.kill()
         photographer.catch_up()
@@ -134,7 +140,7 @@ def to_experiment(trainee: StreamTrainee, photographer: Photographer) -> None:
 
 def practice(trainee: StreamTrainee, photographer: Photographer) -> None:
     """Begin the trial run, look around, and end it."""
-    trainee.begin_task("trial-run")
+    photographer.begin(trainee, "trial-run")
     trainee.use_camera("far")
     photographer.keep("far-view")
     trainee.press("menu", lambda: trainee.menu is not None, "the menu")
@@ -173,7 +179,7 @@ def unplug_and_resume(lab: Lab, trainee: StreamTrainee, photographer: Photograph
     """Lose the gamepad in the next task while its stick is pushed; return the results."""
     trainee.choose("next")
     trainee.until_menu("experiment")
-    trainee.begin_task("task-2")
+    photographer.begin(trainee, "task-2")
     photographer.catch_up()
     trainee.touch("1")
     photographer.catch_up()

@@ -74,7 +74,8 @@ class WindowMouse:
             self._let_go()
         if wanted is None:
             return
-        x, y, radius = self._window.page.evaluate(STICK, wanted)
+        wait_until(lambda: self._stick(wanted)[2] > 0.0, "a stick in the window")
+        x, y, radius = self._stick(wanted)
         if self._dragged is None:
             self._move(x, y)
             self._mouse.hold(True)
@@ -88,6 +89,10 @@ class WindowMouse:
     def _is_slow(self) -> bool:
         hints = self._lab.view.screen.hints
         return any(hint.item == "press fine" and hint.action == "on" for hint in hints)
+
+    def _stick(self, index: int) -> tuple[float, float, float]:
+        """Return the middle and the radius of a stick, all 0 until the window has drawn it."""
+        return self._window.page.evaluate(STICK, index)
 
     def _let_go(self) -> None:
         if self._dragged is not None:
@@ -136,7 +141,7 @@ class ClickingInWindow(StreamTrainee):
         self._until_clicked(item, lambda: self.menu_name != before)
 
     def show_sticks(self) -> None:
-        """Have the sticks shown, and wait until the window has them."""
+        """Have the sticks shown."""
         if not self.view.screen.has_sticks:
             self._until_clicked("press sticks", lambda: self.view.screen.has_sticks)
 

@@ -96,15 +96,15 @@ def test_the_result_without_slicer_is_that_of_slicers_study_on_100_seeded_trials
     with Study.open(tmp_path / "study.db") as study:
         for record in archive.unacknowledged():
             assert isinstance(record, TrialRecord)
-            stored = store_delivered(
+            _record, analysis = store_delivered(
                 record_to_json(record), study, lambda each: analyze_trial(each, scenario, cohort)
             )
             registration = check_arguments(
-                "SubmitRegistration", stored.analysis.arguments(stored.analysis.record.trial_id)
+                "SubmitRegistration", analysis.arguments(record.trial_id)
             )
             answer = archive.answer("SubmitRegistration", registration, Stamp.now(0, 0.0))
             truth = record_from_json(RevealedTruth, answer)
-            scored = scored_with_journal(stored.analysis, truth, scenario, score_references(study))
+            scored = scored_with_journal(analysis, truth, scenario, score_references(study))
             study.add_results(record.trial_id, score=scored.score)
             slicers = score_arguments(with_progress(scored, study))
             (own,) = alone.entries(record.trial_id, "scored")

@@ -14,32 +14,22 @@ def simulator(tmp_path_factory):
         yield simulator
 
 
-@pytest.fixture
-def link(module_widget):  # noqa: F811
-    return module_widget.logic.session.link
-
-
-def test_the_page_port_is_recognized_and_harmless_and_the_right_port_connects(
+def test_each_port_is_recognized_and_only_the_right_one_connects(
     host,  # noqa: F811
-    link,
+    module_widget,  # noqa: F811
     simulator,
 ):
-    host.type("portSpinBox", str(simulator.view_port))
-    host.press("connectButton")
-    host.wait_until(lambda: "(HTTP)" in host.text("stateText"), "the page is recognized")
+    link = module_widget.logic.session.link
+
+    def press(button, port, words):
+        host.type("portSpinBox", str(port))
+        host.press(button)
+        host.wait_until(lambda: words in host.text("stateText"), f"the status says: {words}")
+
+    press("probeButton", simulator.view_port, "is a web page (HTTP)")
+    press("probeButton", simulator.port, "A RASTrainer simulator answers")
+    assert link.status.state is LinkState.OFF
+    press("connectButton", simulator.view_port, "(HTTP)")
     assert link.connector is None
     host.press("connectButton")
-    host.type("portSpinBox", str(simulator.port))
-    host.press("connectButton")
-    host.wait_until(lambda: link.status.state is LinkState.CONNECTED, "it connects")
-
-
-def test_the_test_of_a_connection_names_both_ports(host, link, simulator):  # noqa: F811
-    for port, words in (
-        (simulator.view_port, "is a web page (HTTP)"),
-        (simulator.port, "A RASTrainer simulator answers"),
-    ):
-        host.type("portSpinBox", str(port))
-        host.press("probeButton")
-        host.wait_until(lambda w=words: w in host.text("stateText"), f"the status says: {words}")
-    assert link.status.state is LinkState.OFF
+    press("connectButton", simulator.port, "Connected")

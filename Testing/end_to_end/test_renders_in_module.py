@@ -12,8 +12,8 @@ from rastrainer.slicer.link.link_status import LinkState
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.slicer.host.fixtures import host, module_widget  # noqa: F401
 
-PAUSE_S = 2.5
-"""Much longer than a pose or a poll takes: the module looks once a second."""
+PAUSE_S = 1.5
+"""Longer than a pose or a poll takes: the module looks once a second."""
 STROKE_S = 2.0
 
 
@@ -52,7 +52,6 @@ def connected(host, module_widget, simulator):  # noqa: F811
     host.press("connectButton")
     link = module_widget.logic.session.link
     host.wait_until(lambda: link.status.state is LinkState.CONNECTED, "it connects")
-    wait_until_idle(host)
     return host
 
 
@@ -64,7 +63,6 @@ def arm(connected, simulator):
         arm.do("Hello", protocolVersion=PROTOCOL_VERSION, client="player")
         arm.do("StartTask", task="task-1", trainee="T-001")
         connected.wait_until(lambda: "running" in connected.text("phaseText"), "the trial runs")
-        wait_until_idle(connected)
         yield arm
         arm.do("Abort")
 
@@ -76,7 +74,7 @@ def renders_in_a_while(host):  # noqa: F811
 
 
 def wait_until_idle(host):  # noqa: F811
-    """Wait until all earlier requests are drawn, however slow the machine is."""
+    """Wait until all earlier requests are drawn, and nothing more is, however slow the machine."""
     session = host.widget.logic.session
     # When the first is answered, the module has asked for the poses that it wants now; those that
     # the simulator sends at once, at its next tick, come before its answer to the third.
@@ -91,12 +89,13 @@ def wait_until_idle(host):  # noqa: F811
     )
 
 
-def show_robot(host):  # noqa: F811
-    host.check("robotCheckBox")
+def assert_movements_are_not_drawn(host, arm):  # noqa: F811
     wait_until_idle(host)
+    arm.move()
+    assert renders_in_a_while(host) == 0
 
 
-def wait_for_renders(host, arm, count=10):  # noqa: F811
+def wait_for_renders(host, arm, count=3):  # noqa: F811
     before = host.renders
 
     def is_seen():
@@ -111,50 +110,26 @@ def set_layout(name):
     slicer.app.layoutManager().setLayout(layout)
 
 
-def test_nothing_is_rendered_while_connected_and_idle(connected):
-    assert renders_in_a_while(connected) == 0
-
-
-def test_nothing_is_rendered_while_the_shown_robot_is_at_rest(connected):
-    show_robot(connected)
-    assert renders_in_a_while(connected) == 0
-
-
-def test_nothing_is_rendered_while_a_hidden_robot_moves(connected, arm):
-    arm.move()
-    assert renders_in_a_while(connected) == 0
-
-
-def test_a_shown_robot_is_rendered_as_it_moves_until_it_is_hidden(connected, arm):
-    show_robot(connected)
+def test_a_robot_that_moves_is_rendered_only_in_a_3d_view_that_shows_it(connected, arm):
+    assert_movements_are_not_drawn(connected, arm)
+    connected.check("robotCheckBox")
+    wait_until_idle(connected)
     wait_for_renders(connected, arm)
     connected.check("robotCheckBox", False)
-    wait_until_idle(connected)
-    arm.move()
-    assert renders_in_a_while(connected) == 0
-    show_robot(connected)
-    wait_for_renders(connected, arm)
-
-
-def test_after_leaving_the_module_the_robot_moves_only_in_a_shown_3d_view(connected, arm):
-    show_robot(connected)
+    assert_movements_are_not_drawn(connected, arm)
+    connected.check("robotCheckBox")
     connected.leave()
-    wait_until_idle(connected)
     wait_for_renders(connected, arm)
     set_layout("OneUpRedSliceView")
-    wait_until_idle(connected)
-    arm.move()
-    assert renders_in_a_while(connected) == 0
+    assert_movements_are_not_drawn(connected, arm)
     set_layout("FourUpView")
     wait_for_renders(connected, arm)
 
 
 @pytest.mark.soak
 def test_nothing_is_rendered_in_a_minimized_window(connected, arm):
-    show_robot(connected)
+    connected.check("robotCheckBox")
     connected.minimize()
-    wait_until_idle(connected)
-    arm.move()
-    assert renders_in_a_while(connected) == 0
+    assert_movements_are_not_drawn(connected, arm)
     connected.minimize(False)
     wait_for_renders(connected, arm)

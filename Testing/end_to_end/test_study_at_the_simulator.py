@@ -15,7 +15,7 @@ from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import standing_in
 from rastrainer.study.database.study import Study
 from rastrainer.study_messages import Assignment, StudyStep
-from rastrainer.trial.trial_feedback import PastTrial
+from rastrainer.trial.trial_row import TrialRow
 from Testing.domain.trial.trial_records import gentle_score, make_record
 from Testing.end_to_end.simulator_process import MenuView, ViewedSimulator, items_of
 from Testing.end_to_end.study_side import STUDY, StudySide
@@ -30,7 +30,7 @@ TWO = Curriculum(
     "C",
     (Assignment("one", "task-1"), Assignment("two", "task-2", after=("one",))),
 )
-PASSED = PastTrial("", "task-1", "desktop", 60.0, 80.0, acceptable=True)
+PASSED = TrialRow("T-001", "desktop", "task-1", values={"score": 80.0}, acceptable=True)
 
 
 def curriculum(*trials):

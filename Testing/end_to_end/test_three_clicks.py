@@ -5,15 +5,9 @@ import slicer
 
 from rastrainer.slicer.settings import PORT, PROGRAM
 from Testing.end_to_end.module.installed_simulator import bundled_package, write_program
-from Testing.end_to_end.module.player import Player
 from Testing.end_to_end.module.story import FAST
 from Testing.free_port import free_port
 from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
-
-SCREEN_HEIGHT = 730
-"""Pixels of the dock on a laptop."""
-FEEDBACK_HEIGHT = 120
-"""Pixels of eight lines; how many a trial gets depends on how it went."""
 
 
 @pytest.fixture
@@ -39,21 +33,6 @@ def press_next(host, title, until):
     host.wait_until(lambda: host.text("nextStepButton") == until, f"the button says {until}")
 
 
-def height(host, folder):
-    host.screenshot(folder / "panel.png", width=470)
-    return host.find("RASTrainer").height
-
-
-def play(player, host):
-    """Let a trainee touch all points and register them, and wait for the result."""
-    player.touch(1, 15)
-    host.wait_until(lambda: host.text("nextStepButton") == "Waiting…", "all points are touched")
-    assert open_sections(host) == ["registration"]
-    host.wait_until(lambda: player.is_done, "the trainee has released the buttons")
-    player.register()
-    host.wait_until(lambda: host.text("nextStepButton") == "Show result", "the trial is scored")
-
-
 def open_sections(host):
     names = ("setup", "simulator", "trainees", "scenario", "newScenario", "study", "training")
     names += ("registration", "plan", "score")
@@ -72,30 +51,6 @@ def test_three_clicks_lead_from_an_empty_slicer_to_a_running_trial(set_up_slicer
     host.wait_until(lambda: "running" in host.text("phaseText"), "it runs")
     names, now = ("linkText", "nowTraineeText", "nowTaskText"), ["Connected", "T001", "Trial run"]
     host.wait_until(lambda: [host.text(name) for name in names] == now, "the panel follows")
-
-
-@pytest.mark.soak
-def test_the_button_leads_through_the_trial_to_its_score_and_the_next_task(set_up_slicer, tmp_path):
-    host = set_up_slicer
-    press_next(host, "Start and connect", until="New trainee")
-    press_next(host, "New trainee", until="Start the trial run")
-    press_next(host, "Start the trial run", until="Pause")
-    press_next(host, "Pause", until="Resume")
-    press_next(host, "Resume", until="Pause")
-    port = host.widget.logic.session.simulator.program.port
-    player = Player(port, tmp_path / "trials")
-    play(player, host)
-    press_next(host, "Show result", until="Start Task 1")
-    assert open_sections(host) == ["score"]
-    host.wait_until(lambda: "Score" in host.text("feedbackText"), "the feedback")
-    without_feedback = height(host, tmp_path) - host.find("feedbackText").height
-    assert without_feedback <= SCREEN_HEIGHT - FEEDBACK_HEIGHT
-    assert host.find("scoreTable").rowCount > 0
-    press_next(host, "Start Task 1", until="Pause")
-    assert open_sections(host) == ["training"]
-    play(player, host)
-    press_next(host, "Show result", until="Start Task 1")
-    assert "Task 1" in host.find("trialComboBox").currentText
 
 
 def test_the_simulator_is_set_up_first_after_confirmation(host, tmp_path, options):

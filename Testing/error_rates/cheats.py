@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from rastrainer.motion.trial_motion import WIDTH_FACTOR, effective_throughput
 from rastrainer.number_text import fixed
-from rastrainer.trial.score_reference import score_reference
-from rastrainer.trial.scoring import PASS_MARK, TrialScore, passes, score_trial
+from rastrainer.trial.scoring import PASS_MARK, passes
 from rastrainer.trial.trial_feedback import TRAINING_TRIALS, competence_of
-from Testing.error_rates.hands import TASKS, scenario_of
-from Testing.error_rates.measured import Measured, share_of
-from Testing.error_rates.played import COLIN27, OBLIQUE_WAYS, stored
+from Testing.error_rates.hands import TASKS
+from Testing.error_rates.measured import Measured, share_of, share_text
+from Testing.error_rates.played import OBLIQUE_WAYS, stored
 
 MOST = 40.0
 """Points that a cheat may get."""
@@ -34,83 +32,32 @@ ROWS: tuple[tuple[str, Sequence[str], float | None], ...] = (
 )
 
 
-@dataclass(frozen=True)
-class Scored:
-    """The scores of one strategy.
-
-    Attributes:
-        case: the strategy, in words.
-        scores: of each trial, by task.
-        at_most: no score may exceed it; None if scores are only reported.
-    """
-
-    case: str
-    scores: dict[str, list[TrialScore]]
-    at_most: float | None
-    at_least: None = None
-
-    @property
-    def highest(self) -> float:
-        """The highest score of all trials."""
-        return max(one.score for one in self._all())
-
-    @property
-    def passed(self) -> int:
-        """How many trials pass."""
-        return sum(_passes(one) for one in self._all())
-
-    @property
-    def competent_at(self) -> int | None:
-        """The trial, of thirty, at which LC-CUSUM calls the trainee competent.
-
-        The played trials are repeated in order.
-        """
-        failures = [not _passes(one) for one in self._all()]
-        return competence_of(
-            [*itertools.islice(itertools.cycle(failures), TRAINING_TRIALS)]
-        ).competent_at
-
-    def holds(self, standard_errors: float = 0.0) -> bool:  # noqa: ARG002
-        """Return whether all trials are within the limit and none passes."""
-        if self.at_most is None:
-            return True
-        return self.highest <= self.at_most and not self.passed and self.competent_at is None
-
-    def cells(self) -> list[str]:
-        """Return the row of a table."""
-        asked = "–" if self.at_most is None else f"≤ {self.at_most:g}"
-        number = self.competent_at
-        by_task = [
-            fixed(float(np.mean([one.score for one in self.scores[task]])), 1)
-            if task in self.scores
-            else "–"
-            for task in TASKS
-        ]
-        passed = f"{self.passed} of {len(self._all())}"
-        competent = "no" if number is None else f"at trial {number}"
-        return [self.case, fixed(self.highest, 1), asked, passed, competent, *by_task]
-
-    def _all(self) -> list[TrialScore]:
-        return list(itertools.chain.from_iterable(zip(*self.scores.values(), strict=True)))
+def played(_sets: int) -> list[Measured]:
+    """Return the scores of each strategy; a cheat may neither pass nor become competent."""
+    return [_scored(*row) for row in ROWS]
 
 
-def _passes(score: TrialScore) -> bool:
-    return passes(score.score, score.acceptable, PASS_MARK)
-
-
-def scores_of(ways: Sequence[str]) -> dict[str, list[TrialScore]]:
-    """Return the scores of the trials played in some ways, by task."""
-    scenario = scenario_of(COLIN27)
-    found: dict[str, list[TrialScore]] = {task: [] for task in TASKS}
-    for one in stored():
-        if one.way in ways:
-            found[one.task].append(score_trial(one.measures, score_reference(scenario, one.task)))
-    return found
-
-
-def played(_sets: int) -> list[Scored]:
-    """Return the scores of each strategy."""
-    return [Scored(words, scores_of(ways), most) for words, ways, most in ROWS]
+def _scored(case: str, ways: Sequence[str], at_most: float | None) -> Measured:
+    own = [one for one in stored().values() if one.way in ways]
+    by_task = {task: [one.score for one in own if one.task == task] for task in TASKS}
+    scores = [*itertools.chain.from_iterable(zip(*by_task.values(), strict=True))]
+    failed = [not passes(one.score, one.acceptable, PASS_MARK) for one in scores]
+    # The played trials are repeated in order.
+    repeated = [*itertools.islice(itertools.cycle(failed), TRAINING_TRIALS)]
+    number = competence_of(repeated).competent_at
+    means = [float(np.mean([one.score for one in each])) for each in by_task.values()]
+    return Measured(
+        case,
+        max(one.score for one in scores),
+        at_most=at_most,
+        further=(
+            f"{failed.count(False)} of {len(failed)}",
+            "no" if number is None else f"at trial {number}",
+            *(fixed(mean, 1) for mean in means),
+        ),
+        is_share=False,
+        also=lambda _: at_most is None or (all(failed) and number is None),
+    )
 
 
 ABORTED_HEADER = (
@@ -156,16 +103,14 @@ def _trainees(
         counted.append(_is_competent(failed[:TRIALS]))
         uncounted.append(_is_competent(failed[:TRIALS][~aborted[:TRIALS]]))
         until_finished.append(_is_competent(failed[~aborted][:TRIALS]))
-        finished.append(int(np.sum(~aborted[:TRIALS])))
-    further = (
-        *(f"{fixed(100 * share_of(each), 1)} %" for each in (uncounted, until_finished)),
-        fixed(float(np.mean(finished)), 1),
-    )
+        finished.append(np.sum(~aborted[:TRIALS]))
+    others = (share_text(share_of(each)) for each in (uncounted, until_finished))
+    further = (*others, fixed(float(np.mean(finished)), 1))
     return Measured(case, share_of(counted), sets, at_most, at_least, further)
 
 
 def _is_competent(failed: np.ndarray) -> bool:
-    return competence_of([bool(each) for each in failed]).competent_at is not None
+    return competence_of(failed.tolist()).competent_at is not None
 
 
 THROUGHPUT_HEADER = (
@@ -182,15 +127,10 @@ def offsets(sets: int, seed: int = 8) -> list[Measured]:
     random = np.random.default_rng(seed)
     found = []
     for offset in (0.0, 0.5, 2.0, 5.0):
-        rates, by_sd = [], []
-        for _ in range(sets):
-            ours, standard = _throughputs(offset, random)
-            rates.append(ours)
-            by_sd.append(standard)
-        further = fixed(float(np.mean(rates)), 2), fixed(float(np.mean(by_sd)), 2)
-        above = share_of(np.array(rates) > 8)
+        rates, by_sd = np.array([_throughputs(offset, random) for _ in range(sets)]).T
+        further = tuple(fixed(float(each.mean()), 2) for each in (rates, by_sd))
         limit = 0.0 if offset else None
-        found.append(Measured(f"{offset:g} mm", above, sets, at_most=limit, further=further))
+        found.append(Measured(f"{offset:g} mm", share_of(rates > 8), sets, limit, None, further))
     return found
 
 

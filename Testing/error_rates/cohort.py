@@ -7,12 +7,11 @@ resumes.
 
 from __future__ import annotations
 
-import csv
 import functools
 import math
 import sys
 from collections import defaultdict
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -21,18 +20,19 @@ from rastrainer import transforms
 from rastrainer.number_text import fixed
 from rastrainer.registration.registration import register
 from rastrainer.scenario.scenario import Scenario, load_scenario
-from rastrainer.study.study_data import StudyData, TrialRow, read_study_data
+from rastrainer.study.study_data import StudyData, read_study_data
 from rastrainer.trial.score_reference import fiducial_normals
+from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.setup import DEFAULT_SCENARIO
-from rastrainer_simulator.statistics.intervals import Estimate
 from rastrainer_simulator.virtual.cohort import DATABASE, simulate_cohort
 from rastrainer_simulator.virtual.play import PlaySettings
 from rastrainer_simulator.virtual.population import ModeEffect, Population, trial_jobs
 from rastrainer_simulator.virtual.scripted_trainee import Skill
 from Testing.error_rates.hands import HEADS, USUAL, trials_of
-from Testing.error_rates.measured import holds
+from Testing.error_rates.measured import Measured, deviation
 from Testing.error_rates.recovery import PROTOCOL, estimates, truths
+from Testing.error_rates.row_files import add_row, stored_rows
 
 STUDY_PROTOCOL = replace(PROTOCOL, name="known-truth", title="A cohort whose truth is known")
 FILE = Path(__file__).with_name("played_cohort.csv")
@@ -49,15 +49,6 @@ POPULATION = Population(
     trade_off=0.5,
     lapses=0.2,
 )
-VALUES = (
-    "completion_time_s",
-    "rmse_mm",
-    "true_tre_mm",
-    "expected_tre_mm",
-    "tre_common_bias_sd_mm",
-    "undone_touches",
-)
-"""Values from which the sources of variation are estimated."""
 HEADER = (
     "parameter",
     "deviation, standard errors",
@@ -66,50 +57,23 @@ HEADER = (
     "95 % interval",
     "contains the truth",
 )
-MOST = 2.0
-"""Standard errors; by chance, one of 13 estimates is off by more in about half of such cohorts."""
 
 
-@dataclass(frozen=True)
-class PlayedParameter:
-    """One parameter of the cohort: its true value, and the estimate of the report."""
+def recovered(_sets: int = 0) -> list[Measured]:
+    """Return the parameters that were asked for, as the report of the stored cohort gives them.
 
-    case: str
-    truth: float
-    estimate: Estimate
-    at_most: float = MOST
-    at_least: None = None
-
-    @property
-    def off(self) -> float:
-        """Deviation in standard errors, of which the interval reaches 1.96 to the truth's side."""
-        low, high = self.estimate.interval
-        value = self.estimate.value
-        reach = value - low if self.truth < value else high - value
-        return 1.96 * abs(value - self.truth) / reach
-
-    def holds(self, standard_errors: float = 0.0) -> bool:
-        """Return whether it is at most 2 standard errors, or `standard_errors` if larger."""
-        return self.off <= max(self.at_most, standard_errors)
-
-    def cells(self) -> list[str]:
-        """Return the row of a table."""
-        low, high = (fixed(limit, 4) for limit in self.estimate.interval)
-        return [
-            self.case,
-            fixed(self.off, 1),
-            f"≤ {self.at_most:g}",
-            fixed(self.truth, 4),
-            fixed(self.estimate.value, 4),
-            f"{low} to {high}",
-            "yes" if holds(self.estimate.interval, self.truth) else "no",
-        ]
-
-
-def recovered(_sets: int = 0) -> list[PlayedParameter]:
-    """Return the parameters that were asked for, as the report of the stored cohort gives them."""
+    Standard errors are those of the interval on the truth's side. By chance, one of 13 estimates is
+    off by more than two in about half of such cohorts.
+    """
     found = dict(zip(truths(), estimates(stored_cohort()), strict=True))
-    return [PlayedParameter(name, truth, found[name]) for name, truth in asked_for().items()]
+    rows = []
+    for name, truth in asked_for().items():
+        value, (low, high) = found[name].value, found[name].interval
+        reach = value - low if truth < value else high - value
+        numbers = fixed(truth, 4), fixed(value, 4), f"{fixed(low, 4)} to {fixed(high, 4)}"
+        is_held = "yes" if low <= truth <= high else "no"
+        rows.append(deviation(name, truth, value, reach / 1.96, (*numbers, is_held)))
+    return rows
 
 
 @functools.cache
@@ -183,27 +147,33 @@ def _scenario() -> Scenario:
     return load_scenario(asset_path(*DEFAULT_SCENARIO))
 
 
+@dataclass(frozen=True)
+class Row:
+    """One trial of the cohort."""
+
+    trainee: str
+    mode: str
+    task: str
+    number: int
+    completion_time_s: float
+    rmse_mm: float
+    true_tre_mm: float
+    expected_tre_mm: float
+    tre_common_bias_sd_mm: float
+    undone_touches: float
+
+
+VALUES = [field.name for field in fields(Row)][4:]
+
+
 @functools.cache
 def stored_cohort() -> StudyData:
-    """Return the study of the file."""
-    with FILE.open(encoding="utf-8", newline="") as file:
-        rows = tuple(
-            TrialRow(
-                trainee, mode, task, int(number), dict(zip(VALUES, map(float, values), strict=True))
-            )
-            for trainee, mode, task, number, *values in list(csv.reader(file))[1:]
-        )
-    return StudyData("A played cohort", rows, has_order=True)
-
-
-def write(data: StudyData) -> None:
-    """Write the trials of a study into the file, in their order."""
-    with FILE.open("w", encoding="utf-8", newline="") as file:
-        lines = csv.writer(file, lineterminator="\n")
-        lines.writerow(["trainee", "mode", "task", "number", *VALUES])
-        for one in data.trials:
-            values = [f"{one.values[name]:.4f}".rstrip("0").rstrip(".") for name in VALUES]
-            lines.writerow([one.trainee, one.mode, one.task, one.number, *values])
+    rows = (
+        (astuple(row)[:4], {name: getattr(row, name) for name in VALUES})
+        for row in stored_rows(FILE, Row)
+    )
+    trials = tuple(TrialRow(*place, values) for place, values in rows)
+    return StudyData("A played cohort", trials, has_order=True)
 
 
 def play_cohort(folder: Path, workers: int | None = None) -> StudyData:
@@ -216,4 +186,8 @@ def play_cohort(folder: Path, workers: int | None = None) -> StudyData:
 
 
 if __name__ == "__main__":
-    write(play_cohort(Path(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else None))
+    found = play_cohort(Path(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else None)
+    FILE.unlink(missing_ok=True)
+    for one in found.trials:
+        values = (round(one.values[name], 4) for name in VALUES)
+        add_row(FILE, Row(one.trainee, one.mode, one.task, one.number, *values))

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy import stats
 
-from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.study.study_data import StudyData
+from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.report.target_errors import TITLES
 from rastrainer_simulator.statistics.intervals import ALPHA
 from rastrainer_simulator.statistics.paired import fit_differences, holm, is_separable
@@ -25,15 +26,11 @@ BETWEEN, PRACTICE = 0.3, 0.15
 """SD of the trainees' logarithms; exponent by which practice reduces errors."""
 
 
-@dataclass(frozen=True)
-class Decisions:
+class Decisions(NamedTuple):
     """Decisions on each pair of methods, arrays of shape (sets, pairs).
 
-    Attributes:
-        adjusted: Whether p, adjusted over the pairs, is below the level.
-        unadjusted: The same of p alone.
-        low: End of the interval of the mean difference.
-        high: The other one.
+    Whether p, adjusted over the pairs, and p alone are below the level; and the ends of the
+    interval of the mean difference.
     """
 
     adjusted: np.ndarray
@@ -49,12 +46,6 @@ def drawn_errors(
 
     An error is the length of a vector whose three parts are normal. Trainees differ, practice
     reduces errors, and each method comes equally often at each place as far as it can.
-
-    Args:
-        factors: Of the methods' errors.
-        trainees: In each study.
-        sets: Number of studies.
-        random: Source of chance.
     """
     count = len(factors)
     rows = [[(start + step) % count for step in range(count)] for start in range(count)]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from statistics import fmean
 
 import numpy as np
@@ -18,7 +18,7 @@ from rastrainer.study.curriculum.standing import (
 )
 from rastrainer.study_messages import Assignment
 from rastrainer.trial.scoring import PASS_MARK
-from rastrainer.trial.trial_feedback import PastTrial
+from rastrainer.trial.trial_row import TrialRow
 from Testing.error_rates.measured import Measured, share_of
 
 GOALS_HEADER = ("goal, and trainee", "called reached")
@@ -53,41 +53,28 @@ def goals(sets: int) -> list[Measured]:
 
     In the last rows, their failure rate changes from day to day, and is as high on average.
     """
-    row = {count: Assignment("one", "task-1", trials=count) for count in (1, 2, 3, 5)}
+    rows = [(Assignment("one", "task-1", trials=1), "1 trial")]
+    rows += [(Assignment("one", "task-1", trials=n), f"{n} in a row") for n in (2, 3, 5)]
     competent = Assignment("one", "task-1", goal=GoalKind.COMPETENT, trials=0)
+    rows.append((competent, "LC-CUSUM"))
     found = []
-    for number, (assignment, what) in enumerate(
-        (
-            *(
-                (each, f"{count} in a row" if count > 1 else "1 trial")
-                for count, each in row.items()
-            ),
-            (competent, "LC-CUSUM"),
-        )
-    ):
-        for failing in (0.4, 0.05):
-            for trials in (10, 30, 60):
-                random = np.random.default_rng((5, number, trials, round(100 * failing)))
-                rates = np.full((sets, trials), failing)
-                reached = [_is_reached(assignment, own, random) for own in rates]
-                case = f"{what}, fails in {100 * failing:.0f} of 100, {trials} trials"
-                is_asked = assignment is competent and trials == 30
+    for number, (assignment, what) in enumerate(rows):
+        for failing, trials in itertools.product((0.4, 0.05), (10, 30, 60)):
+            random = np.random.default_rng((5, number, trials, round(100 * failing)))
+            rates = np.full((sets, trials), failing)
+            reached = share_of([_is_reached(assignment, own, random) for own in rates])
+            case = f"{what}, fails in {100 * failing:.0f} of 100, {trials} trials"
+            limits: dict[str, float] = {}
+            if assignment is competent and trials == 30:
                 limits = {"at_most": 0.06} if failing > 0.1 else {"at_least": 0.8}
-                found.append(
-                    Measured(case, share_of(reached), sets, **(limits if is_asked else {}))
-                )
+            found.append(Measured(case, reached, sets, **limits))
     for apart in (0.1, 0.2, 0.3):
         random = np.random.default_rng((5, 9, round(100 * apart)))
         days = 0.4 + apart * random.choice([-1.0, 1.0], (sets, 3))
         reached = [_is_reached(competent, own, random) for own in np.repeat(days, DAY, axis=1)]
-        found.append(
-            Measured(
-                f"LC-CUSUM, fails in {100 * (0.4 - apart):.0f} of 100 on good days and "
-                f"{100 * (0.4 + apart):.0f} on bad ones, {3 * DAY} trials",
-                share_of(reached),
-                sets,
-            )
-        )
+        good, bad = (f"{100 * (0.4 + way * apart):.0f}" for way in (-1, 1))
+        days_of = f"LC-CUSUM, fails in {good} of 100 on good days and {bad} on bad ones"
+        found.append(Measured(f"{days_of}, {3 * DAY} trials", share_of(reached), sets))
     return found
 
 
@@ -98,11 +85,11 @@ def _is_reached(assignment: Assignment, failing: np.ndarray, random: np.random.G
     return _stand(Curriculum("c", "C", (assignment,)), played).reached == 1
 
 
-def _trial(task: str, score: float) -> PastTrial:
-    return PastTrial("", task, "desktop", 60.0, score, acceptable=True)
+def _trial(task: str, score: float) -> TrialRow:
+    return TrialRow("", "desktop", task, values={"score": score}, acceptable=True)
 
 
-def _stand(curriculum: Curriculum, trials: Sequence[PastTrial]) -> CurriculumStanding:
+def _stand(curriculum: Curriculum, trials: Sequence[TrialRow]) -> CurriculumStanding:
     return standing_in(curriculum, trials, lambda _version: PASS_MARK)
 
 
@@ -115,9 +102,7 @@ def _open(standing: CurriculumStanding) -> list[AssignmentStanding]:
 
 def next_best(standing: CurriculumStanding, _random: np.random.Generator) -> AssignmentStanding:
     """Choose as the product does."""
-    found = standing.next_best
-    assert found is not None
-    return found
+    return standing.next_best
 
 
 def in_rotation(standing: CurriculumStanding, _random: np.random.Generator) -> AssignmentStanding:
@@ -125,22 +110,13 @@ def in_rotation(standing: CurriculumStanding, _random: np.random.Generator) -> A
     return min(_open(standing), key=lambda each: each.played)
 
 
-def at_random(standing: CurriculumStanding, random: np.random.Generator) -> AssignmentStanding:
-    """Choose at random."""
-    is_open = _open(standing)
-    return is_open[random.integers(len(is_open))]
-
-
-def in_order(standing: CurriculumStanding, _random: np.random.Generator) -> AssignmentStanding:
-    """Choose the first until it is reached."""
-    return _open(standing)[0]
-
-
 CHOICES: dict[str, Choice] = {
     "next best task": next_best,
     "by turns": in_rotation,
-    "at random": at_random,
-    "in order, each until it is reached": in_order,
+    "at random": lambda standing, random: (is_open := _open(standing))[
+        random.integers(len(is_open))
+    ],
+    "in order, each until it is reached": lambda standing, _random: _open(standing)[0],
 }
 
 
@@ -164,24 +140,15 @@ def weakest(sets: int) -> list[Measured]:
     return found
 
 
-@dataclass(frozen=True)
-class Course:
-    """The outcome of a simulated learner.
+def course(choose: Choice, seed: int) -> tuple[int, float]:
+    """Return the course of a learner with their own weak tasks.
 
-    Attributes:
-        trials: Until all goals were reached, or `MOST_TRIALS`.
-        weakest: True mean score of the weakest task after 20 trials.
+    It is the number of trials until all goals are reached, or `MOST_TRIALS`, and the true mean
+    score of the weakest task after 20 trials.
     """
-
-    trials: int
-    weakest: float
-
-
-def course(choose: Choice, seed: int) -> Course:
-    """Return the course of a learner with their own weak tasks."""
     random = np.random.default_rng((6, seed))
     skill = _skill(random)
-    played: list[PastTrial] = []
+    played: list[TrialRow] = []
     after_some = float(skill.min())
     while len(played) < MOST_TRIALS:
         standing = _stand(CURRICULUM, played)
@@ -194,7 +161,7 @@ def course(choose: Choice, seed: int) -> Course:
         skill = skill + gain * (CEILING - skill)
         if len(played) <= 20:
             after_some = float(skill.min())
-    return Course(len(played), after_some)
+    return len(played), after_some
 
 
 def choices(sets: int) -> list[Measured]:
@@ -202,11 +169,8 @@ def choices(sets: int) -> list[Measured]:
     found = []
     for name, choose in CHOICES.items():
         courses = [course(choose, seed) for seed in range(sets)]
-        within = share_of([each.trials <= 40 for each in courses])
-        further = (
-            fixed(fmean(each.trials for each in courses), 1),
-            fixed(fmean(each.weakest for each in courses), 1),
-        )
+        within = share_of([trials <= 40 for trials, _weakest in courses])
+        further = tuple(fixed(fmean(each), 1) for each in zip(*courses, strict=True))
         asked = 0.8 if choose is next_best else None
         found.append(Measured(name, within, sets, at_least=asked, further=further))
     return found
@@ -217,6 +181,6 @@ def _skill(random: np.random.Generator) -> np.ndarray:
     return START + random.normal(0, TRAINEE_SD) + random.normal(0, TASK_SD, TASKS)
 
 
-def _play(task: int, skill: np.ndarray, random: np.random.Generator) -> PastTrial:
+def _play(task: int, skill: np.ndarray, random: np.random.Generator) -> TrialRow:
     score = float(np.clip(random.normal(skill[task], TRIAL_SD), 1.0, 100.0))
     return _trial(f"task-{task + 1}", score)

@@ -9,7 +9,6 @@ all cases in turn. It can be stopped at any time: the table says how many traces
 from __future__ import annotations
 
 import itertools
-import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -40,7 +39,7 @@ from Testing.error_rates.match_warnings import (
     head_of,
     rows_of,
 )
-from Testing.error_rates.measured import Measured, share_of, share_text
+from Testing.error_rates.measured import Measured, holds, share_of, share_text
 from Testing.error_rates.row_files import play_missing, stored_rows
 
 HEADER = (
@@ -70,13 +69,9 @@ LEAST_HELD, ENOUGH = 0.9, 400
 class Drawn:
     """The match of a trace; lengths are in mm.
 
-    Attributes:
-        error_mm: At the middle of the head; 0 with all that follows where the trace was refused.
-        expected_mm: The same, expected.
-        holds: Whether its interval contains the error.
-        farthest_mm: The largest error among seven targets.
-        slide_mm: How far the match may slide.
-        warnings: The codes, with spaces between them; `refused` where there is no match.
+    The error at the middle of the head, what was expected of it, and whether its interval holds it;
+    the largest error among seven targets, and how far the match may slide. Warnings are codes with
+    spaces between them, and all else is 0 where the trace was `refused`.
     """
 
     head: str
@@ -90,11 +85,6 @@ class Drawn:
     farthest_mm: float
     slide_mm: float
     warnings: str
-
-    @property
-    def slides(self) -> bool:
-        """Whether it is called sliding."""
-        return self.slide_mm > SLIDE_LIMIT_MM
 
 
 def play(name: str, how: str, points: int, shift_mm: float, seed: int) -> Drawn:
@@ -114,10 +104,13 @@ def play(name: str, how: str, points: int, shift_mm: float, seed: int) -> Drawn:
     targets = guided_targets(head.middle)
     off = np.linalg.norm(transforms.apply(match.matrix @ pose, targets) - targets, axis=1)
     error = surface_target_error(knowledge_of(match), targets[0])
-    low, high = error.interval_mm
     return Drawn(
         *(name, how, points, shift_mm, seed),
-        *(round(float(off[0]), 4), round(error.expected_mm, 4), int(low <= off[0] <= high)),
+        *(
+            round(float(off[0]), 4),
+            round(error.expected_mm, 4),
+            int(holds(error.interval_mm, off[0])),
+        ),
         *(round(float(off.max()), 4), round(match.slide.distance_mm, 4)),
         " ".join(warning.code for warning in match.warnings),
     )
@@ -146,7 +139,10 @@ def measured(traces: int) -> list[Measured]:
         further = (
             fixed(rms([one.expected_mm for one in matched]), 2),
             fixed(rms([one.error_mm for one in matched]), 2),
-            *(share_text(share_of([one.slides for one in matched])), share_text(share_of(is_off))),
+            *(
+                share_text(share_of([one.slide_mm > SLIDE_LIMIT_MM for one in matched])),
+                share_text(share_of(is_off)),
+            ),
             share_text(share_of([one.farthest_mm <= one.slide_mm for one in matched])),
             str(len(own)),
         )
@@ -171,4 +167,4 @@ def keys(seeds: int) -> Iterator[tuple[str, str, int, float, int]]:
 
 
 if __name__ == "__main__":
-    sys.exit(play_missing(FILE, Drawn, keys(SEEDS), play, names=5))
+    play_missing(FILE, Drawn, keys(SEEDS), play, names=5)

@@ -9,14 +9,16 @@ about the skin's normal by chance, and each trial has the time of one of the tas
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from rastrainer.number_text import fixed, signed
 from rastrainer.trial.score_reference import fiducial_normals, region_of, score_reference
-from rastrainer.trial.scoring import ScoreMeasures, ScoreReference, score_trial
+from rastrainer.trial.scoring import ScoreMeasures, score_trial
+from rastrainer_simulator.statistics.intervals import rms
 from Testing.error_rates.hands import HEADS, SLOW, TASKS, USUAL, HandsTrial, scenario_of, trials_of
+from Testing.error_rates.measured import Measured
 from Testing.error_rates.registered import common_biases, registered_errors
 
 MAX_OFF = 2.0
@@ -43,106 +45,59 @@ HEADER = (
 )
 
 
-@dataclass(frozen=True)
-class Deviation:
-    """A task's mean score, its deviation from the mean of all tasks, and its standard error."""
-
-    score: float
-    standard_error: float
-    off: float = 0.0
-
-
-@dataclass(frozen=True)
-class EqualScore:
-    """The mean score of the same hands on one task.
-
-    Attributes:
-        case: head and task.
-        equal: from the touches of all tasks and the times of this one.
-        own: from touches, times and contacts of this task alone.
-        trials: number of played trials.
-        time_s, tre_mm, safety: mean time, RMS of the true TRE, mean square root of safety.
-        reference: of the task.
-        at_most: the deviation of `equal` that is allowed; None if nothing is required.
-    """
-
-    case: str
-    equal: Deviation
-    own: Deviation
-    trials: int
-    time_s: float
-    tre_mm: float
-    safety: float
-    reference: ScoreReference
-    at_most: float | None
-    at_least: None = None
-
-    def holds(self, standard_errors: float = 0.0) -> bool:
-        """Return whether the deviation is within the limit, or a point more with few sets."""
-        most = np.inf if self.at_most is None else self.at_most
-        return bool(abs(self.equal.off) <= most + (standard_errors > 0))
-
-    def cells(self) -> list[str]:
-        """Return the row of a table."""
-        return [
-            self.case,
-            fixed(abs(self.equal.off), 1),
-            "–" if self.at_most is None else f"≤ {self.at_most:g}",
-            fixed(self.equal.standard_error, 1),
-            fixed(self.equal.score, 1),
-            signed(self.own.off, 1),
-            fixed(self.own.standard_error, 1),
-            str(self.trials),
-            fixed(self.time_s, 1),
-            fixed(self.reference.time_s, 1),
-            fixed(self.tre_mm, 2),
-            fixed(self.reference.tre_mm, 2),
-            fixed(self.safety, 3),
-        ]
-
-
-def usual(sets: int) -> list[EqualScore]:
+def usual(sets: int) -> list[Measured]:
     """Return the usual hands' scores, with `sets` trials put together for each task."""
     return scores(USUAL, sets, MAX_OFF)
 
 
-def slow(sets: int) -> list[EqualScore]:
+def slow(sets: int) -> list[Measured]:
     """Return the scores of slower, less accurate hands."""
     return scores(SLOW, sets, MAX_OFF_SLOW)
 
 
-def scores(hands: str, sets: int, at_most: float | None, seed: int = 22) -> list[EqualScore]:
-    """Return the mean scores of the same hands on every task of every head."""
-    places = [(head, task) for head in HEADS for task in TASKS]
-    touches = np.concatenate([errors_on_skin(*place, trials_of(hands, *place)) for place in places])
+def scores(hands: str, sets: int, at_most: float, seed: int = 22) -> list[Measured]:
+    """Return how far the mean score of each task of every head is from that of all tasks.
+
+    The first is from the touches of all tasks and the times of this one, without contacts; a second
+    one from touches, times and contacts of this task alone. With few sets a point more is allowed.
+    """
+    tasks = [
+        PlayedTask(head, task, trials_of(hands, head, task)) for head in HEADS for task in TASKS
+    ]
+    touches = np.concatenate([task.touches for task in tasks])
     found = [
-        _on_task(
-            PlayedTask(*place, trials_of(hands, *place)),
-            touches,
-            sets,
-            np.random.default_rng([seed, number]),
-            at_most,
-        )
-        for number, place in enumerate(places)
+        _mean_scores(task, touches, sets, np.random.default_rng([seed, number]))
+        for number, task in enumerate(tasks)
     ]
-    equal, own = (np.mean([getattr(one, name).score for one in found]) for name in ("equal", "own"))
-    return [
-        replace(
-            one,
-            equal=replace(one.equal, off=one.equal.score - equal),
-            own=replace(one.own, off=one.own.score - own),
+    equal, own = (np.mean([one[at][0] for one in found]) for at in (0, 1))
+    rows = []
+    for task, ((score, error), (own_score, own_error), tre_mm) in zip(tasks, found, strict=True):
+        safety = [score_trial(one, task.reference).safety_desirability for one in task.played()]
+        further = (
+            *(fixed(error, 1), fixed(score, 1), signed(own_score - own, 1), fixed(own_error, 1)),
+            str(len(task.trials)),
+            fixed(float(np.mean([one.time_s for one in task.trials])), 1),
+            fixed(task.reference.time_s, 1),
+            *(fixed(tre_mm, 2), fixed(task.reference.tre_mm, 2)),
+            fixed(float(np.mean(np.sqrt(safety))), 3),
         )
-        for one in found
-    ]
+        rows.append(
+            Measured(
+                f"{task.head}, {task.name}",
+                abs(score - equal),
+                at_most=at_most,
+                further=further,
+                is_share=False,
+                slack=lambda standard_errors: float(standard_errors > 0),
+            )
+        )
+    return rows
 
 
-def _on_task(
-    task: PlayedTask,
-    touches: np.ndarray,
-    sets: int,
-    random: np.random.Generator,
-    at_most: float | None,
-) -> EqualScore:
+def _mean_scores(
+    task: PlayedTask, touches: np.ndarray, sets: int, random: np.random.Generator
+) -> tuple[tuple[float, float], tuple[float, float], float]:
+    """Return both mean scores with their standard errors, and the RMS of the true TRE, mm."""
     count = len(task.trials)
     measures = task.assemble(touches, MORE * sets, random)
     points = task.scores([_gentle(one) for one in measures])
@@ -155,28 +110,17 @@ def _on_task(
         means.append(other.scores(other.assemble(other.touches, sets // 4, random)).mean())
     # Less what fewer sets add.
     variance = max(np.var(means, ddof=1) - 3 * np.var(own) / sets, 0.0)
-    safety = [score_trial(one, task.reference).safety_desirability for one in task.played()]
-    return EqualScore(
-        case=f"{task.head}, {task.name}",
-        equal=Deviation(float(points.mean()), float(np.std(of_each, ddof=1) / np.sqrt(count))),
-        own=Deviation(float(own.mean()), float(np.sqrt(variance))),
-        trials=count,
-        time_s=float(np.mean([one.time_s for one in task.trials])),
-        tre_mm=float(np.sqrt(np.mean([one.tre_mm**2 for one in measures]))),
-        safety=float(np.mean(np.sqrt(safety))),
-        reference=task.reference,
-        at_most=at_most,
+    return (
+        (float(points.mean()), float(np.std(of_each, ddof=1) / np.sqrt(count))),
+        (float(own.mean()), float(np.sqrt(variance))),
+        rms([one.tre_mm for one in measures]),
     )
 
 
 class PlayedTask:
     """The trials that some hands have played on a task, and trials put together from played parts.
 
-    Attributes:
-        head, name: of the task.
-        trials: at least one.
-        touches: (15 × trials, 3) float, their errors in frames of the skin, mm.
-        reference: of the task's score.
+    `touches` are their errors in frames of the skin, (15 × trials, 3) float, mm.
     """
 
     def __init__(self, head: str, name: str, trials: Sequence[HandsTrial]) -> None:

@@ -6,14 +6,11 @@ fiducial. `python -m Testing.error_rates.hands` plays those that it lacks, some 
 
 from __future__ import annotations
 
-import csv
 import functools
-import sys
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -22,6 +19,7 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.scoring import SAFETY_METRICS
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.virtual.scripted_trainee import Skill
+from Testing.error_rates.row_files import Floats, play_missing, stored_rows
 from Testing.simulator.authoring.planned_heads import setup_of
 from Testing.simulator.virtual.cheating_trainees import play_honestly
 
@@ -44,40 +42,22 @@ SEEDS = {USUAL: range(1, 16), SLOW: range(1, 13)}
 """Seeds of the head's pose and of the hands."""
 
 
-class SafetyMeasures(NamedTuple):
-    """Time and path of unintended contact (s, mm) and how deep the tool was pressed in (mm)."""
-
-    contact_time_s: float
-    contact_path_mm: float
-    pressing_depth_mm: float
-
-
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class HandsTrial:
-    """One trial.
-
-    Attributes:
-        hands: one of `SKILLS`.
-        head: one of `HEADS`.
-        task: of the head.
-        seed: of the head's pose and of the hands.
-        time_s: completion time.
-        safety: contacts and pressing.
-        errors_mm: (15, 3) float, RAS, from each fiducial to where it was touched.
-    """
+    """One trial: the time and path of unintended contact, how deep the tool was pressed in, and
+    from each fiducial to where it was touched, RAS, mm."""
 
     hands: str
+    seed: int
     head: str
     task: str
-    seed: int
     time_s: float
-    safety: SafetyMeasures
-    errors_mm: np.ndarray
+    safety: Floats
+    touch_errors_mm: Floats
 
     @property
-    def key(self) -> tuple[str, int, str, str]:
-        """What there is one trial of."""
-        return self.hands, self.seed, self.head, self.task
+    def errors_mm(self) -> np.ndarray:
+        return np.reshape(self.touch_errors_mm, (15, 3))
 
 
 def keys() -> Iterator[tuple[str, int, str, str]]:
@@ -88,52 +68,29 @@ def keys() -> Iterator[tuple[str, int, str, str]]:
 
 
 def play(hands: str, seed: int, head: str, task: str) -> HandsTrial:
-    """Play one trial."""
     played = play_honestly(setup(head), task, seed, SKILLS[hands])
     record, truth = played.record, played.truth
     fiducials = np.array([truth.fiducials_ras[label] for label in record.labels])
-    safety = SafetyMeasures(*(round(float(record.motion[name]), 4) for name in SAFETY_METRICS))
+    safety = tuple(round(float(record.motion[name]), 4) for name in SAFETY_METRICS)
     errors = true_touch_errors(record.positions_mm, truth.head_to_world, fiducials)
     # In the order of the task.
     order = [record.labels.index(label) for label in truth.fiducials_ras]
-    time_s = round(record.completion_time_s, 2)
-    return HandsTrial(hands, head, task, seed, time_s, safety, errors[order].round(2))
+    kept = tuple(errors[order].round(2).ravel().tolist())
+    return HandsTrial(hands, seed, head, task, round(record.completion_time_s, 2), safety, kept)
 
 
 @functools.cache
 def stored() -> dict[tuple[str, int, str, str], HandsTrial]:
-    """Return the trials of the file."""
-    found = {}
-    with FILE.open(encoding="utf-8", newline="") as file:
-        for hands, seed, head, task, *values in list(csv.reader(file))[1:]:
-            time_s, *others = map(float, values)
-            safety, errors = SafetyMeasures(*others[:3]), np.reshape(others[3:], (15, 3))
-            trial = HandsTrial(hands, head, task, int(seed), time_s, safety, errors)
-            found[trial.key] = trial
-    return found
+    return {(one.hands, one.seed, one.head, one.task): one for one in stored_rows(FILE, HandsTrial)}
 
 
 def trials_of(hands: str, head: str, task: str) -> list[HandsTrial]:
-    """Return the stored trials of some hands on one task."""
     return [
         one for one in stored().values() if (one.hands, one.head, one.task) == (hands, head, task)
     ]
 
 
-def write(trials: Iterable[HandsTrial]) -> None:
-    """Write trials into the file, in the order of `keys`."""
-    order = {key: number for number, key in enumerate(keys())}
-    with FILE.open("w", encoding="utf-8", newline="") as file:
-        lines = csv.writer(file, lineterminator="\n")
-        axes = [f"{axis}{number}_mm" for number in range(1, 16) for axis in "ras"]
-        lines.writerow(["hands", "seed", "head", "task", "time_s", *SAFETY_METRICS, *axes])
-        for one in sorted(trials, key=lambda one: order[one.key]):
-            numbers = [one.time_s, *one.safety, *one.errors_mm.ravel()]
-            lines.writerow([*one.key, *(f"{number:.10g}" for number in numbers)])
-
-
 def scenario_of(head: str) -> Scenario:
-    """Return the scenario of one of the three heads."""
     return setup(head).scenario
 
 
@@ -148,17 +105,5 @@ def _folder() -> tempfile.TemporaryDirectory:
     return tempfile.TemporaryDirectory()
 
 
-def main() -> int:
-    """Play the missing trials."""
-    trials = dict(stored()) if FILE.is_file() else {}
-    for key in keys():
-        if key in trials:
-            continue
-        trials[key] = play(*key)
-        write(trials.values())
-        print(*key, trials[key].time_s, flush=True)
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    play_missing(FILE, HandsTrial, keys(), play, names=4)

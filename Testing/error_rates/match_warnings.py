@@ -8,7 +8,7 @@ all cases in turn. It can be stopped at any time: the table says how many traces
 from __future__ import annotations
 
 import functools
-import sys
+import itertools
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -56,14 +56,10 @@ CASES = (
 
 @dataclass(frozen=True)
 class Chunk:
-    """Some traces of one case on one head; the counts are of traces.
+    """Some traces of one case on one head.
 
-    Attributes:
-        refused: not matched, with a message.
-        off: a target is off by more than 3.5 mm.
-        off_named: of these, with any warning.
-        near_slides: not off, and called sliding.
-        near_named: not off, with any warning.
+    The counts are of traces: not matched, with a message; with a target that is off by more than
+    3.5 mm, and of these with any warning; not off, but called sliding or with any warning.
     """
 
     head: str
@@ -110,11 +106,7 @@ def vertices(name: str, where: str, points: int, random: Generator) -> np.ndarra
 def matched(
     name: str, where: str, points: int, shift_mm: float, seed: int
 ) -> tuple[SurfaceMatch, float]:
-    """Return the match of a trace, and how far it is off at most at seven targets, mm.
-
-    Raises:
-        InputError: the trace is refused.
-    """
+    """Return the match of a trace, and how far it is off at most at seven targets, mm."""
     head, random = head_of(name), np.random.default_rng([seed, points, int(shift_mm)])
     pose = head_pose(random)
     rows = vertices(name, where, points, random)
@@ -149,10 +141,8 @@ def play(
 
 def keys(chunks: int) -> Iterator[tuple[str, str, int, float, int]]:
     """Yield head, trace, number of points, shift and chunk of several chunks for each case."""
-    for chunk in range(chunks):
-        for case in CASES:
-            for name in HEADS:
-                yield (name, *case, chunk)
+    for chunk, case, name in itertools.product(range(chunks), CASES, HEADS):
+        yield (name, *case, chunk)
 
 
 def measured(traces: int) -> list[Measured]:
@@ -189,4 +179,4 @@ def measured(traces: int) -> list[Measured]:
 
 
 if __name__ == "__main__":
-    sys.exit(play_missing(FILE, Chunk, keys(CHUNKS), play, names=5))
+    play_missing(FILE, Chunk, keys(CHUNKS), play, names=5)

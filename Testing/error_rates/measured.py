@@ -1,10 +1,9 @@
-"""One figure of a simulation and its limit."""
+"""One figure of a simulation and its limits, as a row of a table."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -13,45 +12,64 @@ from rastrainer.number_text import fixed
 
 @dataclass(frozen=True)
 class Measured:
-    """How often something happened in simulated data sets.
+    """A figure of simulated data sets.
 
     Attributes:
-        case: What was simulated, in words.
-        share: From 0 to 1.
-        sets: Of how many data sets.
-        at_most: Upper limit of the share; None if it is only reported.
-        at_least: Lower limit of the share; None if it is only reported.
-        further: Further figures of the same data sets, as text.
+        figure: a share from 0 to 1, or a number if `is_share` is false.
+        sets: how many data sets the share is of.
+        further: other figures of the same data sets.
+        slack: from a tolerance in standard errors to that of a number; shares have their own.
+        also: what else has to hold with such a tolerance.
     """
 
     case: str
-    share: float
-    sets: int
+    figure: float
+    sets: int = 1
     at_most: float | None = None
     at_least: float | None = None
     further: tuple[str, ...] = ()
+    is_share: bool = True
+    slack: Callable[[float], float] = lambda _standard_errors: 0.0
+    also: Callable[[float], bool] = lambda _standard_errors: True
 
     def holds(self, standard_errors: float = 0.0) -> bool:
-        """Return whether the share is within the limit, with a tolerance in standard errors."""
+        """Return whether all is within its limits, with a tolerance in standard errors."""
 
         def slack(limit: float) -> float:
+            if not self.is_share:
+                return self.slack(standard_errors)
             return standard_errors * float(np.sqrt(limit * (1 - limit) / self.sets))
 
-        over = self.at_most is None or self.share <= self.at_most + slack(self.at_most)
-        if self.at_least is None:
-            return over
-        return over and self.share >= self.at_least - slack(self.at_least)
+        least, most = self.at_least, self.at_most
+        is_enough = least is None or self.figure >= least - slack(least)
+        return (
+            is_enough
+            and (most is None or self.figure <= most + slack(most))
+            and self.also(standard_errors)
+        )
 
     def cells(self) -> list[str]:
-        """Return the row of a table."""
-        asked = "–"
-        if self.at_most is not None and self.at_least is not None:
-            asked = f"{share_text(self.at_least, 0)} to {share_text(self.at_most, 0)}"
-        elif self.at_most is not None:
-            asked = f"≤ {share_text(self.at_most, 0)}"
-        elif self.at_least is not None:
-            asked = f"≥ {share_text(self.at_least, 0)}"
-        return [self.case, share_text(self.share), asked, *self.further]
+        least, most = (
+            limit is not None and (share_text(limit, 0) if self.is_share else f"{limit:g}")
+            for limit in (self.at_least, self.at_most)
+        )
+        asked = f"{least} to {most}" if least and most else f"≥ {least}" if least else f"≤ {most}"
+        figure = share_text(self.figure) if self.is_share else fixed(self.figure, 1)
+        return [self.case, figure, asked if least or most else "–", *self.further]
+
+
+def deviation(
+    case: str, truth: float, value: float, standard_error: float, further: tuple[str, ...]
+) -> Measured:
+    """Return how far an estimate is off, in standard errors, of which two are allowed."""
+    off = abs(value - truth) / standard_error
+    return Measured(
+        *(case, off),
+        at_most=2.0,
+        further=further,
+        is_share=False,
+        slack=lambda standard_errors: max(standard_errors - 2.0, 0.0),
+    )
 
 
 def holds(interval: tuple[float, float] | None, truth: float) -> bool:
@@ -59,29 +77,14 @@ def holds(interval: tuple[float, float] | None, truth: float) -> bool:
 
 
 def share_of(happened: Sequence[bool] | np.ndarray) -> float:
-    """Return the share of true values."""
     return float(np.mean(happened))
 
 
 def share_text(share: float, digits: int = 1) -> str:
-    """Return a share in percent."""
     return f"{fixed(100 * share, digits)} %"
 
 
-class Row(Protocol):
-    """A row of a table."""
-
-    at_most: float | None
-    at_least: float | None
-
-    def holds(self, standard_errors: float = 0.0) -> bool:
-        """Return whether the figure is within the limit, with a tolerance in standard errors."""
-
-    def cells(self) -> list[str]:
-        """Return case, figure, limit, and further figures."""
-
-
-def markdown(header: Sequence[str], found: Sequence[Row]) -> str:
+def markdown(header: Sequence[str], found: Sequence[Measured]) -> str:
     """Return a table; `header` names the case, the figure and the further figures."""
     lines = [[header[0], header[1], "required", *header[2:]], ["---"] * (len(header) + 1)]
     lines += [one.cells() for one in found]

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import functools
 import itertools
-import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -118,4 +117,4 @@ def play(method: str, shift_mm: float, chunk: int, trials: int = CHUNK) -> Chunk
 
 
 if __name__ == "__main__":
-    sys.exit(play_missing(FILE, Chunk, keys(TRIALS), play, names=3))
+    play_missing(FILE, Chunk, keys(TRIALS), play, names=3)

@@ -24,11 +24,11 @@ from Testing.error_rates import (
     recovery,
     target_errors,
 )
-from Testing.error_rates.measured import Row, markdown
+from Testing.error_rates.measured import Measured
 
 PAGE = Path(__file__).with_name("tables.md")
 SETS = 2000
-TABLES: dict[str, tuple[Sequence[str], Callable[[int], Sequence[Row]]]] = {
+TABLES: dict[str, tuple[Sequence[str], Callable[[int], Sequence[Measured]]]] = {
     "learning": (learning.HEADER, learning.series),
     "cohorts": (learning.COHORT_HEADER, learning.cohorts),
     "null cohorts": (learning.NULL_HEADER, learning.null_cohorts),
@@ -57,12 +57,6 @@ TABLES: dict[str, tuple[Sequence[str], Callable[[int], Sequence[Row]]]] = {
     "equal hands": (equal_hands.HEADER, equal_hands.usual),
     "slow hands": (equal_hands.HEADER, equal_hands.slow),
 }
-
-
-def computed(name: str, sets: int = SETS) -> str:
-    """Return a table as Markdown."""
-    header, simulate = TABLES[name]
-    return markdown(header, simulate(sets))
 
 
 def printed(name: str, text: str) -> str:

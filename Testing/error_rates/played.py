@@ -7,11 +7,9 @@ unless it measures more.
 
 from __future__ import annotations
 
-import csv
 import functools
-import sys
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +20,7 @@ from rastrainer.trial.score_reference import fiducial_normals, region_of, score_
 from rastrainer.trial.scoring import ScoreMeasures, TrialScore, score_trial
 from rastrainer_simulator.core.setup import SimulationSetup
 from Testing.error_rates.hands import HEADS, TASKS, setup
+from Testing.error_rates.row_files import play_missing, stored_rows
 from Testing.simulator.virtual.cheating_trainees import (
     BIAS_MM,
     PlayedTrial,
@@ -61,30 +60,24 @@ FEW = {"hover": 2, "hover 2 mm": 1, "drag": 2, "press": 2}
 """Number of trials of each task; three for the other strategies."""
 
 
-def seeds(way: str) -> range:
-    """Return the seeds, of the head's pose and of the hands, with which a strategy is played."""
-    return range(1, FEW.get(way, 3) + 1)
-
-
 @dataclass(frozen=True)
 class Played:
-    """The measures of one played trial.
-
-    Attributes:
-        way: one of `WAYS`.
-        task: of the head.
-        seed: of the head's pose and the hands.
-    """
+    """The measures of one played trial; the seed is of the head's pose and the hands."""
 
     way: str
     task: str
     seed: int
-    measures: ScoreMeasures
+    completion_time_s: float
+    tre_mm: float
+    contact_time_s: float
+    contact_path_mm: float
+    pressing_depth_mm: float
+    common_bias_mm: float
 
     @property
-    def key(self) -> tuple[str, str, int]:
-        """What there is one trial of."""
-        return self.way, self.task, self.seed
+    def score(self) -> TrialScore:
+        reference = score_reference(setup(COLIN27).scenario, self.task)
+        return score_trial(ScoreMeasures(*astuple(self)[3:]), reference)
 
 
 def measures_of(setup: SimulationSetup, played: PlayedTrial) -> ScoreMeasures:
@@ -108,53 +101,19 @@ def score_of(setup: SimulationSetup, played: PlayedTrial) -> TrialScore:
 
 
 def play(way: str, task: str, seed: int) -> Played:
-    """Play one trial."""
     measures = measures_of(setup(COLIN27), WAYS[way](setup(COLIN27), task, seed))
-    rounded = {name: round(value, 4) for name, value in vars(measures).items()}
-    return Played(way, task, seed, replace(measures, **rounded))
+    return Played(way, task, seed, *(round(value, 4) for value in astuple(measures)))
 
 
 @functools.cache
-def stored() -> tuple[Played, ...]:
-    """Return the trials of the file."""
-    if not FILE.is_file():
-        return ()
-    with FILE.open(encoding="utf-8", newline="") as file:
-        return tuple(
-            Played(way, task, int(seed), ScoreMeasures(*map(float, values)))
-            for way, task, seed, *values in list(csv.reader(file))[1:]
-        )
+def stored() -> dict[tuple[str, str, int], Played]:
+    return {(one.way, one.task, one.seed): one for one in stored_rows(FILE, Played)}
 
 
-def all_keys() -> Iterator[tuple[str, str, int]]:
-    """Yield strategy, task and seed of all trials that the file should hold."""
-    for way in WAYS:
-        yield from ((way, task, seed) for seed in seeds(way) for task in TASKS)
-
-
-def write(trials: list[Played]) -> None:
-    """Write trials into the file, in the order of `all_keys`."""
-    order = {key: number for number, key in enumerate(all_keys())}
-    names = list(ScoreMeasures.__annotations__)
-    with FILE.open("w", encoding="utf-8", newline="") as file:
-        rows = csv.writer(file, lineterminator="\n")
-        rows.writerow(["way", "task", "seed", *names])
-        for one in sorted(trials, key=lambda one: order[one.key]):
-            rows.writerow([*one.key, *vars(one.measures).values()])
-
-
-def main() -> int:
-    """Play the missing trials."""
-    trials = list(stored())
-    there = {one.key for one in trials}
-    for key in all_keys():
-        if key in there:
-            continue
-        trials.append(play(*key))
-        write(trials)
-        print(*key, vars(trials[-1].measures), flush=True)
-    return 0
+def keys(way: str) -> Iterator[tuple[str, str, int]]:
+    """Yield strategy, task and seed of all trials of a strategy."""
+    return ((way, task, seed + 1) for seed in range(FEW.get(way, 3)) for task in TASKS)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    play_missing(FILE, Played, (key for way in WAYS for key in keys(way)), play, names=3)

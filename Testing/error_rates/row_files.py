@@ -8,12 +8,19 @@ from dataclasses import astuple, fields
 from pathlib import Path
 from typing import Any
 
-TYPES: dict[str, Callable[[str], Any]] = {"str": str, "int": int, "float": float}
+Floats = tuple[float, ...]
+"""In a file with spaces between them."""
+READERS: dict[str, Callable[[str], Any]] = {
+    "str": str,
+    "int": int,
+    "float": float,
+    "Floats": lambda text: tuple(map(float, text.split())),
+}
 
 
 def stored_rows(path: Path, kind: type) -> list[Any]:
     """Return the rows of a file: objects of a dataclass of texts and numbers."""
-    readers = {field.name: TYPES[str(field.type)] for field in fields(kind)}
+    readers = {field.name: READERS[str(field.type)] for field in fields(kind)}
     with path.open(encoding="utf-8", newline="") as file:
         return [
             kind(**{name: read(row[name]) for name, read in readers.items()})
@@ -21,21 +28,28 @@ def stored_rows(path: Path, kind: type) -> list[Any]:
         ]
 
 
+def add_row(path: Path, row: Any) -> None:
+    """Add a row to a file, which is made if it is missing."""
+    if not path.exists():
+        header = ",".join(field.name for field in fields(row))
+        path.write_text(header + "\n", encoding="utf-8")
+    cells = [
+        " ".join(f"{number:.10g}" for number in each) if isinstance(each, tuple) else each
+        for each in astuple(row)
+    ]
+    with path.open("a", encoding="utf-8", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerow(cells)
+
+
 def play_missing(
     path: Path, kind: type, keys: Iterable[tuple], play: Callable[..., Any], names: int
 ) -> None:
     """Play what a file lacks, and add each row to it at once.
 
-    Args:
-        keys: The first `names` values of each row that the file should have.
-        play: Returns the row of a key.
+    A row's key are its first `names` values; `play` returns the row of a key.
     """
-    if not path.exists():
-        header = ",".join(field.name for field in fields(kind))
-        path.write_text(header + "\n", encoding="utf-8")
-    known = {astuple(row)[:names] for row in stored_rows(path, kind)}
+    known = {astuple(row)[:names] for row in stored_rows(path, kind)} if path.exists() else set()
     for key in keys:
         if key not in known:
-            with path.open("a", encoding="utf-8", newline="") as file:
-                csv.writer(file, lineterminator="\n").writerow(astuple(play(*key)))
+            add_row(path, play(*key))
             print(*key, flush=True)

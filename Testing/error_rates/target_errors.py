@@ -10,8 +10,9 @@ from rastrainer import transforms
 from rastrainer.number_text import fixed
 from rastrainer.registration.localization_error import stated_error
 from rastrainer.registration.registration import register
-from rastrainer.registration.target_error import COMMON_BIAS_SD_MM, TargetError, target_error
-from Testing.error_rates.measured import Measured, share_of, share_text
+from rastrainer.registration.target_error import COMMON_BIAS_SD_MM, target_error
+from rastrainer_simulator.statistics.intervals import rms
+from Testing.error_rates.measured import Measured, holds, share_of, share_text
 
 HEADER = (
     "errors of the touches",
@@ -31,24 +32,33 @@ def intervals(sets: int, seed: int = 10) -> list[Measured]:
     Fiducials are on one side of a ball, the target is inside; the localization error is 1 mm.
     """
     common = f"independent, equal, with a common offset of SD {COMMON_BIAS_SD_MM:g} mm on each axis"
-    cases: list[tuple[str, Errors, float | None]] = [
-        ("independent, unbiased, equal", _alike, 0.94),
+    aside = "independent, but three times as large for a third of the fiducials, on one side"
+    cases: list[tuple[str, Errors, float | None, int, bool]] = [
+        ("independent, unbiased, equal", _alike, 0.94, 0, False),
+        (aside, _unequal, None, 1, False),
+        ("as in row 2, each point weighted by its known error", _unequal, 0.94, 1, True),
+        (common, lambda n, r: _alike(n, r) + r.normal(0, COMMON_BIAS_SD_MM, 3), 0.94, 2, False),
         (
-            "independent, but three times as large for a third of the fiducials, on one side",
-            _unequal,
-            None,
+            "as in row 1, and all touches 2 mm above the skin",
+            *(lambda n, r: _alike(n, r) + 2.0 * n, None, 3, False),
         ),
-        (common, _with_common_offset, 0.94),
-        ("as in row 1, and all touches 2 mm above the skin", _hovering, None),
-        ("as in row 1, and a constant aim bias of 1.5 mm", _with_aim_bias, None),
+        (
+            "as in row 1, and a constant aim bias of 1.5 mm",
+            *(lambda n, r: _alike(n, r) + np.array([1.5, 0.0, 0.0]), None, 4, False),
+        ),
     ]
-    found = [
-        _measured(words, errors, limit, sets, np.random.default_rng([seed, number]))
-        for number, (words, errors, limit) in enumerate(cases)
+    return [
+        _measured(words, errors, limit, sets, np.random.default_rng([seed, stream]), is_weighted)
+        for words, errors, limit, stream, is_weighted in cases
     ]
-    words = "as in row 2, each point weighted by its known error"
-    random = np.random.default_rng([seed, 1])
-    return [*found[:2], _measured(words, _unequal, 0.94, sets, random, True), *found[2:]]
+
+
+def _alike(normals: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    return random.normal(0, FLE_MM / np.sqrt(3), normals.shape)
+
+
+def _unequal(normals: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    return localization_errors(normals)[:, None] / FLE_MM * _alike(normals, random)
 
 
 def one_side(random: np.random.Generator) -> np.ndarray:
@@ -69,7 +79,7 @@ def _measured(
     at_least: float | None,
     sets: int,
     random: np.random.Generator,
-    is_weighted: bool = False,
+    is_weighted: bool,
 ) -> Measured:
     inside, before, true, expected = [], [], [], []
     for _ in range(sets):
@@ -84,37 +94,8 @@ def _measured(
         true.append(float(np.linalg.norm(there - target)))
         widened = target_error(registration, target, known)
         without = target_error(registration, target, known, common_bias_sd_mm=0.0)
-        inside.append(_holds(widened, true[-1]))
-        before.append(_holds(without, true[-1]))
+        inside.append(holds(widened.interval_mm, true[-1]))
+        before.append(holds(without.interval_mm, true[-1]))
         expected.append(widened.expected_mm)
-    further = share_text(share_of(before)), *(fixed(_rms(each), 2) for each in (true, expected))
+    further = share_text(share_of(before)), *(fixed(rms(each), 2) for each in (true, expected))
     return Measured(words, share_of(inside), sets, at_least=at_least, further=further)
-
-
-def _holds(error: TargetError, true_mm: float) -> bool:
-    low, high = error.interval_mm
-    return low <= true_mm <= high
-
-
-def _rms(values: list[float]) -> float:
-    return float(np.sqrt(np.mean(np.square(values))))
-
-
-def _alike(normals: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    return random.normal(0, FLE_MM / np.sqrt(3), normals.shape)
-
-
-def _unequal(normals: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    return localization_errors(normals)[:, None] / FLE_MM * _alike(normals, random)
-
-
-def _with_common_offset(normals: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    return _alike(normals, random) + random.normal(0, COMMON_BIAS_SD_MM, 3)
-
-
-def _hovering(normals: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    return _alike(normals, random) + 2.0 * normals
-
-
-def _with_aim_bias(normals: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    return _alike(normals, random) + np.array([1.5, 0.0, 0.0])

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import scipy.stats
 
-from rastrainer.trial.score_reference import fiducial_normals, region_of, score_reference
+from rastrainer.trial.score_reference import fiducial_normals, region_of
 from Testing.error_rates import hands
 from Testing.error_rates.equal_hands import PlayedTask
-from Testing.error_rates.hands import HEADS, SEEDS, SLOW, TASKS, USUAL, keys, scenario_of, trials_of
+from Testing.error_rates.hands import HEADS, SEEDS, SLOW, TASKS, USUAL, scenario_of, trials_of
 from Testing.error_rates.registered import errors_along_skin, registered_errors
 from Testing.simulator.authoring import planned_heads
 
@@ -24,8 +24,7 @@ def errors_along(which, head, task):
     return errors - normals * np.einsum("sij,ij->si", errors, normals)[..., None]
 
 
-@pytest.mark.parametrize("task", ["trial-run", "task-5"])
-@pytest.mark.parametrize("head", HEADS)
+@pytest.mark.parametrize(("head", "task"), [("colin27", "trial-run"), ("egg", "task-5")])
 def test_the_reference_error_is_that_of_errors_along_the_skin(head, task):
     scenario, random = scenario_of(head), np.random.default_rng(3)
     fiducials = np.asarray(scenario.task(task).fiducials, dtype=float)
@@ -34,12 +33,6 @@ def test_the_reference_error_is_that_of_errors_along_the_skin(head, task):
     errors = registered_errors(region_of(scenario), fiducials, touches)
     expected = region_of(scenario).tre_per_fle(fiducials, normals)
     assert np.sqrt(np.mean(errors**2)) == pytest.approx(expected, rel=0.05)
-
-
-def test_the_reference_times_of_colin27_have_the_published_mean():
-    scenario = scenario_of("colin27")
-    times_s = [score_reference(scenario, task).time_s for task in TASKS[1:]]
-    assert np.mean(times_s) == pytest.approx(127.0, abs=1.0)
 
 
 @pytest.mark.parametrize("which", [USUAL, SLOW])
@@ -84,7 +77,7 @@ def assert_is_as_stored(key):
     kept, again = hands.stored()[key], hands.play(*key)
     assert again.time_s == pytest.approx(kept.time_s, rel=0.1)
     assert np.sqrt(np.mean((again.errors_mm - kept.errors_mm) ** 2)) < 0.3
-    assert again.safety.pressing_depth_mm == pytest.approx(kept.safety.pressing_depth_mm, abs=0.15)
+    assert again.safety[2] == pytest.approx(kept.safety[2], abs=0.15)
 
 
 @pytest.mark.parametrize(
@@ -101,12 +94,3 @@ def test_typical_hands_reproduce_a_stored_trial_of_each_head(head):
 def test_hands_reproduce_the_first_and_the_last_stored_trial(which, head, task):
     for seed in (SEEDS[which][0], SEEDS[which][-1]):
         assert_is_as_stored((which, seed, head, task))
-
-
-def test_the_file_has_every_trial_once_and_is_rewritten_unchanged(tmp_path, monkeypatch):
-    trials = hands.stored()
-    assert list(trials) == list(keys())
-    before = hands.FILE.read_bytes()
-    monkeypatch.setattr(hands, "FILE", tmp_path / "trials.csv")
-    hands.write(reversed(trials.values()))
-    assert hands.FILE.read_bytes() == before

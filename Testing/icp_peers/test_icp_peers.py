@@ -15,7 +15,7 @@ from Testing.domain.registration.traces import (
 )
 from Testing.icp_peers.compare import HEADS, NOISE_MM, WRONG_MM, compare, stored, table
 
-PAGE = Path(__file__).parents[2] / "docs" / "registration-methods.md"
+PAGE = Path(__file__).with_name("comparison.md")
 CLEARLY = 0.01
 """A share of the cost: on coarse triangles, some minima differ by half a percent."""
 

@@ -1,4 +1,4 @@
-"""The cost of an attack to the attacked process: memory, descriptors, punctuality."""
+"""The cost of an attack to the attacked process: memory and descriptors."""
 
 import re
 import time
@@ -9,15 +9,11 @@ from pathlib import Path
 from rastrainer.igtl.client import Client
 from Testing.benchmarks.loop_health import next_health
 from Testing.benchmarks.row import resident_mb
-from Testing.benchmarks.watched_loop import WatchedLoop
 
 MAX_GROWTH_MB = 8.0
 """What an attack leaves behind after a similar one has warmed up the process."""
 MAX_MORE_DESCRIPTORS = 4
 """An attack may have started a trial, whose journal is then open."""
-MAX_MORE_MISSED = 0.5
-"""Of the ticks, beside a loop that does nothing: coarse, for a slow machine makes a loop that works
-late sooner than one that does not. The share itself is printed."""
 TIMEOUT_S = 120.0
 COUNTED = re.compile(r"(\d+) × 127\.0\.0\.1: ([^;\n]+)")
 
@@ -46,31 +42,10 @@ def settled(pid: int, client: Client, wanted: Cost) -> Cost:
             return cost
 
 
-def summary(before: Cost, after: Cost, watched: WatchedLoop) -> str:
-    """Return the changes in words, and how punctual the loop was meanwhile."""
-    still = watched.undisturbed
-    return (
-        f"{100.0 * watched.measured.on_time:.3f} % of {watched.measured.ticks} ticks on time "
-        f"({100.0 * watched.bare.on_time:.3f} % of a loop that does nothing; "
-        + (
-            "that was late in every second), "
-            if still is None
-            else f"where that was never late {100.0 * still.on_time:.3f} % of {still.ticks}), "
-        )
-        + f"{after.resident_mb - before.resident_mb:+.1f} MB, "
-        f"{after.descriptors - before.descriptors:+d} descriptors"
-    )
-
-
 def check_unharmed(before: Cost, after: Cost) -> None:
     """Check that an attack has left nothing behind."""
     assert after.descriptors <= before.descriptors + MAX_MORE_DESCRIPTORS
     assert after.resident_mb - before.resident_mb <= MAX_GROWTH_MB
-
-
-def check_punctual(watched: WatchedLoop) -> None:
-    """Check that an attack has not kept the loop from its ticks; nothing else may run meanwhile."""
-    assert watched.measured.on_time >= watched.bare.on_time - MAX_MORE_MISSED
 
 
 def counted_in_log(said: str) -> Counter[str]:

@@ -7,18 +7,10 @@ from rastrainer.commands import check_arguments
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Transform
 from rastrainer.igtl.message import Message
-from Testing.benchmarks.watched_loop import WatchedLoop
 from Testing.end_to_end.simulator_process import SimulatorProcess
-from Testing.security.attacked_process import (
-    check_punctual,
-    check_unharmed,
-    cost_of,
-    counted_in_log,
-    settled,
-    summary,
-)
+from Testing.security.attacked_process import check_unharmed, cost_of, counted_in_log, settled
 from Testing.security.link_attack import LinkAttack
-from Testing.security.mutated_messages import COMMANDS, MutatedMessages, valid_messages
+from Testing.security.mutated_messages import COMMANDS
 from Testing.security.wire_checker import SENT_TYPES
 
 MAX_READ = 0.75
@@ -26,7 +18,7 @@ MAX_READ = 0.75
 PROBE = Message("Probe", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 4, 5, 6)))
 
 
-def attack(folder, warm_up: int, count: int, policed: int, capsys) -> WatchedLoop:
+def attack(folder, warm_up: int, count: int, policed: int) -> None:
     """Attack a simulator, and check that it is unharmed."""
     with (
         SimulatorProcess(folder, "--no-views", "--seed", "1") as simulator,
@@ -38,17 +30,8 @@ def attack(folder, warm_up: int, count: int, policed: int, capsys) -> WatchedLoo
         quiet = cost_of(simulator.pid, good)
         before = settled(simulator.pid, good, quiet)
         attacked = LinkAttack(simulator.port, count, seed=10**6, policed=policed)
-        with WatchedLoop(good) as watched:
-            attacked.run()
-        after = settled(simulator.pid, good, before)
-        with capsys.disabled():
-            print(
-                f"\n{attacked.mutated} mutated messages of {attacked.sent} on "
-                f"{attacked.connections} connections ({attacked.ended} ended early), "
-                f"{attacked.decoded} decoded, {attacked.refused.total()} refused: "
-                f"{summary(before, after, watched)}"
-            )
-        check_unharmed(before, after)
+        attacked.run()
+        check_unharmed(before, settled(simulator.pid, good, before))
         good.send(PROBE)
         assert good.wait_for("Probe").content == PROBE.content
         assert good.send_command("ListTasks").ok
@@ -63,23 +46,15 @@ def attack(folder, warm_up: int, count: int, policed: int, capsys) -> WatchedLoo
     assert " ERROR " not in errors
     refused = warming.refused + attacked.refused
     assert counted_in_log(errors) == {kind.value: times for kind, times in refused.items()}
-    return watched
 
 
-def test_five_thousand_mutated_messages_affect_no_other_client(tmp_path, capsys):
-    attack(tmp_path / "records", 400, 5_000, 1, capsys)
+def test_five_thousand_mutated_messages_affect_no_other_client(tmp_path):
+    attack(tmp_path / "records", 400, 5_000, 1)
 
 
 @pytest.mark.soak
-def test_a_million_mutated_messages_affect_no_other_client(tmp_path, capsys):
-    check_punctual(attack(tmp_path / "records", 50_000, 1_000_000, 50, capsys))
-
-
-def test_the_same_seed_gives_the_same_attack_which_includes_every_valid_message():
-    first, second = MutatedMessages(3), MutatedMessages(3)
-    drawn = [first.next() for _ in range(6_000)]
-    assert drawn == [second.next() for _ in range(6_000)]
-    assert set(valid_messages()) <= set(drawn)
+def test_a_million_mutated_messages_affect_no_other_client(tmp_path):
+    attack(tmp_path / "records", 50_000, 1_000_000, 50)
 
 
 def test_every_acceptable_command_is_among_those_that_are_mutated():

@@ -53,7 +53,7 @@ def stored(folder, trainee="T-001"):
     with Study.open(folder / "study.db") as study:
         if trainee not in {each.pseudonym for each in study.trainees()}:
             return set()
-        return {each.record.trial_id for each in study.aborted(trainee)}
+        return {each.trial_id for each in study.aborted(trainee)}
 
 
 @pytest.mark.parametrize("hello", [None, HELLO], ids=["without Hello", "as a client that scores"])

@@ -2,17 +2,17 @@ import time
 
 import numpy as np
 import pytest
-import vtk
-from vtk.util.numpy_support import vtk_to_numpy
 
 from rastrainer import transforms
-from rastrainer.head.mesh import HeadMesh, write_head_mesh
+from rastrainer.head.mesh import write_head_mesh
 from rastrainer.scenario.points import LABELS, PlannedTarget, Task, task_file
 from rastrainer.scenario.scenario import Perturbation, Scenario
+from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.program.child_process import OwnProcess, runHere
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.scene import HeadlessScene
+from Testing.domain.scenario.made_up_scenario import ball_head
 from Testing.slicer.host.fixtures import host, module_widget, start_slicer  # noqa: F401
 from Testing.slicer.simulator_double import SimulatorDouble
 from Testing.slicer.training_room import Room
@@ -40,6 +40,13 @@ def headless_scene():
 @pytest.fixture
 def scene(headless_scene):
     return headless_scene.scene
+
+
+@pytest.fixture
+def work():
+    work = BackgroundWork()
+    yield work
+    work.close()
 
 
 @pytest.fixture
@@ -91,15 +98,7 @@ def simulator():
 @pytest.fixture
 def scenario(tmp_path):
     """A ball as a head with three tasks on it."""
-    sphere = vtk.vtkSphereSource()
-    sphere.SetRadius(90.0)
-    sphere.SetThetaResolution(40)
-    sphere.SetPhiResolution(30)
-    sphere.Update()
-    surface = sphere.GetOutput()
-    vertices = vtk_to_numpy(surface.GetPoints().GetData()).astype(float)
-    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-    write_head_mesh(tmp_path / "head.ply", HeadMesh(vertices, triangles))
+    write_head_mesh(tmp_path / "head.ply", ball_head())
     names = {"trial-run": "Trial run", "task-1": "Task 1", "task-2": "Task 2"}
     return Scenario(
         format_version=1,

@@ -60,13 +60,7 @@ def lock_entry(package: Path, marker: str = "") -> str:
 
 
 def write_package(folder: Path, cli: str, lock: Sequence[str] = ()) -> SimulatorPackage:
-    """Write what an installed module brings along: a wheel with its SHA-256, and a lock.
-
-    Args:
-        folder: that is made for them.
-        cli: text of the simulator's `cli.py`.
-        lock: entries of others' packages.
-    """
+    """Write what an installed module brings along: a wheel with its SHA-256, and a lock."""
     wheel = write_wheel(folder, "rastrainer", __version__, simulator_files(cli))
     assert wheel.name == WHEEL
     digest = hashlib.sha256(wheel.read_bytes()).hexdigest()
@@ -90,12 +84,7 @@ def write_checkout(folder: Path, cli: str) -> SimulatorPackage:
 
 
 class PackageIndex:
-    """Serves wheels as an index does; to be used in a `with` statement.
-
-    Attributes:
-        address: of the index.
-        asked: paths that it was asked for.
-    """
+    """Serves wheels as an index does; to be used in a `with` statement."""
 
     def __init__(self, wheels: Sequence[Path]) -> None:
         self.asked: list[str] = []

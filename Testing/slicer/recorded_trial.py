@@ -11,9 +11,10 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.journal.entries import TracePoint
 from rastrainer.json_records import record_from_json
+from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import Scenario, load_scenario
+from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
 from rastrainer.slicer.scene.robot_description import readArmChain
-from rastrainer.study.database.study import Study
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import SAFETY_METRICS
@@ -74,24 +75,39 @@ def scored_analysis(
     )
 
 
+COLIN27 = load_scenario(asset_path("scenarios", "colin27"))
+
+
+def touches_on_colin(seed: int = 3, task: str = "task-1", noise_mm: float = 0.6) -> np.ndarray:
+    """Return touches of a task on Colin27, (15, 3) float, World, mm."""
+    noise = np.random.default_rng(seed).normal(0.0, noise_mm, (15, 3))
+    head_to_world = COLIN27.perturbed_head_to_world(seed)
+    return transforms.apply(head_to_world, COLIN27.task(task).fiducials + noise)
+
+
 def store_trial_on_colin(host: Host, record: dict[str, Any], seed: int) -> np.ndarray:
-    """Store a scored trial of Task 1 on Colin27 in the module's study.
+    """Store a scored trial on Colin27 by the open module's own connection to the study.
 
-    Args:
-        host: with the module open.
-        record: of such a trial; its points become touches near the fiducials.
-        seed: of the head's pose and of the touches.
-
-    Returns:
-        The touches, (15, 3) float, World, mm.
+    By another connection, the module would show the change at any time. The points of the record
+    become touches, (15, 3) float, World, mm, which are returned; `seed` is theirs.
     """
-    colin = load_scenario(asset_path("scenarios", "colin27"))
-    noise = np.random.default_rng(seed).normal(0.0, 0.6, (15, 3))
-    fiducials = colin.task("task-1").fiducials
-    touched = transforms.apply(colin.perturbed_head_to_world(seed), fiducials + noise)
+    touched = touches_on_colin(seed, record["task"])
     for point, position in zip(record["points"], touched.tolist(), strict=True):
         point["positionMm"] = position
-    analysis = scored_analysis(record, colin)
-    with Study.open(host.find("studyPathLineEdit").currentPath) as study:
-        study.add_trial(record, analysis.fits.values(), analysis.target_errors, analysis.score)
+    analysis = scored_analysis({**record, "scenario": "colin27"}, COLIN27)
+    host.widget.logic.session.trainees.study.add_trial(
+        {**record, "scenario": "colin27"},
+        analysis.fits.values(),
+        analysis.target_errors,
+        analysis.score,
+    )
     return touched
+
+
+def put_touches(host: Host, points: np.ndarray) -> None:
+    """Put touches, World, mm, into the scene, and wait until the module has registered them."""
+    setPoints(capturedPointsNode(host.scene), LABELS[: len(points)], points)
+    count = len(points) if len(points) > 2 else 0
+    table = host.find("residualsTable")
+    host.wait_until(lambda: table.rowCount == count, "the touches are registered")
+    host.finish_work()

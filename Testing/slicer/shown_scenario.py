@@ -2,6 +2,7 @@
 
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.scene.scenario_nodes import SceneFileLoader, showScenario
+from Testing.slicer.work_at_once import in_turns
 
 
 def show_whole(scene, scenario):
@@ -16,8 +17,6 @@ def load_files(scene):
     loader = SceneFileLoader(scene, work)
     loader.problemFound.connect(problems.append)
     loader.process()
-    while work.isBusy:
-        work.yieldTime()
-        work.process()
+    in_turns(work)
     work.close()
     return problems

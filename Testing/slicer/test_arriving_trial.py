@@ -9,12 +9,9 @@ import numpy as np
 import pytest
 import slicer
 
-from rastrainer import transforms
-from rastrainer.scenario.scenario import load_scenario
-from rastrainer_simulator.assets import asset_path
 from Testing.slicer.host.opened_journals import OpenedJournals
 from Testing.slicer.host.scene_load import SceneLoad
-from Testing.slicer.recorded_trial import write_recorded_trial
+from Testing.slicer.recorded_trial import COLIN27, touches_on_colin, write_recorded_trial
 
 pytestmark = pytest.mark.usefixtures("own_processes")
 
@@ -23,17 +20,13 @@ TRIAL = str(uuid.UUID(int=9))
 
 
 @pytest.fixture
-def head_to_world():
-    return load_scenario(asset_path("scenarios", "colin27")).perturbed_head_to_world(SEED)
-
-
-@pytest.fixture
-def connected(host, simulator, head_to_world):
+def connected(host, simulator):
     """The module with a chosen trainee and a simulator that has recorded their trial."""
     write_recorded_trial(Path.home() / "RASTrainer" / "trials", TRIAL, 16.0)
 
     def answer(name, _arguments):
-        truth = {"headToWorld": head_to_world.ravel().tolist(), "trueTreMm": 0.5}
+        head_to_world = COLIN27.perturbed_head_to_world(SEED).ravel().tolist()
+        truth = {"headToWorld": head_to_world, "trueTreMm": 0.5}
         return truth if name == "SubmitRegistration" else {}
 
     simulator.responder = answer
@@ -46,12 +39,9 @@ def connected(host, simulator, head_to_world):
 
 
 @pytest.fixture
-def record(make_record, head_to_world):
-    """A trial whose touches are exact."""
-    colin = load_scenario(asset_path("scenarios", "colin27"))
-    touched = transforms.apply(head_to_world, colin.task("task-1").fiducials)
+def record(make_record):
     record = make_record(TRIAL, scenario="colin27")
-    for point, position in zip(record["points"], touched.tolist(), strict=True):
+    for point, position in zip(record["points"], touches_on_colin(SEED).tolist(), strict=True):
         point["positionMm"] = position
     return record
 
@@ -69,9 +59,15 @@ def test_a_trial_is_stored_scored_and_assessed_while_the_window_stays_responsive
 ):
     host = connected
     host.keeps_lock = True
-    simulator.send_command("TrialCompleted", record)
-    host.wait_until(lambda: host.find("historyTable").rowCount == 1, "the trial is stored")
-    host.wait_until(lambda: host.text("feedbackText").startswith("Score "), "the feedback is shown")
+    with SceneLoad(host.scene) as load:
+        simulator.send_command("TrialCompleted", record)
+        host.wait_until(lambda: host.find("historyTable").rowCount == 1, "the trial is stored")
+        host.wait_until(lambda: host.text("feedbackText").startswith("Score "), "it is assessed")
+        host.finish_work()
+    # It is shown in turns: a table of the scene comes with its plot and that with its series.
+    assert host.scene.GetFirstNodeByName("Task 1 fiducials") is not None
+    assert load.most.nodes <= 4
+    assert load.total.nodes >= 18
     assert [name for name, _arguments in simulator.commands if name != "Hello"] == [
         "AcknowledgeTrial",
         "SubmitRegistration",
@@ -97,15 +93,3 @@ def test_a_trial_that_is_not_scored_still_gets_feedback(connected, simulator, re
         lambda: feedback().startswith(("Point ", "No touch ")), "the feedback is shown"
     )
     assert len(journals.pids()) == 1
-
-
-def test_a_trial_is_shown_in_turns_of_few_nodes_each(connected, simulator, record):
-    host = connected
-    with SceneLoad(host.scene) as load:
-        simulator.send_command("TrialCompleted", record)
-        host.wait_until(lambda: host.find("trialComboBox").count, "it is scored")
-        host.finish_work()
-    assert host.scene.GetFirstNodeByName("Task 1 fiducials") is not None
-    # A table of the scene comes with its plot and that with its series.
-    assert load.most.nodes <= 4
-    assert load.total.nodes >= 18

@@ -27,45 +27,44 @@ def views():
     return manager.layout, manager.tableViewCount, manager.plotViewCount
 
 
-def test_the_score_is_shown_as_a_table_until_the_button_is_pressed_again(looking):
+def test_tables_and_the_learning_curve_are_shown_until_the_button_is_pressed_again(looking):
     looking.press("showTablesButton")
     assert looking.shown_tables() == ["Score"]
-    looking.idle_for(0.3)
+    looking.finish_work()
     assert looking.find("showTablesButton").checked
     looking.press("showTablesButton")
     assert views() == (OWN, 0, 0)
-
-
-def test_the_learning_curve_is_shown_until_the_button_is_pressed_again(looking):
     looking.press("learningCurveButton")
     plot = slicer.app.layoutManager().plotWidget(0).mrmlPlotViewNode()
     assert plot.GetPlotChartNode().GetTitle() == "Learning curve of T001"
-    looking.press("learningCurveButton")
-    assert views() == (OWN, 0, 0)
-
-
-def test_the_later_of_the_two_is_shown_and_then_the_users_layout(looking):
-    looking.press("learningCurveButton")
     looking.press("showTablesButton")
     looking.wait_until(
         lambda: not looking.find("learningCurveButton").checked, "the other is not shown any more"
     )
     assert views()[1:] == (1, 0)
     looking.press("showTablesButton")
+    looking.press("learningCurveButton")
+    looking.press("learningCurveButton")
     assert views() == (OWN, 0, 0)
 
 
-@pytest.mark.parametrize("how", ["folded", "left", "closed"])
-def test_leaving_a_section_restores_the_users_layout(looking, how):
-    looking.press("showTablesButton")
-    assert views()[0] != OWN
-    if how == "folded":
+def test_leaving_a_section_the_module_or_slicer_restores_the_users_layout(looking):
+    def fold():
         looking.find("scoreCollapsibleButton").collapsed = True
         looking.process_events()
-    elif how == "left":
+
+    def leave():
         looking.leave()
-    else:
-        looking.widget.cleanup()
+        looking.enter()
+
+    for end in (fold, leave):
+        looking.press("showTablesButton")
+        assert views()[0] != OWN
+        end()
+        assert views() == (OWN, 0, 0)
+        looking.wait_until(lambda: not looking.find("showTablesButton").checked, "it follows")
+    looking.press("showTablesButton")
+    looking.widget.cleanup()
     assert views() == (OWN, 0, 0)
 
 

@@ -7,19 +7,22 @@ import numpy as np
 import pytest
 import slicer
 
-from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import find_track
 from rastrainer.scenario.points import LABELS
-from rastrainer.scenario.scenario import load_scenario
 from rastrainer.sections import scenario_logic
 from rastrainer.sections.new_scenario_logic import NewScenarioOptions
 from rastrainer.sections.score_logic import SLICES_A_TURN
-from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints
+from rastrainer.slicer.scene.nodes import Role, findNode, setPoints
 from rastrainer.slicer.scene.robot_description import readArmChain
 from rastrainer.slicer.scene.trial_replay import STATES_A_SLICE, showReplay
-from rastrainer_simulator.assets import asset_path
-from Testing.slicer.recorded_trial import URDF, store_trial_on_colin, write_recorded_trial
+from Testing.slicer.recorded_trial import (
+    URDF,
+    put_touches,
+    store_trial_on_colin,
+    touches_on_colin,
+    write_recorded_trial,
+)
 
 FIDUCIALS = "vtkMRMLMarkupsFiducialNode"
 
@@ -51,13 +54,9 @@ def test_a_chosen_list_is_not_mistaken_for_the_next_one_with_its_id(host, sessio
 def test_a_plan_placed_at_once_in_the_next_scene_is_not_mapped_by_the_old_registration(
     host, session
 ):
-    colin = load_scenario(asset_path("scenarios", "colin27"))
     session.scenario.show("colin27", "task-1")
-    touched = transforms.apply(colin.perturbed_head_to_world(3), colin.task("task-1").fiducials)
-    setPoints(capturedPointsNode(host.scene), LABELS, touched)
-    host.wait_until(
-        lambda: session.registration.comparison is not None, "the touches are registered"
-    )
+    host.finish_work()
+    put_touches(host, touches_on_colin())
     host.scene.Clear(0)
     target = add_list(host.scene, "target", np.zeros((1, 3)))
     with pytest.raises(InputError, match="no registration to map the plan with"):
@@ -111,8 +110,7 @@ def test_a_head_found_in_a_closed_scenes_volume_is_not_used_for_the_next_scenes(
     assert findNode(host.scene, "vtkMRMLSegmentationNode", Role.HEAD_SEGMENT) is None
 
 
-def test_nothing_is_added_to_a_scene_while_it_is_being_loaded(host, session):
-    session.training._state = {"phase": "idle"}
+def test_nothing_is_added_to_a_scene_while_it_is_being_loaded(host, session):  # noqa: ARG001
     count = host.scene.GetNumberOfNodes()
     host.scene.StartState(host.scene.BatchProcessState)
     host.widget.onTimeout()

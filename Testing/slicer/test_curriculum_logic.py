@@ -98,17 +98,14 @@ def test_a_simulator_that_connects_later_is_sent_everything_again(lesson):
     assert json.dumps(lesson.sent) == json.dumps(2 * before)
 
 
-def test_a_deleted_or_archived_trainee_is_sent_as_one_without_a_curriculum(lesson):
+def test_an_archived_or_elsewhere_deleted_trainee_has_no_curriculum_any_more(lesson, tmp_path):
     lesson.logic.choose(Curriculum.read(SHIPPED), isForEverybody=True)
+    assert list(lesson.logic.standings()) == ["A", "B"]
     lesson.trainees.choose("A")
     lesson.trainees.change(archived=True)
     last = lesson.sent[2]
     assert (last["trainee"], "assignments" in last) == ("A", False)
-
-
-def test_a_trainee_deleted_at_another_seat_is_gone_once_a_simulator_connects(lesson, tmp_path):
-    lesson.logic.choose(Curriculum.read(SHIPPED), isForEverybody=True)
-    assert list(lesson.logic.standings()) == ["A", "B"]
+    lesson.trainees.change(archived=False)
     with Study.open(tmp_path / "study.db") as elsewhere:
         elsewhere.delete_trainee("A")
     lesson.room.link.opened.emit()

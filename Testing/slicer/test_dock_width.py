@@ -24,8 +24,6 @@ def named(class_name):
 SECTIONS, GROUPS = named("ctkCollapsibleButton"), named("ctkCollapsibleGroupBox")
 PATHS, TABLES = named("ctkPathLineEdit"), named("QTableWidget")
 TEXTS = [name for name in named("QLabel") if name.endswith("Text")]
-LOOK = ["sizePolicy", "sizeAdjustPolicy", "maximumSize", "wordWrap", "textFormat"]
-"""Properties that tables and labels have from one function."""
 
 
 def open_only(host, opened):
@@ -57,7 +55,7 @@ def test_sections_that_are_opened_filled_and_closed_do_not_widen_the_dock(host):
             assert host.width() <= WIDEST, (opened, amount)
 
 
-def test_nothing_is_cut_in_the_narrowest_dock(host):
+def test_nothing_is_cut_in_the_narrowest_dock_and_closed_sections_leave_no_gaps(host):
     host.open()
     for group in GROUPS:
         host.find(group).collapsed = False
@@ -65,10 +63,6 @@ def test_nothing_is_cut_in_the_narrowest_dock(host):
         open_only(host, opened)
         for width in (host.minimum_width(), DOCK_WIDTH):
             assert host.cut_off(width) == [], (opened, width)
-
-
-def test_closed_sections_leave_no_gaps(host):
-    host.open()
     open_only(host, None)
     assert host.cut_off(DOCK_WIDTH) == []
     sections = [host.find(name)._qt for name in SECTIONS]
@@ -80,25 +74,7 @@ def test_closed_sections_leave_no_gaps(host):
     assert max(gaps) <= 4, gaps
 
 
-def test_no_file_gives_a_table_or_a_label_a_look_of_its_own():
-    for path in sorted(UI.glob("*.ui")):
-        for widget in ElementTree.parse(path).iter("widget"):
-            if widget.get("class") in ("QTableWidget", "QLabel"):
-                own = {each.get("name") for each in widget.findall("property")}
-                assert not own & set(LOOK), widget.get("name")
-    panels = UI.parents[1] / "Logic" / "rastrainer" / "sections"
-    made = [path.name for path in panels.glob("*.py") if "qt.QTableWidget()" in path.read_text()]
-    assert made == []
-
-
-def test_all_sections_at_once_do_not_widen_the_dock(host):
-    host.open()
-    for name in SECTIONS + GROUPS:
-        host.find(name).collapsed = False
-    assert host.minimum_width() <= LIMIT
-
-
-def test_long_names_of_nodes_and_paths_do_not_widen_the_dock(host):
+def test_all_sections_at_once_with_long_names_of_nodes_and_paths_do_not_widen_the_dock(host):
     host.open()
     for class_name in ("vtkMRMLMarkupsFiducialNode", "vtkMRMLModelNode", "vtkMRMLScalarVolumeNode"):
         host.scene.AddNewNodeByClass(class_name, "A name as long as a file's path " * 9)

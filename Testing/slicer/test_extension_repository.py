@@ -41,12 +41,9 @@ def cmake(tree):
     return (tree / "CMakeLists.txt").read_text(encoding="utf-8")
 
 
-def test_the_tree_is_small(tree, files):
+def test_tree_and_clone_are_far_below_the_limit_of_the_index(tree, files, tmp_path):
     assert len(files) <= 300
     assert size_mb(tree) <= 15
-
-
-def test_a_clone_with_its_history_is_far_below_the_limit_of_the_index(tree, tmp_path):
     origin, clone = tmp_path / "origin", tmp_path / "clone"
     git = ["git", *NAMES, f"--git-dir={origin}", f"--work-tree={tree}"]
     subprocess.run([*git[:5], "init", "-q", "--bare", "-b", "main", str(origin)], check=True)
@@ -56,15 +53,12 @@ def test_a_clone_with_its_history_is_far_below_the_limit_of_the_index(tree, tmp_
     assert size_mb(clone) <= 30
 
 
-def test_only_the_module_and_what_describes_it_are_in_the_tree(files):
+def test_only_the_module_and_what_describes_it_are_in_the_tree(tree, files):
     names = "CMakeLists.txt LICENSE.txt LICENSES NOTICE.md RASTrainer README.md Screenshots"
     assert {name.partition("/")[0] for name in files} == set(names.split())
     ours = ROOT / "RASTrainer"
     modules = {path.relative_to(ROOT).as_posix() for path in ours.rglob("*.py")}
     assert {name for name in files if name.endswith(".py")} == modules
-
-
-def test_every_text_can_be_read_by_the_review(tree, files):
     for name in files:
         if name.endswith((".py", ".md", ".txt")):
             (tree / name).read_text(encoding="utf-8")

@@ -173,14 +173,10 @@ def test_bad_arguments_exit_with_status_2_and_a_message(changes, words, tmp_path
     assert "Traceback" not in error
 
 
-def test_an_unusable_output_folder_is_reported_before_the_first_trial(tmp_path, capfd):
-    (tmp_path / "file").write_text("x")
-    assert headless.main(arguments(tmp_path / "file" / "folder", 18944)) == 2
-    assert "cannot be made" in capfd.readouterr().err
-
-
-def test_a_file_that_is_not_a_study_is_left_alone(tmp_path, capfd):
+def test_an_unusable_output_folder_is_reported_and_left_alone(tmp_path, capfd):
     (tmp_path / "study.db").write_text("my notes")
+    assert headless.main(arguments(tmp_path / "study.db" / "folder", 18944)) == 2
+    assert "cannot be made" in capfd.readouterr().err
     assert headless.main(arguments(tmp_path, 18944)) == 2
     assert "study" in capfd.readouterr().err
     assert (tmp_path / "study.db").read_text() == "my notes"

@@ -1,5 +1,6 @@
 """The host behaves as PythonQt does, as measured in Slicer 5.13."""
 
+import importlib
 import json
 import logging
 import os
@@ -23,9 +24,7 @@ pytestmark = pytest.mark.usefixtures("host")
 
 @pytest.fixture
 def qt():
-    import qt
-
-    return qt
+    return importlib.import_module("qt")
 
 
 def test_a_property_is_an_attribute(qt):
@@ -49,10 +48,6 @@ def test_an_unknown_member_raises_on_reading_and_on_assigning(qt):
         qt.QNoSuchWidget  # noqa: B018
     with pytest.raises(AttributeError):  # Qt 6 has it, Slicer's Qt 5.15 does not.
         qt.QCheckBox().checkStateChanged  # noqa: B018
-
-
-def test_an_unknown_signal_returns_false_and_raises_nothing(qt):
-    button = qt.QPushButton()
     assert button.connect("clicked()", print) is True
     assert button.connect("nosuch()", print) is False
 
@@ -90,15 +85,6 @@ def test_keyword_arguments_and_numpy_numbers_are_refused(qt):
         qt.QPushButton().setText(text="a")
     with pytest.raises(TypeError, match="int64"):
         qt.QSpinBox().setValue(np.int64(3))
-
-
-def test_a_program_that_cannot_start_is_reported(qt, host):
-    errors = []
-    process = qt.QProcess()
-    process.connect("errorOccurred(QProcess::ProcessError)", errors.append)
-    process.start("/nosuch/program", [])
-    host.wait_until(lambda: errors, "the error")
-    assert errors == [0]
 
 
 def test_a_missing_ui_file_or_child_raises():

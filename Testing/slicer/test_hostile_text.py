@@ -6,17 +6,12 @@ import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from rastrainer import transforms
 from rastrainer.igtl.content import String
 from rastrainer.protocol import DeviceName
-from rastrainer.scenario.points import LABELS
-from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
 from rastrainer.widgets.plain_text import LONGEST_TEXT, toolTip
-from rastrainer_simulator.assets import asset_path
+from Testing.slicer.recorded_trial import COLIN27
 from Testing.slicer.simulator_double import connect_module
 
 MODULE = Path(__file__).parents[2] / "RASTrainer"
@@ -77,15 +72,6 @@ def shows_verbatim(host, *names, text=HOSTILE):
 # The files
 
 
-def test_each_label_shows_its_text_as_it_is_and_wraps_it_where_it_comes_at_run_time(host):
-    host.open()
-    for name in (label.get("name") for label in labels()):
-        label = host.find(name)
-        assert label.textFormat == (RICH if name.endswith("Light") else PLAIN), name
-        if name.endswith("Text"):
-            assert (label.wordWrap, label.minimumWidth) == (True, 1), name
-
-
 def test_choice_boxes_are_not_as_wide_as_their_longest_entry():
     policy = "QComboBox::AdjustToMinimumContentsLengthWithIcon"
     for box in widgets():
@@ -109,11 +95,15 @@ def test_panels_fill_labels_through_the_functions_that_limit_the_text():
 # The entry points
 
 
-def test_no_label_grows_with_a_long_word(open_module):
+def test_each_label_shows_its_text_as_it_is_and_does_not_grow_with_a_long_word(open_module):
     host, before = open_module, open_module.minimum_width()
     from rastrainer.widgets.controls import setText
 
-    names = [label.get("name") for label in labels() if label.get("name").endswith("Text")]
+    named = {label.get("name") for label in labels()}
+    lights = {name for name in named if name.endswith("Light")}
+    assert {host.find(name).textFormat for name in lights} == {RICH}
+    assert {host.find(name).textFormat for name in named - lights} == {PLAIN}
+    names = [name for name in named if name.endswith("Text")]
     for name in names:
         setText(host.find(name), HOSTILE)
     shows_verbatim(host, *names)
@@ -138,35 +128,6 @@ def test_the_state_of_the_trial_and_a_question_about_its_trainee(connected, simu
     assert "&lt;b&gt;bold" in host.messages[-1].text
 
 
-def test_the_simulators_reason_for_refusing_a_trial_is_shown_unchanged(connected, simulator):
-    host = connected
-    simulator.responder = lambda name, _arguments: HOSTILE if name == "StartTask" else {}
-    host.press("createTraineeButton")
-    host.press("startTrialRunButton")
-    host.wait_until(lambda: "bold" in host.text("trainingMessageText"), "the refusal is shown")
-    shows_verbatim(host, "trainingMessageText")
-
-
-def test_the_reachability_of_a_plan_is_shown_unchanged(connected, simulator):
-    host = connected
-    simulator.responder = lambda _name, _arguments: {"reachable": False, "reason": HOSTILE}
-    host.press("showScenarioButton")
-    host.finish_work()
-    colin = load_scenario(asset_path("scenarios", "colin27"))
-    noise = np.random.default_rng(3).normal(0.0, 0.6, (15, 3))
-    touches = transforms.apply(
-        colin.perturbed_head_to_world(3), colin.task("task-1").fiducials + noise
-    )
-    setPoints(capturedPointsNode(host.scene), LABELS, touches)
-    host.press("placeTargetButton")
-    host.place(0.0, 0.0, 20.0)
-    host.wait_until(lambda: host.find("sendPlanButton").enabled, "the plan can be sent")
-    host.press("sendPlanButton")
-    host.wait_until(lambda: "bold" in host.text("reachableText"), "the reason is shown")
-    shows_verbatim(host, "reachableText")
-    assert host.find("reachableLight").textFormat == RICH
-
-
 def test_names_of_a_host_a_node_and_a_task(open_module, tmp_path):
     host = open_module
     host.find("hostLineEdit").text = HTML
@@ -182,32 +143,11 @@ def test_names_of_a_host_a_node_and_a_task(open_module, tmp_path):
     host.answer("Save the scenario", str(tmp_path / "copy.zip"))
     host.press("exportScenarioButton")
     assert host.minimum_width() <= DOCK_WIDTH
-    colin = load_scenario(asset_path("scenarios", "colin27"))
-    task = replace(colin.task("task-1"), title=HOSTILE)
-    host.widget.logic.session.chooseTask(task, colin)
+    task = replace(COLIN27.task("task-1"), title=HOSTILE)
+    host.widget.logic.session.chooseTask(task, COLIN27)
     assert host.text("startTaskButton").startswith("Start <b>bold</b>")
     assert len(host.text("startTaskButton")) < 80
     assert host.minimum_width() <= DOCK_WIDTH
-
-
-def test_the_programs_last_output_and_pairing_code_are_shown_unchanged(open_module, tmp_path):
-    host = open_module
-    program = tmp_path / "rastrainer"
-    address = f"<b>bold</b>{LONG[:1500]}"
-    program.write_text(
-        "#!/bin/sh\n"
-        f'echo "RASTrainer simulator serves views on {address}, pairing code 012345"\n'
-        f'until test -e "{tmp_path}/over"; do sleep 0.1; done\n'
-        f'echo "{HTML}{LONG[:1500]}"\nexit 3\n'
-    )
-    program.chmod(0o755)
-    host.type("programPathLineEdit", str(program))
-    host.press("startSimulatorButton")
-    host.wait_until(lambda: "bold" in host.text("pairingText"), "the address is shown")
-    shows_verbatim(host, "pairingText", text="<b>bold</b>")
-    (tmp_path / "over").touch()
-    host.wait_until(lambda: "ended by itself" in host.text("programText"), "its end is shown")
-    shows_verbatim(host, "programText", text=HTML)
 
 
 # Tool tips and questions

@@ -1,8 +1,9 @@
-"""A module that has nothing to do costs Slicer nothing: no paint, no layout, no question."""
+"""A module that has nothing to do, or is not seen, costs Slicer nothing: no paint, no poses."""
 
 import json
 
 import pytest
+import slicer
 
 from rastrainer.igtl.content import String
 from rastrainer.protocol import DeviceName
@@ -22,36 +23,33 @@ def idle_activity(host):
     return watch
 
 
-@pytest.fixture
-def idle_state():
-    """State of the simulator while no trial is open."""
-    return String(json.dumps({"phase": "idle", "instruction": "Ask for a trial."}))
-
-
-def test_without_a_connection_nothing_is_written_or_drawn_again(host):
-    host.open()
-    watch = idle_activity(host)
-    assert (watch.writes, watch.drawn) == ([], [])
-    assert 0 < watch.ticks <= TICKS
-
-
-def test_with_all_sections_open_nothing_is_written_or_drawn_again(host):
+def test_without_a_connection_and_with_all_sections_open_nothing_is_written_or_drawn_again(host):
     host.open()
     for name in vars(host.widget.ui):
         if name.endswith(("CollapsibleButton", "GroupBox")) and "collapsed" in dir(host.find(name)):
             host.find(name).collapsed = False
     watch = idle_activity(host)
     assert (watch.writes, watch.drawn) == ([], [])
+    assert 0 < watch.ticks <= TICKS
 
 
-def test_connected_nothing_is_written_or_drawn_again(host, simulator, idle_state):
+def test_connected_nothing_is_written_or_drawn_again_and_a_state_is_shown_without_a_poll(
+    host, simulator
+):
+    def tell(instruction):
+        state = String(json.dumps({"phase": "idle", "instruction": instruction}))
+        simulator.send(DeviceName.SIM_STATE, state)
+        host.wait_until(lambda: instruction in host.text("trainingText"), "the state arrives")
+
     host.open()
     connect_module(host, simulator)
-    simulator.send(DeviceName.SIM_STATE, idle_state)
-    host.wait_until(lambda: "Ask for" in host.text("trainingText"), "the state arrives")
+    tell("Ask for a trial.")
     watch = idle_activity(host)
     assert (watch.writes, watch.drawn) == ([], [])
     assert watch.ticks <= TICKS
+    with ActivityWatch() as watch:
+        tell("Now.")
+    assert watch.ticks <= watch.clock // 5 + 2
 
 
 def test_behind_another_module_without_a_connection_no_timer_runs(host):
@@ -61,18 +59,6 @@ def test_behind_another_module_without_a_connection_no_timer_runs(host):
     # Changes are shown at once all the same.
     host.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Mine")
     host.wait_until(lambda: host.widget.logic.session.restS(False) is None, "it rests again")
-
-
-def test_a_state_of_a_trial_is_shown_without_a_poll(host, simulator):
-    host.open()
-    connect_module(host, simulator)
-    host.idle_for(1.0)
-    with ActivityWatch() as watch:
-        simulator.send(
-            DeviceName.SIM_STATE, String(json.dumps({"phase": "idle", "instruction": "Now."}))
-        )
-        host.wait_until(lambda: "Now." in host.text("trainingText"), "the state arrives")
-    assert watch.ticks <= watch.clock // 5 + 2
 
 
 def test_a_sentence_is_shown_and_hidden_in_a_closed_section_without_a_layout(host):
@@ -90,3 +76,31 @@ def test_a_sentence_is_shown_and_hidden_in_a_closed_section_without_a_layout(hos
     assert label.visible
     setText(label, "")
     assert not label.visible
+
+
+@pytest.mark.parametrize(
+    ("layout", "is_entered", "in_slices", "is_seen"),
+    [
+        ("FourUpView", True, False, True),
+        ("FourUpView", False, False, True),
+        ("OneUp3DView", False, False, True),
+        ("OneUp3DView", False, True, True),
+        ("OneUpRedSliceView", True, False, True),
+        ("OneUpRedSliceView", False, False, False),
+        ("OneUpRedSliceView", False, True, True),
+        ("OneUpPlotView", False, True, False),
+        ("OneUpPlotView", True, False, True),
+    ],
+)
+def test_visibility_depends_on_the_layout_and_on_the_module(
+    host, layout, is_entered, in_slices, is_seen
+):
+    from rastrainer.sections.application import isAnythingVisible
+
+    number = getattr(slicer.vtkMRMLLayoutNode, f"SlicerLayout{layout}")
+    slicer.app.layoutManager().setLayout(number)
+    assert isAnythingVisible(is_entered, in_slices) is is_seen
+    host.minimize()
+    assert not isAnythingVisible(is_entered, in_slices)
+    host.minimize(False)
+    assert isAnythingVisible(is_entered, in_slices) is is_seen

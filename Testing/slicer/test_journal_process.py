@@ -116,13 +116,3 @@ def test_closing_slicer_ends_the_process_that_reads_the_journal(tmp_path, make_r
         journals.close()
         host.close()
     wait_until(lambda: not runs(pid), lambda: None)
-
-
-def test_without_slicers_python_a_thread_reads_the_journal(panel, records, journals):
-    panel.widget.logic.session.places.python.unlink()
-    write_recorded_trial(records, TRIAL, 16.0)
-    choose_trial(panel)
-    wait_for_feedback(panel)
-    panel.press("replayButton")
-    assert panel.scene.GetFirstNodeByName(REPLAY) is not None
-    assert set(journals.pids()) == {os.getpid()}

@@ -26,51 +26,49 @@ def start(start_slicer):
 
 
 def test_choices_are_kept_across_a_restart(start, tmp_path):
+    checked = {
+        "windowCheckBox": False,
+        "networkCheckBox": True,
+        "tutorialCheckBox": False,
+        "headColoredCheckBox": True,
+        "slicesNextPointCheckBox": False,
+        "slicesToolCheckBox": True,
+        "slicesAlongCheckBox": False,
+    }
+    typed = {"hostLineEdit": "10.0.0.7", "indexLineEdit": "https://wheels.example.org/simple"}
+    paths = {
+        "studyPathLineEdit": str(tmp_path / "mine.db"),
+        "wheelsPathLineEdit": str(tmp_path / "wheels"),
+        "programPathLineEdit": str(tmp_path / "rastrainer"),
+    }
+    chosen = {
+        "modeComboBox": "Headset",
+        "scenarioComboBox": "A ball",
+        "taskComboBox": "Task-2",
+        "kindComboBox": "Affine",
+    }
     host = start()
-    host.type("hostLineEdit", "10.0.0.7")
-    host.type("portSpinBox", "18999")
-    host.check("windowCheckBox", False)
-    host.check("networkCheckBox")
-    host.check("tutorialCheckBox", False)
-    host.choose("modeComboBox", "Headset")
     with new_folder(tmp_path / "ball") as made:
         write_scenario(made, made_up_scenario(), ball_head())
     host.answer("Add a scenario", pack(tmp_path / "ball", tmp_path / "ball.zip"))
     host.press("importScenarioButton")
     host.choose("scenarioComboBox", "Colin27")
-    host.choose("scenarioComboBox", "A ball")
-    host.choose("taskComboBox", "Task-2")
-    host.choose("kindComboBox", "Affine")
-    host.check("headColoredCheckBox")
-    host.check("slicesNextPointCheckBox", False)
-    host.check("slicesToolCheckBox")
-    host.check("slicesAlongCheckBox", False)
-    host.type("studyPathLineEdit", str(tmp_path / "mine.db"))
-    host.type("wheelsPathLineEdit", str(tmp_path / "wheels"))
-    host.type("programPathLineEdit", str(tmp_path / "rastrainer"))
-    host.type("indexLineEdit", "https://wheels.example.org/simple")
+    for name, value in (*typed.items(), *paths.items(), ("portSpinBox", "18999")):
+        host.type(name, value)
+    for name, value in checked.items():
+        host.check(name, value)
+    for name, value in chosen.items():
+        host.choose(name, value)
     kept = {each.key for each in vars(settings).values() if isinstance(each, Setting)}
     # An address needs a server: test_study_at_an_address.py has one.
     assert kept - {STUDY_ADDRESS.key} <= set(slicer.app.settings().allKeys())
     host = start()
-    assert host.text("hostLineEdit") == "10.0.0.7"
+    assert {name: host.find(name).checked for name in checked} == checked
+    assert {name: host.text(name) for name in typed} == typed
+    assert {name: host.find(name).currentPath for name in paths} == paths
+    assert {name: host.find(name).currentText for name in chosen} == chosen
     assert host.find("portSpinBox").value == 18999
-    assert not host.find("windowCheckBox").checked
-    assert host.find("networkCheckBox").checked
-    assert host.find("modeComboBox").currentText == "Headset"
-    assert not host.find("tutorialCheckBox").checked
-    assert host.find("scenarioComboBox").currentText == "A ball"
-    assert host.find("taskComboBox").currentText == "Task-2"
-    assert host.text("indexLineEdit") == "https://wheels.example.org/simple"
-    assert host.find("kindComboBox").currentText == "Affine"
     assert host.widget.logic.session.registration.kind == "affine"
-    assert host.find("headColoredCheckBox").checked
-    assert not host.find("slicesNextPointCheckBox").checked
-    assert host.find("slicesToolCheckBox").checked
-    assert not host.find("slicesAlongCheckBox").checked
-    assert host.find("studyPathLineEdit").currentPath == str(tmp_path / "mine.db")
-    assert host.find("wheelsPathLineEdit").currentPath == str(tmp_path / "wheels")
-    assert host.find("programPathLineEdit").currentPath == str(tmp_path / "rastrainer")
 
 
 def test_unusable_settings_leave_the_defaults(start):

@@ -46,13 +46,9 @@ def test_an_empty_host_is_reported_and_host_and_port_outlive_the_scene(host):
 
 
 @pytest.mark.usefixtures("connected")
-def test_the_connection_outlives_a_cleared_scene(host, simulator):
+def test_the_connection_outlives_a_cleared_scene_and_any_deleted_node(host, simulator):
     host.clear_scene()
     host.wait_until(lambda: len(simulator.commands) > 1, "the module sends its greeting again")
-
-
-@pytest.mark.usefixtures("connected")
-def test_any_node_may_be_deleted_while_connected(host, simulator):
     host.delete_nodes()
 
     def is_connected_again():
@@ -112,16 +108,6 @@ def test_without_a_network_sample_data_are_reported_and_leave_nothing(host, monk
     assert "could not be downloaded" in host.messages[-1].text
 
 
-def test_every_choice_possible_without_a_simulator_works(host):
-    host.choose("scenarioComboBox", 0)
-    host.choose("taskComboBox", "Task 3")
-    assert "15 fiducials" in host.text("scenarioText")
-    host.check("windowCheckBox", False)
-    host.check("windowCheckBox")
-    host.check("archivedCheckBox")
-    host.check("archivedCheckBox", False)
-
-
 ACTIONS = {"press", "press_slowly", "choose", "check", "click"}
 """Actions of a user; reading a widget's text, or whether it is enabled, is none."""
 
@@ -158,21 +144,3 @@ def test_every_button_box_and_list_is_used_in_a_test():
     names = widgets_of("QPushButton", "QCheckBox", "QComboBox")
     assert len(names) > 60
     assert names - used == set()
-
-
-NOT_IN_THE_TOUR = {
-    "setupButton": "the button at the top sets up what is not set up yet",
-    "removeSetupButton": "it would remove what is set up",
-    "connectToRunningButton": "it needs a Slicer that has crashed",
-    "endRunningButton": "it needs a Slicer that has crashed",
-    "sampleDataButton": "it needs the Internet",
-    "restoreLineButton": "the tour removes no line; the host's tests press it",
-    "raiseLineButton": "the tour's procedure has one line; the host's tests press it",
-    "placeCheckpointButton": "the tour's procedure has its checkpoints; the host's tests press it",
-}
-
-
-def test_the_release_tour_presses_every_button_except_those_listed_here():
-    folder = Path(__file__).parent / "real"
-    used = {name for path in folder.glob("tour_*.py") for name in used_by(path)}
-    assert widgets_of("QPushButton") - used == set(NOT_IN_THE_TOUR)

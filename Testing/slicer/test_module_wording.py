@@ -2,12 +2,8 @@
 
 import ast
 import re
-import socket
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
-
-from rastrainer_simulator.cli.main import main
-from Testing.forked_child import in_child
 
 RASTRAINER = Path(__file__).parents[2] / "RASTrainer"
 LOGIC = RASTRAINER / "Logic" / "rastrainer"
@@ -60,29 +56,3 @@ def test_no_widget_mentions_the_command_line():
     texts = texts_of_widgets()
     assert len(texts) > 200
     assert {place: text for place, text in texts.items() if WORDS.search(text)} == {}
-
-
-def test_the_protocol_field_says_which_page_describes_the_file():
-    (tip,) = [
-        text
-        for place, text in texts_of_widgets().items()
-        if place.endswith("/protocolPathLineEdit/toolTip")
-    ]
-    page = "docs/studies.md"
-    assert page in tip
-    assert "formatVersion" in (RASTRAINER.parent / page).read_text(encoding="utf-8")
-
-
-def start_on_a_port_in_use(folder, port):
-    folders = ["--records", str(folder / "records"), "--config", str(folder / "config")]
-    return main(["simulator", "--port", str(port), "--no-views", *folders])
-
-
-def test_a_simulator_that_cannot_start_is_reported_without_the_command_line(tmp_path, capfd):
-    with socket.socket() as taken:
-        taken.bind(("127.0.0.1", 0))
-        taken.listen()
-        assert in_child(start_on_a_port_in_use, tmp_path, taken.getsockname()[1]) == 2
-    said = capfd.readouterr().err.splitlines()[-1].removeprefix("rastrainer: ")
-    assert "choose another port" in said
-    assert not WORDS.search(said)

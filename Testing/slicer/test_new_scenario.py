@@ -25,7 +25,8 @@ from Testing.slicer.host.cancels import cancels
 pytestmark = pytest.mark.usefixtures("module_widget")
 
 SIZE = 0.75
-"""Size of the heads: small heads are found faster."""
+SPACING = (3.5, 3.5, 3.5)
+"""Size of the heads, and spacing of their images, mm: these are found faster."""
 
 EMPTY = Volume(np.zeros((16, 16, 16), np.float32), np.eye(4))
 
@@ -36,12 +37,6 @@ def package(tmp_path):
         write_scenario(made, made_up_scenario(), ball_head())
         (made / "preview.png").write_bytes(png())
     return pack(tmp_path / "ball", tmp_path / "ball.zip")
-
-
-def unfold(host, *names):
-    for name in names:
-        host.find(name).collapsed = False
-        host.process_events()
 
 
 def nodes(host):
@@ -64,17 +59,39 @@ def ignore(_step, _share):
     """Receive the progress, and do nothing."""
 
 
-def test_a_zip_file_is_added_listed_with_its_picture_and_chosen(host, package):
-    unfold(host, "shareGroupBox")
-    host.answer("Add a scenario", package)
+def add_zip(host, path):
+    host.answer("Add a scenario", path)
     host.press("importScenarioButton")
+
+
+def test_zip_files_are_added_listed_with_their_picture_or_refused(host, package, tmp_path):
+    bad = tmp_path / "bad.zip"
+    with zipfile.ZipFile(bad, "w") as archive:
+        archive.writestr("../../evil.txt", "x")
+    add_zip(host, bad)
+    assert "holds a file with the path" in host.messages[-1].text
+    assert not user_library().exists()
+    assert host.find("scenarioComboBox").count == 1
+    broken = user_library() / "broken"
+    broken.mkdir(parents=True)
+    (broken / "scenario.json").write_text("{")
+    add_zip(host, package)
     assert host.find("scenarioComboBox").currentText == "A ball"
     assert host.find("scenarioPicture").visible
     assert (user_library() / "ball" / "scenario.json").is_file()
     assert host.find("taskComboBox").count == 2
-    host.answer("Add a scenario", package)
-    host.press("importScenarioButton")
+    add_zip(host, package)
     assert "already" in host.messages[-1].text
+    host.choose("scenarioComboBox", "broken")
+    assert "scenario.json" in host.text("scenarioText")
+    assert not host.find("showScenarioButton").enabled
+    host.choose("scenarioComboBox", "A ball")
+    assert host.find("showScenarioButton").enabled
+    assert host.find("removeFaceCheckBox").checked
+    host.answer("Save the scenario", tmp_path / "out.zip")
+    host.press("exportScenarioButton")
+    assert "press Set up first" in host.messages[-1].text
+    assert not (tmp_path / "out.zip").exists()
 
 
 def test_adding_a_zip_file_may_be_canceled_and_leaves_nothing(host, package, monkeypatch):
@@ -89,10 +106,8 @@ def test_adding_a_zip_file_may_be_canceled_and_leaves_nothing(host, package, mon
             ended.set()
 
     monkeypatch.setattr(scenario_files, "unpack", unpack_when_told)
-    unfold(host, "shareGroupBox")
-    host.answer("Add a scenario", package)
     with cancels(host, "importScenarioButton", begun.is_set):
-        host.press("importScenarioButton")
+        add_zip(host, package)
     skip_ahead.set()
     assert "Canceled" in host.text("scenarioText")
     assert host.text("importScenarioButton") == "Add from a zip file"
@@ -101,44 +116,8 @@ def test_adding_a_zip_file_may_be_canceled_and_leaves_nothing(host, package, mon
     assert host.find("scenarioComboBox").count == 1
 
 
-def test_a_hostile_zip_file_is_reported_and_changes_nothing(host, tmp_path):
-    bad = tmp_path / "bad.zip"
-    with zipfile.ZipFile(bad, "w") as archive:
-        archive.writestr("../../evil.txt", "x")
-    unfold(host, "shareGroupBox")
-    host.answer("Add a scenario", bad)
-    host.press("importScenarioButton")
-    assert "holds a file with the path" in host.messages[-1].text
-    assert not user_library().exists()
-    assert host.find("scenarioComboBox").count == 1
-
-
-def test_a_scenario_is_not_written_without_the_simulator_and_that_is_reported(host, tmp_path):
-    unfold(host, "shareGroupBox")
-    assert host.find("removeFaceCheckBox").checked
-    host.answer("Save the scenario", tmp_path / "out.zip")
-    host.press("exportScenarioButton")
-    assert "press Set up first" in host.messages[-1].text
-    assert not (tmp_path / "out.zip").exists()
-
-
-def test_a_broken_scenario_is_listed_with_its_problem_and_cannot_be_used(host, package):
-    broken = user_library() / "broken"
-    broken.mkdir(parents=True)
-    (broken / "scenario.json").write_text("{")
-    unfold(host, "shareGroupBox")
-    host.answer("Add a scenario", package)
-    host.press("importScenarioButton")
-    host.choose("scenarioComboBox", "broken")
-    assert "scenario.json" in host.text("scenarioText")
-    assert not host.find("showScenarioButton").enabled
-    host.choose("scenarioComboBox", "A ball")
-    assert host.find("showScenarioButton").enabled
-
-
 def test_a_volume_without_a_head_is_reported(host):
     host.scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode", "Empty")
-    unfold(host, "newScenarioCollapsibleButton", "adjustHeadGroupBox")
     host.choose("scanComboBox", host.scene.GetFirstNodeByName("Empty"))
     host.press("previewHeadButton")
     assert "holds no image" in host.messages[-1].text
@@ -149,9 +128,13 @@ def test_a_volume_without_a_head_is_reported(host):
 
 
 def test_a_found_head_becomes_a_segment_with_the_displayed_base_and_threshold(host):
-    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "MRI")
-    unfold(host, "newScenarioCollapsibleButton", "adjustHeadGroupBox")
+    volume = add_volume(host.scene, phantom(spacing=SPACING, size=SIZE), "MRI")
     host.choose("scanComboBox", volume)
+    host.type("thresholdSpinBox", "150")
+    host.press("previewHeadButton")
+    assert "no voxel lies above the threshold" in host.messages.pop().text
+    assert findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_PREVIEW) is None
+    host.type("thresholdSpinBox", str(host.find("thresholdSpinBox").minimum))
     host.press("previewHeadButton")
     assert host.messages == []
     node = findNode(host.scene, "vtkMRMLSegmentationNode", Role.HEAD_SEGMENT)
@@ -175,10 +158,9 @@ def test_a_draft_is_hidden_once_a_scenario_is_made_and_shown_when_it_is_found_ag
     monkeypatch.setattr(new_scenario_logic, "planScenario", lambda *_arguments: [])
     monkeypatch.setattr(scenario_files, "load_scenario", lambda _folder: made)
     monkeypatch.setattr(new_scenario_logic, "findSkin", found_once(scenario_logic.findSkin))
-    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "phantom")
+    volume = add_volume(host.scene, phantom(spacing=SPACING, size=SIZE), "phantom")
     rendering = host.scene.AddNode(slicer.vtkMRMLCPURayCastVolumeRenderingDisplayNode())
     volume.AddAndObserveDisplayNodeID(rendering.GetID())
-    unfold(host, "newScenarioCollapsibleButton")
     host.choose("scanComboBox", volume)
     host.press("previewHeadButton")
     draft = [
@@ -200,7 +182,6 @@ def test_a_draft_is_hidden_once_a_scenario_is_made_and_shown_when_it_is_found_ag
 def test_a_preview_shows_a_warning_and_is_where_the_volumes_transform_places_it(host):
     volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 5.0), size=SIZE), "MRI")
     volume.SetAndObserveTransformNodeID(add_transform(host.scene, [0.0, 0.0, 100.0]).GetID())
-    unfold(host, "newScenarioCollapsibleButton", "adjustHeadGroupBox")
     host.choose("scanComboBox", volume)
     host.type("cutSpinBox", "65")
     host.press("previewHeadButton")
@@ -211,20 +192,9 @@ def test_a_preview_shows_a_warning_and_is_where_the_volumes_transform_places_it(
     assert bounds[5] == pytest.approx(100.0 + 70.0 * SIZE, abs=3.0)
 
 
-def test_the_typed_threshold_is_used_to_find_the_head(host):
-    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "MRI")
-    unfold(host, "newScenarioCollapsibleButton", "adjustHeadGroupBox")
-    host.choose("scanComboBox", volume)
-    host.type("thresholdSpinBox", "150")
-    host.press("previewHeadButton")
-    assert "no voxel lies above the threshold" in host.messages[-1].text
-    assert findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_PREVIEW) is None
-
-
 @pytest.mark.usefixtures("own_processes")
 def test_a_canceled_preview_leaves_nothing_behind(host):
-    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "MRI")
-    unfold(host, "newScenarioCollapsibleButton", "adjustHeadGroupBox")
+    volume = add_volume(host.scene, phantom(spacing=SPACING, size=SIZE), "MRI")
     host.choose("scanComboBox", volume)
     before = nodes(host)
     with cancels(host, "makeScenarioButton"):
@@ -236,32 +206,20 @@ def test_a_canceled_preview_leaves_nothing_behind(host):
     assert nodes(host) == before
 
 
-@pytest.mark.usefixtures("own_processes")
-def test_canceling_a_search_for_another_head_keeps_the_one_that_is_shown(host):
-    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "MRI")
-    host.press("showScenarioButton")
-    host.finish_work()
-    unfold(host, "otherHeadGroupBox")
-    host.choose("headModelComboBox", volume)
-    before = nodes(host)
-    with cancels(host, "useHeadButton"):
-        host.press("useHeadButton")
-    assert host.text("otherHeadText") == "Canceled; nothing has changed."
-    assert host.text("useHeadButton") == "Use as the head"
-    assert nodes(host) == before
-    assert findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_MODEL).GetDisplayVisibility()
+def wanted(host):
+    """Return the options that the section New scenario shows."""
+    panels = host.widget._panels._panels
+    (panel,) = [each for each in panels if type(each).__name__ == "NewScenarioPanel"]
+    return panel._wanted()
 
 
 def test_the_default_setup_is_shown_until_it_is_changed(host):
-    unfold(host, "newScenarioCollapsibleButton", "setUpGroupBox")
-    form = host.widget._panels._panels
-    (panel,) = [each for each in form if type(each).__name__ == "NewScenarioPanel"]
-    assert panel._wanted().setUp == SetUp()
+    assert wanted(host).setUp == SetUp()
     host.type("head0SpinBox", "500")
     host.type("shift0SpinBox", "3")
     host.type("turn0SpinBox", "180")
     host.type("base1SpinBox", "-40")
-    changed = panel._wanted().setUp
+    changed = wanted(host).setUp
     assert changed.head.center_mm == (500.0, 0.0, 220.0)
     assert changed.perturbation == Perturbation(3.0, 180.0, 3.0)
     assert changed.robot_base_mm == (0.0, -40.0)
@@ -272,22 +230,14 @@ def test_a_plan_in_the_scene_is_included_in_the_scenario(host):
     setPoints(targets, ("Tumor", "Cyst"), np.array([[1.0, 2, 3], [4, 5, 6]]))
     line = host.scene.AddNewNodeByClass("vtkMRMLMarkupsLineNode", "Biopsy")
     setPoints(line, ("a", "b"), np.array([[0.0, 0, 90], [1, 2, 3]]))
-    unfold(host, "newScenarioCollapsibleButton", "planForScenarioGroupBox")
     host.choose("plannedTargetsComboBox", targets)
     host.choose("plannedTrajectoryComboBox", line)
-    host.check("handPlacedCheckBox")
-    host.check("handPlacedCheckBox", False)
-    unfold(host, "adjustHeadGroupBox")
-    host.check("skullCheckBox", False)
-    host.check("volumeCheckBox", False)
+    for name in ("handPlacedCheckBox", "skullCheckBox", "volumeCheckBox"):
+        host.check(name, not host.find(name).checked)
     host.type("sourceLineEdit", "The Head Study")
     host.type("licenseLineEdit", "CC BY 4.0")
-    (panel,) = [
-        each for each in host.widget._panels._panels if type(each).__name__ == "NewScenarioPanel"
-    ]
-    wishes = panel._wanted()
-    assert not wishes.hasSkull
-    assert not wishes.hasVolume
+    wishes = wanted(host)
+    assert (wishes.hasSkull, wishes.hasVolume, wishes.isHandPlaced) == (False, False, True)
     assert (wishes.source, wishes.license) == ("The Head Study", "CC BY 4.0")
     assert scenario_files.planArguments(wishes.targets, wishes.trajectory) == [
         *("--target", "Tumor", "1.0", "2.0", "3.0", "--target", "Cyst", "4.0", "5.0", "6.0"),

@@ -48,36 +48,30 @@ def test_steps_that_start_no_trial_do_not_wait_for_a_scenario_to_load():
         assert step_of(situation, isLoading=True) == nextStep(situation)
 
 
-def test_a_session_leads_from_an_empty_slicer_to_the_next_trial():
-    seen = [
-        nextStep(situation).title
-        for situation in (
-            OFF,
-            replace(OFF, program=ProgramState.STARTING),
-            replace(OFF, link=link(LinkState.GREETING), program=ProgramState.READY),
-            CONNECTED,
-            CHOSEN,
-            replace(CHOSEN, phase="running"),
-            replace(CHOSEN, phase="paused"),
-            replace(CHOSEN, phase="complete"),
-            replace(CHOSEN, phase="registered"),
-            replace(PRACTICED, phase="scored", hasNewResult=True),
-            replace(PRACTICED, phase="scored", isResultShown=True),
-        )
-    ]
-    assert seen == [
-        "Start and connect",
-        "Starting…",
+JOURNEY = [
+    (OFF, "Start and connect", Section.SIMULATOR),
+    (replace(OFF, needsSetup=True), "Start and connect", Section.SETUP),
+    (replace(OFF, program=ProgramState.STARTING), "Starting…", Section.SIMULATOR),
+    (
+        replace(OFF, link=link(LinkState.GREETING), program=ProgramState.READY),
         "Connecting…",
-        "New trainee",
-        "Start the trial run",
-        "Pause",
-        "Resume",
-        "Waiting…",
-        "Scoring…",
-        "Show result",
-        "Start Task 1",
-    ]
+        Section.SIMULATOR,
+    ),
+    (CONNECTED, "New trainee", Section.TRAINEES),
+    (CHOSEN, "Start the trial run", Section.TRAINING),
+    (replace(CHOSEN, phase="running"), "Pause", Section.TRAINING),
+    (replace(CHOSEN, phase="paused"), "Resume", Section.TRAINING),
+    (replace(CHOSEN, phase="complete"), "Waiting…", Section.REGISTRATION),
+    (replace(CHOSEN, phase="registered"), "Scoring…", Section.REGISTRATION),
+    (replace(PRACTICED, phase="scored", hasNewResult=True), "Show result", Section.REGISTRATION),
+    (replace(PRACTICED, phase="scored", isResultShown=True), "Start Task 1", Section.SCORE),
+]
+
+
+def test_a_session_leads_from_an_empty_slicer_to_the_next_trial_each_step_in_its_section():
+    steps = [nextStep(situation) for situation, _title, _section in JOURNEY]
+    found = [(step.title, step.section) for step in steps]
+    assert found == [(title, section) for _situation, title, section in JOURNEY]
 
 
 def test_during_the_tutorial_the_line_says_so_and_how_to_skip_it():
@@ -90,17 +84,6 @@ def test_during_the_tutorial_the_line_says_so_and_how_to_skip_it():
     assert "uncheck" not in led.sentence
 
 
-def test_the_section_of_a_step_is_the_one_in_which_it_can_be_done():
-    assert step_of(OFF, needsSetup=True).section is Section.SETUP
-    assert step_of(OFF).section is Section.SIMULATOR
-    assert step_of(CONNECTED).section is Section.TRAINEES
-    assert step_of(CHOSEN).section is Section.TRAINING
-    assert step_of(CHOSEN, phase="running").section is Section.TRAINING
-    assert step_of(CHOSEN, phase="complete").section is Section.REGISTRATION
-    assert step_of(PRACTICED, hasNewResult=True).section is Section.REGISTRATION
-    assert step_of(PRACTICED, isResultShown=True).section is Section.SCORE
-
-
 @pytest.mark.parametrize("state", list(LinkState))
 @pytest.mark.parametrize("program", list(ProgramState))
 def test_there_is_a_next_step_whatever_the_link_and_the_program_do(state, program):
@@ -109,40 +92,40 @@ def test_there_is_a_next_step_whatever_the_link_and_the_program_do(state, progra
     assert step.sentence
 
 
-def test_an_unexpected_end_is_reported_and_the_program_can_be_started_again():
+SPECIAL = {
+    "another program at the port": (
+        OFF,
+        {"link": link(LinkState.OTHER_PROGRAM)},
+        NextAction.START_SIMULATOR,
+    ),
+    "no answer": (OFF, {"link": link(LinkState.ABSENT)}, NextAction.START_SIMULATOR),
+    "elsewhere": (OFF, {"isElsewhere": True}, NextAction.CONNECT),
+    "no set-up elsewhere": (OFF, {"isElsewhere": True, "needsSetup": True}, NextAction.CONNECT),
+    "disconnected from its own": (OFF, {"program": ProgramState.READY}, NextAction.CONNECT),
+    "being set up": (OFF, {"isBeingSetUp": True}, NextAction.WAIT),
+    "nobody chosen": (CONNECTED, {"hasTrainees": True}, NextAction.CHOOSE_TRAINEE),
+    "not scored": (PRACTICED, {"phase": "registered", "isUnscored": True}, NextAction.START_TASK),
+    "aborted step": (
+        PRACTICED,
+        {"studyStep": StepKind.TRIAL, "needsRepeatReason": True},
+        NextAction.EXPLAIN_REPEAT,
+    ),
+}
+
+
+@pytest.mark.parametrize("case", SPECIAL)
+def test_the_button_does_what_a_special_situation_needs(case):
+    situation, changes, action = SPECIAL[case]
+    assert step_of(situation, **changes).action is action
+
+
+def test_the_line_says_what_is_wrong():
     ended = step_of(OFF, program=ProgramState.FAILED, programSentence="It ended: no screen.")
     assert (ended.action, ended.sentence) == (NextAction.START_SIMULATOR, "It ended: no screen.")
-
-
-def test_a_port_used_by_something_else_does_not_prevent_starting():
-    assert step_of(OFF, link=link(LinkState.OTHER_PROGRAM)).action is NextAction.START_SIMULATOR
-    assert step_of(OFF, link=link(LinkState.ABSENT)).action is NextAction.START_SIMULATOR
-
-
-def test_a_simulator_on_another_computer_is_only_connected_to():
-    assert step_of(OFF, isElsewhere=True).action is NextAction.CONNECT
-    assert step_of(OFF, isElsewhere=True, needsSetup=True).action is NextAction.CONNECT
     absent = step_of(OFF, isElsewhere=True, link=link(LinkState.ABSENT))
-    assert (absent.action, absent.sentence) == (
-        NextAction.WAIT,
-        "The link is absent. Do something.",
-    )
-
-
-def test_after_disconnecting_from_a_local_simulator_the_user_can_connect_again():
-    assert step_of(OFF, program=ProgramState.READY).action is NextAction.CONNECT
-
-
-def test_a_running_simulator_is_connected_to_instead_of_starting_another():
+    assert (absent.action, absent.sentence[:20]) == (NextAction.WAIT, "The link is absent. ")
     found = step_of(OFF, runningSentence="One runs already.")
     assert (found.action, found.sentence) == (NextAction.CONNECT_TO_RUNNING, "One runs already.")
-
-
-def test_nothing_can_be_pressed_while_the_simulator_is_being_set_up():
-    assert step_of(OFF, isBeingSetUp=True).action is NextAction.WAIT
-
-
-def test_a_trial_stays_in_view_while_the_simulator_is_silent():
     silent = step_of(CHOSEN, link=link(LinkState.STALE), phase="running")
     assert (silent.action, silent.section) == (NextAction.WAIT, Section.TRAINING)
 
@@ -156,10 +139,6 @@ def test_each_phase_of_a_trial_has_a_title_a_sentence_and_an_action(phase):
         assert found.action is NextAction.PAUSE
 
 
-def test_a_study_with_trainees_offers_to_choose_one():
-    assert step_of(CONNECTED, hasTrainees=True).action is NextAction.CHOOSE_TRAINEE
-
-
 def test_a_study_decides_what_its_trainee_does_next():
     actions = {kind: step_of(PRACTICED, studyStep=kind).action for kind in StepKind}
     assert actions == {
@@ -170,19 +149,8 @@ def test_a_study_decides_what_its_trainee_does_next():
     }
 
 
-def test_a_trial_that_cannot_be_scored_does_not_prevent_the_next_one():
-    stuck = step_of(PRACTICED, phase="registered", isUnscored=True)
-    assert stuck.action is NextAction.START_TASK
-
-
 def test_the_preferred_port_is_used_unless_something_listens_there():
     with SimulatorDouble() as listening:
         taken = listening.port
         assert freePort(taken) == ANY
     assert freePort(taken) == taken
-
-
-def test_an_aborted_step_of_a_study_asks_for_a_reason_before_it_is_started_again():
-    step = step_of(PRACTICED, studyStep=StepKind.TRIAL, needsRepeatReason=True)
-    assert step.action is NextAction.EXPLAIN_REPEAT
-    assert step.section is Section.STUDY

@@ -13,7 +13,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.slicer.head.extraction import findHead
 from rastrainer.slicer.head.volume import HeadSettings
-from rastrainer.slicer.program.child_process import LOGIC, OwnProcess, runHere
+from rastrainer.slicer.program.child_process import LOGIC, OwnProcess
 from Testing.slicer.head.phantoms import phantom
 
 pytestmark = pytest.mark.usefixtures("own_processes")
@@ -33,7 +33,7 @@ def ignore(_step, _share):
 
 
 def test_a_head_found_in_a_separate_process_equals_one_found_in_this_process():
-    scan, settings = phantom(spacing=(3.0, 3.0, 3.0), size=0.4), HeadSettings()
+    scan, settings = phantom(spacing=(3.0, 3.0, 3.0), size=0.25), HeadSettings()
     received = []
     found = OwnProcess(PYTHON)(FIND_HEAD, lambda *step: received.append(step), scan, settings)
     expected = findHead(scan, settings, ignore)
@@ -57,14 +57,6 @@ def test_a_process_that_ends_before_finishing_is_reported(tmp_path, monkeypatch)
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     with pytest.raises(InputError, match=r"ended before it was done: Out of paper\."):
         OwnProcess(PYTHON)("failing:work", ignore)
-
-
-def test_the_work_is_done_by_another_process(tmp_path, monkeypatch):
-    (tmp_path / "anywhere.py").write_text(WHOSE)
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    assert OwnProcess(PYTHON)("anywhere:work", ignore) != os.getpid()
-    monkeypatch.syspath_prepend(tmp_path)
-    assert runHere("anywhere:work", ignore) == os.getpid()
 
 
 def test_where_no_process_can_be_started_the_work_is_done_here(tmp_path, monkeypatch, caplog):

@@ -12,10 +12,7 @@ import pytest
 import slicer
 from PySide6 import QtCore
 
-from rastrainer import transforms
 from rastrainer.registration.target_error import INTERVAL_NOTE
-from rastrainer.scenario.points import LABELS
-from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
@@ -24,7 +21,13 @@ from rastrainer.widgets.plain_text import toolTip
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli.main import main
 from Testing.end_to_end.module.installed_simulator import write_program
-from Testing.slicer.recorded_trial import scored_analysis, write_recorded_trial
+from Testing.slicer.recorded_trial import (
+    COLIN27,
+    put_touches,
+    store_trial_on_colin,
+    touches_on_colin,
+    write_recorded_trial,
+)
 from Testing.slicer.test_images_in_module import wait_for_images
 
 PROTOCOL = asset_path("studies", "published-protocol.json")
@@ -47,62 +50,48 @@ def panels(host):
 
 
 @pytest.fixture
-def colin():
-    return load_scenario(asset_path("scenarios", "colin27"))
-
-
-@pytest.fixture
 def study_path(panels):
     return panels.find("studyPathLineEdit").currentPath
 
 
 @pytest.fixture
-def add_trial(panels, make_record, colin):
-    """Returns a function that puts a scored trial on the built-in head into the study.
+def add_trial(panels, make_record):
+    """Returns a function that puts a scored trial on the built-in head into the study."""
 
-    The module's own connection is used: it would show a change by another program at any time, in
-    place of the last sentence.
-    """
-    study = panels.widget.logic.session.trainees.study
-
-    def add(number, trainee, **changes):
-        fiducials = colin.task("task-1").fiducials
-        noise = np.random.default_rng(number).normal(0.0, 0.6, (15, 3))
-        touched = transforms.apply(colin.perturbed_head_to_world(number), fiducials + noise)
-        record = make_record(
-            str(uuid.UUID(int=number)),
-            trainee=trainee,
-            scenario="colin27",
-            startedUtc=f"2026-03-02T09:{number:02d}:00Z",
-            **changes,
-        )
-        for point, position in zip(record["points"], touched.tolist(), strict=True):
-            point["positionMm"] = position
-        analysis = scored_analysis(record, colin)
-        study.add_trial(record, analysis.fits.values(), analysis.target_errors, analysis.score)
+    def add(number, trainee="T-001", **changes):
+        started = f"2026-03-02T09:{number:02d}:00Z"
+        trial_id = str(uuid.UUID(int=number))
+        record = make_record(trial_id, trainee=trainee, startedUtc=started, **changes)
+        store_trial_on_colin(panels, record, number)
 
     return add
 
 
 @pytest.fixture
-def touched(panels, colin):
-    """The scene of a trial with its touches, (15, 3) float, World, mm."""
+def trainee(panels, add_trial):
+    """The module with the trainee T-001 of one trial, who is chosen."""
+    add_trial(1)
+    choose_trainee(panels)
+    return panels
+
+
+def choose_trainee(host):
+    host.press("createTraineeButton")
+    host.choose("traineeComboBox", "T-001")
+
+
+@pytest.fixture
+def touched(panels):
+    """The scene of a trial; its touches, (15, 3) float, World, mm, which are not yet in it."""
     panels.press("showScenarioButton")
     panels.finish_work()
-    return transforms.apply(
-        colin.perturbed_head_to_world(3),
-        colin.task("task-1").fiducials + np.random.default_rng(3).normal(0.0, 0.6, (15, 3)),
-    )
+    return touches_on_colin()
 
 
-def touch(host, points):
-    setPoints(capturedPointsNode(host.scene), LABELS[: len(points)], points)
-    count = min(len(points), 15)
-    host.wait_until(
-        lambda: host.find("residualsTable").rowCount == (count if count > 2 else 0),
-        "the touches are registered",
-    )
+def choose_study(host, path):
+    host.find("studyPathLineEdit").currentPath = str(path)
     host.process_events()
+    return host.text("traineeText").replace("\u200b", "")
 
 
 def use_installed(host, folder):
@@ -124,6 +113,11 @@ def cells(host, name):
 
 
 def test_a_trainee_is_created_chosen_archived_and_restored(panels, study_path):
+    for name in ("archiveButton", "exportTraineeButton", "deleteTraineeButton"):
+        with pytest.raises(AssertionError, match="Choose a trainee first"):
+            panels.press(name)
+    with pytest.raises(AssertionError, match="Connect to the simulator first"):
+        panels.press("startTaskButton")
     assert panels.find("pseudonymLineEdit").placeholderText == "T001"
     panels.press("createTraineeButton")
     assert panels.find("traineeComboBox").currentText == "T001"
@@ -137,17 +131,10 @@ def test_a_trainee_is_created_chosen_archived_and_restored(panels, study_path):
     panels.press("archiveButton")
     with Study.open(study_path) as study:
         assert len(study.trainees()) == 1
-
-
-def test_what_cannot_be_done_with_a_trainee_is_explained(panels):
-    for name in ("archiveButton", "exportTraineeButton", "deleteTraineeButton"):
-        with pytest.raises(AssertionError, match="Choose a trainee first"):
-            panels.press(name)
-    with pytest.raises(AssertionError, match="Connect to the simulator first"):
-        panels.press("startTaskButton")
-    for _ in range(2):
-        panels.type("pseudonymLineEdit", "Blue")
-        panels.press("createTraineeButton")
+    panels.check("archivedCheckBox", False)
+    assert panels.find("traineeComboBox").currentText == "T001"
+    panels.type("pseudonymLineEdit", "T001")
+    panels.press("createTraineeButton")
     assert "taken; choose another" in panels.messages[-1].text
 
 
@@ -171,26 +158,10 @@ def test_a_study_locked_by_another_program_is_reported_and_shown_again_automatic
     assert panels.find("historyTable").rowCount == 1
 
 
-def test_a_trainee_is_deleted_only_after_confirmation(panels, add_trial, study_path):
-    add_trial(1, "T-001")
-    panels.type("pseudonymLineEdit", "other")
-    panels.press("createTraineeButton")
-    panels.choose("traineeComboBox", "T-001")
-    panels.answer("Delete", "No")
-    panels.press("deleteTraineeButton")
-    assert panels.find("historyTable").rowCount == 1
-    panels.answer("Delete", "Yes")
-    panels.press("deleteTraineeButton")
-    assert "deleted with 1 trials" in panels.text("traineeText")
-    with Study.open(study_path) as study:
-        assert [trainee.pseudonym for trainee in study.trainees()] == ["other"]
-
-
 def test_history_is_shown_plotted_and_exported(panels, add_trial, tmp_path):
     for number in (1, 2, 3):
-        add_trial(number, "T-001", completionTimeS=100.0 - number)
-    panels.press("createTraineeButton")
-    panels.choose("traineeComboBox", "T-001")
+        add_trial(number, completionTimeS=100.0 - number)
+    choose_trainee(panels)
     rows = cells(panels, "historyTable")
     assert [row[2:4] for row in rows] == [["Task 1", time] for time in ("99.0", "98.0", "97.0")]
     panels.press("learningCurveButton")
@@ -200,72 +171,46 @@ def test_history_is_shown_plotted_and_exported(panels, add_trial, tmp_path):
     assert findNode(panels.scene, "vtkMRMLPlotChartNode", Role.CALIBRATION) is not None
     assert "3 trials have no true target error" in panels.text("traineeText")
     panels.press("calibrationButton")
-    panels.answer("Export the history", str(tmp_path / "history.csv"))
-    panels.press("exportHistoryButton")
-    with (tmp_path / "history.csv").open(newline="") as file:
-        assert len(list(csv.DictReader(file))) == 3
     panels.answer("Export the trainee", str(tmp_path / "trainee"))
     panels.press("exportTraineeButton")
     assert len(json.loads((tmp_path / "trainee.json").read_text())["trials"]) == 3
 
 
-def test_a_file_gets_its_suffix_and_replaces_another_once_confirmed(panels, add_trial, tmp_path):
-    add_trial(1, "T-001")
-    panels.press("createTraineeButton")
-    panels.choose("traineeComboBox", "T-001")
-    panels.answer("Export the history", str(tmp_path / "export"))
-    panels.press("exportHistoryButton")
-    assert [path.name for path in tmp_path.glob("export*")] == ["export.csv"]
+def test_a_file_gets_its_suffix_and_replaces_another_once_confirmed(trainee, tmp_path):
     (tmp_path / "export.csv").write_text("mine")
-    for answer, words in (("No", "mine"), ("Yes", "T-001")):
-        panels.answer("Export the history", str(tmp_path / "export"))
-        panels.answer("already exists", answer)
-        panels.press("exportHistoryButton")
-        assert words in (tmp_path / "export.csv").read_text()
-    panels.answer("Export the history", str(tmp_path / "EXPORT.CSV"))
-    panels.press("exportHistoryButton")
-    assert (tmp_path / "EXPORT.CSV").is_file()
+    for answer in ("No", "Yes"):
+        trainee.answer("Export the history", str(tmp_path / "export"))
+        trainee.answer("already exists", answer)
+        trainee.press("exportHistoryButton")
+        assert ((tmp_path / "export.csv").read_text() == "mine") == (answer == "No")
+    trainee.answer("Export the history", str(tmp_path / "EXPORT.CSV"))
+    trainee.press("exportHistoryButton")
+    with (tmp_path / "EXPORT.CSV").open(newline="") as file:
+        assert len(list(csv.DictReader(file))) == 1
 
 
-def test_another_study_file_is_used_when_chosen_and_an_invalid_one_is_reported(panels, tmp_path):
+def test_only_the_file_of_a_study_is_used_and_another_leaves_the_study_open(panels, tmp_path):
     panels.press("createTraineeButton")
-    panels.find("studyPathLineEdit").currentPath = str(tmp_path / "second.db")
-    panels.process_events()
+    choose_study(panels, tmp_path / "second.db")
     assert panels.find("traineeComboBox").count == 1
     panels.press("createTraineeButton")
-    letter = tmp_path / "letter.db"
-    letter.write_text("A letter to a friend. " * 300)
-    panels.find("studyPathLineEdit").currentPath = str(letter)
-    panels.process_events()
+    letter, notes, new = tmp_path / "letter.db", tmp_path / "notes.txt", tmp_path / "typo/study.db"
+    for path in (letter, notes):
+        path.write_text("A letter to a friend. " * 300)
+    for path, words in ((tmp_path, "is a folder"), (notes, "is no study")):
+        said = choose_study(panels, path)
+        assert f"{path.name} {words}" in said
+        assert "second.db stays open" in said
+    choose_study(panels, letter)
     assert "is not a study database" in panels.messages[-1].text
-    assert panels.find("studyPathLineEdit").currentPath == str(tmp_path / "second.db")
-    assert panels.find("traineeComboBox").count == 2
-
-
-def test_a_folder_and_another_file_are_no_study_and_the_panel_says_so(panels, tmp_path):
-    panels.press("createTraineeButton")
-    (tmp_path / "notes.txt").write_text("Notes")
-    before = panels.find("studyPathLineEdit").currentPath
-    for chosen, words in ((tmp_path, "is a folder"), (tmp_path / "notes.txt", "is no study")):
-        panels.find("studyPathLineEdit").currentPath = str(chosen)
-        panels.process_events()
-        text = panels.text("traineeText")
-        assert f"{chosen.name} {words}" in text.replace("\u200b", "")
-        assert f"{Path(before).name} stays open" in text.replace("\u200b", "")
-    panels.find("studyPathLineEdit").currentPath = str(tmp_path / "second.db")
-    panels.process_events()
-    assert panels.text("traineeText").startswith("Choose who is training")
-
-
-def test_a_study_in_a_missing_folder_is_made_only_if_the_user_wants_it(panels, tmp_path):
-    before, new = panels.find("studyPathLineEdit").currentPath, tmp_path / "typo" / "study.db"
     for answer in ("No", "Yes"):
+        assert panels.find("studyPathLineEdit").currentPath == str(tmp_path / "second.db")
+        assert panels.find("traineeComboBox").count == 2
         panels.answer("There is no folder", answer)
-        panels.find("studyPathLineEdit").currentPath = str(new)
-        panels.process_events()
+        said = choose_study(panels, new)
         assert new.parent.is_dir() == (answer == "Yes")
-        shown = panels.find("studyPathLineEdit").currentPath
-        assert shown == (str(new) if answer == "Yes" else before)
+    assert panels.find("studyPathLineEdit").currentPath == str(new)
+    assert said.startswith("Choose who is training")
 
 
 def test_an_unusable_address_is_refused_without_repeating_its_password(panels):
@@ -307,8 +252,8 @@ def test_head_fiducials_and_robot_are_shown_and_another_model_can_be_the_head(pa
 # Registration
 
 
-def test_fits_and_errors_are_shown_with_their_units_and_a_fit_is_chosen(panels, touched):
-    touch(panels, touched)
+def test_fits_and_errors_are_shown_with_their_units_and_fit_and_target_are_chosen(panels, touched):
+    put_touches(panels, touched)
     rows = cells(panels, "fitsTable")
     assert [row[0] for row in rows] == ["Rigid", "Similarity", "Affine"]
     assert "Expected TRE at the target" in panels.text("treText")
@@ -323,49 +268,6 @@ def test_fits_and_errors_are_shown_with_their_units_and_a_fit_is_chosen(panels, 
     similar = slicer.util.arrayFromTransformMatrix(transform)
     assert np.linalg.det(rigid[:3, :3]) == pytest.approx(1.0)
     assert np.linalg.det(similar[:3, :3]) != pytest.approx(1.0, abs=1e-6)
-
-
-def test_a_point_with_a_larger_stated_error_weighs_less_until_undo(panels, touched):
-    touched[2] += [2.0, -1.0, 0.5]
-    touch(panels, touched)
-    before = cells(panels, "residualsTable")
-    assert [row[3] for row in before] == ["–"] * 15
-    with pytest.raises(AssertionError, match="Choose a row"):
-        panels.press("fleButton")
-    panels.choose("residualsTable", 2)
-    panels.type("fleSpinBox", "20")
-    panels.press("fleButton")
-    panels.finish_work()
-    after = cells(panels, "residualsTable")
-    assert after[2][3] == "20.00"
-    assert float(after[2][1]) > float(before[2][1])
-    # A point of little weight lies where the others put it, fitted or left out.
-    assert float(after[2][1]) == pytest.approx(float(after[2][2]), abs=0.02)
-    assert "weighted by the stated FLE; the score of the trial is not" in panels.text(
-        "registrationText"
-    )
-    panels.press("undoButton")
-    panels.finish_work()
-    assert cells(panels, "residualsTable") == before
-
-
-def test_the_chosen_fiducial_is_shown_in_the_slices_and_left_out(panels, touched, colin):
-    touch(panels, touched)
-    # Slice views are fitted to the images once they are loaded.
-    wait_for_images(panels)
-    view = panels.scene.AddNewNodeByClass("vtkMRMLSliceNode", "Mine")
-    panels.choose("residualsTable", 4)
-    panels.finish_work()
-    assert view.GetSliceToRAS().GetElement(2, 3) == pytest.approx(
-        colin.task("task-1").fiducials[4, 2], abs=1e-3
-    )
-    panels.press("excludeButton")
-    panels.finish_work()
-    assert "Left out: 5" in panels.text("registrationText")
-
-
-def test_the_transform_is_applied_or_not_by_a_checkbox(panels, touched):
-    touch(panels, touched)
     points = capturedPointsNode(panels.scene)
     assert panels.find("appliedCheckBox").checked
     panels.check("appliedCheckBox", False)
@@ -374,23 +276,45 @@ def test_the_transform_is_applied_or_not_by_a_checkbox(panels, touched):
     assert points.GetParentTransformNode().GetName() == "WorldToHead"
     points.SetAndObserveTransformNodeID(None)
     panels.wait_until(lambda: not panels.find("appliedCheckBox").checked, "the box follows")
-
-
-def test_another_target_is_chosen_and_the_head_is_colored(panels, touched):
-    touch(panels, touched)
     before = panels.text("treText")
     target = panels.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Tumor")
     target.AddControlPoint(60.0, 60.0, -60.0)
     panels.choose("targetComboBox", target)
     panels.wait_until(lambda: panels.text("treText") != before, "the error is updated")
-    panels.check("headColoredCheckBox")
+
+
+def test_the_chosen_fiducial_is_shown_in_the_slices_weighted_and_left_out(panels, touched):
+    touched[2] += [2.0, -1.0, 0.5]
+    put_touches(panels, touched)
+    # Slice views are fitted to the images once they are loaded.
+    wait_for_images(panels)
+    before = cells(panels, "residualsTable")
+    assert [row[3] for row in before] == ["–"] * 15
+    with pytest.raises(AssertionError, match="Choose a row"):
+        panels.press("fleButton")
+    view = panels.scene.AddNewNodeByClass("vtkMRMLSliceNode", "Mine")
+    panels.choose("residualsTable", 2)
     panels.finish_work()
-    head = findNode(panels.scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
-    assert head.GetDisplayNode().GetScalarVisibility()
+    height = COLIN27.task("task-1").fiducials[2, 2]
+    assert view.GetSliceToRAS().GetElement(2, 3) == pytest.approx(height, abs=1e-3)
+    panels.type("fleSpinBox", "20")
+    panels.press("fleButton")
+    panels.finish_work()
+    after = cells(panels, "residualsTable")
+    assert after[2][3] == "20.00"
+    # A point of little weight lies where the others put it, fitted or left out.
+    assert float(after[2][1]) == pytest.approx(float(after[2][2]), abs=0.02)
+    assert "weighted by the stated FLE; the score" in panels.text("registrationText")
+    panels.press("undoButton")
+    panels.finish_work()
+    assert cells(panels, "residualsTable") == before
+    panels.press("excludeButton")
+    panels.finish_work()
+    assert "Left out: 3" in panels.text("registrationText")
 
 
 def test_one_small_legend_is_drawn_only_in_the_3d_view(panels, touched, tmp_path):
-    touch(panels, touched)
+    put_touches(panels, touched)
     head = findNode(panels.scene, "vtkMRMLModelNode", Role.HEAD_MODEL).GetDisplayNode()
     head.SetOpacity(0.4)
     seen = [panels.legends()]
@@ -413,16 +337,25 @@ def test_one_small_legend_is_drawn_only_in_the_3d_view(panels, touched, tmp_path
 # Plan
 
 
-def test_a_plan_says_what_is_missing_until_it_can_be_sent(panels, touched):
+def test_a_plan_says_what_is_missing_until_it_can_be_sent_and_its_error_at_any_target(
+    panels, touched
+):
     with pytest.raises(AssertionError, match="Place a target or a trajectory"):
         panels.press("sendPlanButton")
     panels.press("placeTargetButton")
     with pytest.raises(AssertionError, match="has no point yet"):
         panels.press("sendPlanButton")
-    panels.find("planComboBox").currentNode().AddControlPoint(10.0, 20.0, 0.0)
-    touch(panels, touched)
+    setPoints(
+        panels.find("planComboBox").currentNode(),
+        ("Tumor", "Cyst"),
+        np.array([[0.0, 0.0, 20.0], [60.0, 60.0, -60.0]]),
+    )
+    put_touches(panels, touched)
     panels.wait_until(lambda: "target x" in panels.text("planWorldText"), "the plan is mapped")
-    assert "mm (95 %" in panels.text("planTreText")
+    assert panels.find("planTargetComboBox").currentText == "Cyst"
+    at_cyst = panels.text("planTreText")
+    panels.choose("planTargetComboBox", "Tumor")
+    assert "mm (95 %" in panels.text("planTreText") != at_cyst
     assert panels.find("planTreText").toolTip == toolTip(INTERVAL_NOTE)
     with pytest.raises(AssertionError, match="Connect to the simulator first"):
         panels.press("sendPlanButton")
@@ -446,30 +379,15 @@ def test_targets_are_added_removed_and_restored(panels):
     assert node.GetNumberOfControlPoints() == 1
 
 
-def test_the_expected_error_is_shown_at_any_target_in_a_list(panels, touched):
-    touch(panels, touched)
-    targets = panels.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Targets")
-    setPoints(targets, ("Tumor", "Cyst"), np.array([[0.0, 0.0, 20.0], [60.0, 60.0, -60.0]]))
-    panels.choose("planComboBox", targets)
-    assert panels.find("planTargetComboBox").currentText == "Cyst"
-    at_cyst = panels.text("planTreText")
-    panels.choose("planTargetComboBox", "Tumor")
-    at_tumor = panels.text("planTreText")
-    assert "mm (95 %" in at_tumor
-    assert at_tumor != at_cyst
-    assert not panels.find("planTargetComboBox").itemText(2)
-
-
 # Score
 
 
 def test_a_trial_is_scored_beside_the_reference_group_and_exported(
     panels, add_trial, study_path, tmp_path
 ):
-    add_trial(1, "T-001", motion={"sparc": -1.9})
-    add_trial(2, "T-001")
-    panels.press("createTraineeButton")
-    panels.choose("traineeComboBox", "T-001")
+    add_trial(1, motion={"sparc": -1.9})
+    add_trial(2)
+    choose_trainee(panels)
     assert panels.find("trialComboBox").currentText.startswith("2: Task 1")
     measures = [row[0] for row in cells(panels, "scoreTable")]
     assert measures[0] == "Score"
@@ -497,7 +415,7 @@ def test_the_report_of_those_who_consent_is_written_and_opened(
     panels, add_trial, study_path, tmp_path
 ):
     for number in (1, 2, 3):
-        add_trial(number, "T-001", mode="hmd" if number == 3 else "desktop")
+        add_trial(number, mode="hmd" if number == 3 else "desktop")
     panels.press("reportButton")
     assert "is not set up yet: in the section Simulator, press Set up" in panels.messages[-1].text
     use_installed(panels, tmp_path)
@@ -515,64 +433,55 @@ def test_the_report_of_those_who_consent_is_written_and_opened(
     assert len((tmp_path / "report" / "trials.csv").read_text().splitlines()) == 4
 
 
-def test_a_trial_gets_feedback_and_is_replayed(panels, add_trial):
-    add_trial(1, "T-001")
-    panels.press("createTraineeButton")
-    panels.choose("traineeComboBox", "T-001")
-    panels.wait_until(
-        lambda: panels.text("feedbackText").startswith("Score "), "the feedback is shown"
-    )
-    assert "This is your first trial of this task" in panels.text("feedbackText")
-    panels.press("replayButton")
-    assert "only on the computer whose simulator recorded it" in panels.messages[-1].text
+def await_feedback(host):
+    host.wait_until(lambda: host.text("feedbackText").startswith("Score "), "feedback is shown")
+
+
+def test_a_trial_gets_feedback_and_is_replayed(trainee):
+    await_feedback(trainee)
+    assert "This is your first trial of this task" in trainee.text("feedbackText")
+    trainee.press("replayButton")
+    assert "only on the computer whose simulator recorded it" in trainee.messages[-1].text
     write_recorded_trial(Path.home() / "RASTrainer" / "trials", str(uuid.UUID(int=1)), 16.0)
-    panels.press("replayButton")
-    assert panels.scene.GetFirstNodeByName("Replay of T-001, task-1").GetNumberOfItems() > 150
-    panels.wait_until(lambda: "clearance" in panels.text("replayText"), "the replay is described")
-    panels.press("worstTouchButton")
-    tool = panels.scene.GetFirstNodeByName("T-001, task-1: tool")
+    trainee.press("replayButton")
+    assert trainee.scene.GetFirstNodeByName("Replay of T-001, task-1").GetNumberOfItems() > 150
+    trainee.wait_until(lambda: "clearance" in trainee.text("replayText"), "it is described")
+    trainee.press("worstTouchButton")
+    tool = trainee.scene.GetFirstNodeByName("T-001, task-1: tool")
     assert tool.GetTransformNodeID() is not None
 
 
-def test_a_canceled_replay_or_one_whose_scene_is_closed_leaves_nothing_behind(panels, add_trial):
-    add_trial(1, "T-001")
+def test_a_canceled_replay_or_one_whose_scene_is_closed_leaves_nothing_behind(trainee):
     write_recorded_trial(Path.home() / "RASTrainer" / "trials", str(uuid.UUID(int=1)), 16.0)
-    panels.press("createTraineeButton")
-    panels.choose("traineeComboBox", "T-001")
-    panels.wait_until(
-        lambda: panels.text("feedbackText").startswith("Score "), "the feedback is shown"
-    )
-    for meddle in (lambda: panels.press("replayButton"), panels.clear_scene):
+    await_feedback(trainee)
+    for meddle in (lambda: trainee.press("replayButton"), trainee.clear_scene):
         done = []
 
         def interfere_once(meddle=meddle, done=done):
             # Not before the first of the replay's nodes is in the scene.
-            if (
-                panels.scene.GetFirstNodeByName("T-001, task-1: WorldToHead") is not None
-                and not done
-            ):
-                assert panels.text("replayButton") == "Cancel"
+            if trainee.scene.GetFirstNodeByName("T-001, task-1: WorldToHead") and not done:
+                assert trainee.text("replayButton") == "Cancel"
                 done.append(True)
                 meddle()
 
         timer = QtCore.QTimer()
         timer.timeout.connect(interfere_once)
         timer.start(0)
-        panels.press("replayButton")
+        trainee.press("replayButton")
         timer.stop()
         assert done
-        assert panels.scene.GetFirstNodeByName("Replay of T-001, task-1") is None
-        assert panels.text("replayButton") == "Show the trial again"
-    assert "The scene was changed" in panels.messages[-1].text
-    panels.press("replayButton")
-    assert panels.scene.GetFirstNodeByName("Replay of T-001, task-1") is not None
+        assert trainee.scene.GetFirstNodeByName("Replay of T-001, task-1") is None
+        assert trainee.text("replayButton") == "Show the trial again"
+    assert "The scene was changed" in trainee.messages[-1].text
+    trainee.press("replayButton")
+    assert trainee.scene.GetFirstNodeByName("Replay of T-001, task-1") is not None
 
 
 def test_deleting_a_trainee_leaves_no_trace_in_database_journals_and_later_exports(
     panels, add_trial, study_path, tmp_path
 ):
     trial_id, trials = str(uuid.UUID(int=1)), Path.home() / "RASTrainer" / "trials"
-    add_trial(1, "T-001", motion={"sparc": -1.9})
+    add_trial(1, motion={"sparc": -1.9})
     add_trial(2, "other")
     write_recorded_trial(trials, trial_id, 16.0)
     write_recorded_trial(trials, str(uuid.UUID(int=2)), 16.0, "other")
@@ -587,16 +496,14 @@ def test_deleting_a_trainee_leaves_no_trace_in_database_journals_and_later_expor
         progress.practice("T-001", "hmd/trial-run", 9.0)
     words = (b"T-001", trial_id.encode(), b"a reason nobody else has")
     assert all(word in bytes_below(Path(study_path).parent, trials) for word in words)
-    panels.press("createTraineeButton")
-    panels.choose("traineeComboBox", "T-001")
-    panels.answer("Delete", "Yes")
-    panels.press("deleteTraineeButton")
+    choose_trainee(panels)
+    for answer in ("No", "Yes"):
+        assert panels.find("historyTable").rowCount == 1
+        panels.answer("Delete", answer)
+        panels.press("deleteTraineeButton")
     assert "1 trials and 1 journals" in panels.text("traineeText")
     panels.answer("Export all trials", str(tmp_path / "later" / "all.csv"))
     panels.press("exportScoresButton")
-    use_installed(panels, tmp_path)
-    panels.answer("Folder for the report", str(tmp_path / "later" / "report"))
-    panels.press("reportButton")
     command = ["export", study_path, "-o", str(tmp_path / "later" / "exports")]
     assert main([*command, "--records", str(trials)]) == 0
     left = bytes_below(Path(study_path).parent, trials, tmp_path / "later")

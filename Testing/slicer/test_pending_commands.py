@@ -1,13 +1,12 @@
 """Commands are answered at the connector's event, and a burst of them never blocks."""
 
 import threading
-import time
 
 import pytest
 
+from rastrainer.slicer.link.connection import MAX_AT_ONCE
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.link.link_status import LinkState
-from rastrainer.slicer.link.pending_commands import MAX_AT_ONCE
 from rastrainer_headless.connector import headlessKit
 from Testing.slicer.crashes import take_crashes
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until, wait_until
@@ -15,22 +14,11 @@ from Testing.slicer.simulator_double import SimulatorDouble, run_link_until, wai
 BURST = 300
 
 
-class Clock:
-    """Runs unless it is `stopped`, and jumps where a test adds to `ahead`."""
-
-    def __init__(self):
-        self.ahead = 0.0
-        self.stopped = False
-
-    def __call__(self):
-        return self.ahead + (0.0 if self.stopped else time.monotonic())
-
-
 class Room:
     """A link to a simulator double, in a host whose next turn a test triggers."""
 
-    def __init__(self, scene, answer):
-        self.clock = Clock()
+    def __init__(self, scene, clock, answer):
+        self.clock = clock
         self.soon = []
         self.replies = []
         self.simulator = SimulatorDouble(answer)
@@ -43,10 +31,6 @@ class Room:
 
     def run_until(self, condition):
         run_link_until(self.link, condition)
-
-    def stop_clock(self):
-        """On a busy machine, sending takes no longer than on an idle one from now on."""
-        self.clock.ahead, self.clock.stopped = self.clock(), True
 
     def wait_for_turn(self):
         """Let the connector work until it has asked for a turn; the link's own poll does not."""
@@ -64,11 +48,11 @@ class Room:
 
 
 @pytest.fixture
-def make_room(scene):
+def make_room(scene, clock):
     rooms = []
 
     def make(answer=lambda _name, _arguments: {}):
-        rooms.append(Room(scene, answer))
+        rooms.append(Room(scene, clock, answer))
         return rooms[-1]
 
     yield make
@@ -91,17 +75,13 @@ def silent(make_room):
     may_answer.set()
 
 
-def test_an_answer_is_delivered_in_the_next_turn_without_waiting_for_the_poll(make_room):
-    room = make_room()
+def test_answers_and_trials_are_delivered_in_the_next_turn_without_waiting_for_the_poll(make_room):
+    room, records = make_room(), []
     room.ask()
     room.wait_for_turn()
     assert room.replies == []  # Inside VTK nothing is handed over.
     room.soon.pop()()
     assert [reply.ok for reply in room.replies] == [True]
-
-
-def test_a_finished_trial_is_delivered_in_the_next_turn(make_room):
-    room, records = make_room(), []
     room.link.trialCompleted.connect(records.append)
     room.simulator.send_command("TrialCompleted", {"number": 1})
     room.wait_for_turn()
@@ -113,7 +93,7 @@ def test_a_finished_trial_is_delivered_in_the_next_turn(make_room):
 def test_only_one_turn_is_requested_however_much_arrives(make_room):
     room = make_room()
     room.link.process()
-    room.stop_clock()
+    room.clock.stop()
     for _ in range(5):
         room.ask()
         room.simulator.send_command("Unknown", {})
@@ -158,7 +138,7 @@ def test_nothing_more_is_sent_to_a_simulator_that_does_not_answer(silent):
 
 
 def test_commands_still_waiting_when_the_connection_is_lost_are_refused(silent):
-    silent.stop_clock()
+    silent.clock.stop()
     for _ in range(BURST):
         silent.ask()
     silent.simulator.close()

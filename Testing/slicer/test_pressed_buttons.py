@@ -1,22 +1,16 @@
 """A button acts by its label when it was pressed, no matter what happens before its release."""
 
-import json
 import uuid
 
-import numpy as np
 import pytest
 import slicer
 from PySide6 import QtCore, QtTest
 
-from rastrainer import transforms
-from rastrainer.igtl.content import Status, String
-from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
-from rastrainer.scenario.points import LABELS
-from rastrainer.scenario.scenario import load_scenario
+from rastrainer.sections.training_logic import LOADING
 from rastrainer.slicer.link.link_status import LinkState
-from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
-from rastrainer_simulator.assets import asset_path
-from Testing.slicer.simulator_double import SimulatorDouble, run_until_received
+from Testing.slicer.recorded_trial import put_touches, touches_on_colin
+from Testing.slicer.simulator_double import connect_module, run_until_received
+from Testing.slicer.told_module import ToldModule
 
 LEFT = QtCore.Qt.MouseButton.LeftButton
 
@@ -37,44 +31,25 @@ def touched(host):
     """The module with fifteen touches, of which the seventh is 9 mm off."""
     host.open()
     host.unfold("residualsTable")
-    session = host.widget.logic.session
-    session.scenario.show("colin27", "task-1")
-    colin = load_scenario(asset_path("scenarios", "colin27"))
-    noise = np.random.default_rng(3).normal(0.0, 0.5, (15, 3))
-    points = colin.task("task-1").fiducials + noise
+    host.widget.logic.session.scenario.show("colin27", "task-1")
+    host.finish_work()
+    points = touches_on_colin()
     points[6] += 9.0
-    world = transforms.apply(colin.perturbed_head_to_world(3), points)
-    setPoints(capturedPointsNode(host.scene), LABELS, world)
-    host.wait_until(
-        lambda: host.find("residualsTable").rowCount == 15 and not session.work.isBusy,
-        "the touches are registered",
-    )
+    put_touches(host, points)
     return host
 
 
-class Trial:
-    """The module with a simulator double that reports the state of a trial."""
-
-    def __init__(self, host, simulator):
-        self.host, self.simulator = host, simulator
-        host.open()
-        host.type("portSpinBox", str(simulator.port))
-        host.press("connectButton")
-        self.wait_until(lambda: host.text("linkText") == "Connected")
-
-    def wait_until(self, condition):
-        def beats():
-            self.simulator.send(DeviceName.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
-            return condition()
-
-        self.host.wait_until(beats, "the module knows")
+class Trial(ToldModule):
+    """Waits until the module knows what it is told."""
 
     def tell(self, phase, number=5):
-        values = {"trialId": str(uuid.UUID(int=number)), "trainee": "T001", "task": "task-1"}
-        self.simulator.send(DeviceName.SIM_STATE, String(json.dumps({**values, "phase": phase})))
+        trial_id = str(uuid.UUID(int=number))
+        super().tell(phase=phase, trialId=trial_id)
         training = self.host.widget.logic.session.training
-        wanted = (phase, values["trialId"])
-        self.wait_until(lambda: (training.status.phase, training.status.trialId) == wanted)
+        wanted = (phase, trial_id)
+        self.host.wait_until(
+            lambda: (training.status.phase, training.status.trialId) == wanted, "it knows"
+        )
 
     @property
     def commands(self):
@@ -83,9 +58,8 @@ class Trial:
 
 
 @pytest.fixture
-def trial(host):
-    with SimulatorDouble() as simulator:
-        yield Trial(host, simulator)
+def trial(host, simulator):
+    return Trial(host, simulator)
 
 
 @pytest.mark.parametrize("name", ["pauseButton", "nextStepButton"])
@@ -196,3 +170,19 @@ def test_a_failed_setup_does_not_start_a_simulator_after_the_next_one(host, tmp_
     count = len(host.messages)
     host.widget.logic.session.simulator.setup.finished.emit("")
     assert len(host.messages) == count
+
+
+STARTING = ("startTrialRunButton", "startTaskButton", "nextStepButton")
+
+
+def test_the_buttons_that_start_trials_are_disabled_while_slicers_head_is_loaded(host, simulator):
+    simulator.responder = lambda name, _arguments: None if name == "LoadScenario" else {}
+    host.open()
+    connect_module(host, simulator)
+    host.check("newConsentCheckBox")
+    host.press("createTraineeButton")
+    host.wait_until(lambda: host.find("startTaskButton").enabled, "a trial can be started")
+    host.press("loadScenarioButton")
+    assert [host.find(name).enabled for name in STARTING] == [False] * 3
+    assert {host.find(name).toolTip for name in STARTING} == {LOADING}
+    assert host.text("nextStepText") == LOADING

@@ -4,6 +4,7 @@ import json
 import math
 import os
 from dataclasses import replace
+from operator import attrgetter
 
 import numpy as np
 import pytest
@@ -50,8 +51,7 @@ def skull(meshes):
 
 
 def poly_data(mesh):
-    points, triangles, surface = vtk.vtkPoints(), vtk.vtkCellArray(), vtk.vtkPolyData()
-    points.SetDataTypeToDouble()
+    points, triangles, surface = vtk_points(), vtk.vtkCellArray(), vtk.vtkPolyData()
     points.SetData(numpy_to_vtk(mesh.vertices, deep=True))
     corners = mesh.triangles.astype(np.int64).ravel()
     triangles.SetData(3, numpy_to_vtkIdTypeArray(corners, deep=True))
@@ -109,15 +109,17 @@ def vtk_matrix(values):
     return matrix
 
 
+def vtk_points(positions=()):
+    points = vtk.vtkPoints()
+    points.SetDataTypeToDouble()
+    for position in positions:
+        points.InsertNextPoint(position)
+    return points
+
+
 def landmark_matrix(moving, fixed):
     """The rigid registration by which Slicer registers landmarks."""
-    both = []
-    for positions in (moving, fixed):
-        points = vtk.vtkPoints()
-        points.SetDataTypeToDouble()
-        for position in positions:
-            points.InsertNextPoint(position)
-        both.append(points)
+    both = [vtk_points(positions) for positions in (moving, fixed)]
     transform = vtk.vtkLandmarkTransform()
     transform.SetSourceLandmarks(both[0])
     transform.SetTargetLandmarks(both[1])
@@ -126,14 +128,10 @@ def landmark_matrix(moving, fixed):
     return transform.GetMatrix()
 
 
-def rigid(random, degrees, shift):
-    return transforms.rigid(rotation(random, degrees), random.normal(0.0, shift, 3))
-
-
 def carried_out(seed):
     """A trial with a procedure, its fiducials and the true pose: all of it random."""
     random = np.random.default_rng([21, seed])
-    head_to_world = rigid(random, 180.0, 300.0)
+    head_to_world = transforms.rigid(rotation(random, 180.0), random.normal(0.0, 300.0, 3))
     fiducials = random.normal(0.0, 55.0, (15, 3))
     touches = transforms.apply(head_to_world, fiducials)
     touches += random.normal(0.0, FLE_MM / np.sqrt(3), touches.shape)
@@ -146,22 +144,13 @@ def carried_out(seed):
     )
     to_world = transforms.inverse(used.matrix)
     instruments = tuple(_by_hand(random, each, to_world) for each in procedure.trajectories)
-    record = make_record(
-        points=[
-            {**point, "positionMm": position.tolist()}
-            for point, position in zip(make_record()["points"], touches, strict=True)
-        ]
-    )
-    done = ProcedureRecord(
-        procedure.name,
-        procedure.kind,
-        "0" * 64,
-        300.0,
-        _attempts(used),
-        instruments,
-        {"running": 100.0},
-    )
-    record["procedure"] = record_to_json(done)
+    registration = UsedRegistration(tuple(used.matrix.ravel().tolist()), used.fre_mm, 0.6)
+    attempts = (RecordedAttempt((), registration, ()),)
+    name, kind, times = procedure.name, procedure.kind, {"running": 100.0}
+    done = ProcedureRecord(name, kind, "0" * 64, 300.0, attempts, instruments, times)
+    record = make_record(procedure=record_to_json(done))
+    for point, position in zip(record["points"], touches, strict=True):
+        point["positionMm"] = position.tolist()
     trial = record_from_json(TrialRecord, json.loads(json.dumps(record)))
     truth = RevealedTruth(tuple(head_to_world.ravel().tolist()), 0.5)
     stored = StoredTrial(trial, {}, truth=truth)
@@ -184,11 +173,6 @@ def _by_hand(random, planned, to_world):
         guide_direction=tuple((turned / np.linalg.norm(turned)).tolist()),
         instrument_depth_mm=exact.instrument_depth_mm + random.normal(0.0, 2.0),
     )
-
-
-def _attempts(used):
-    registration = UsedRegistration(tuple(used.matrix.ravel().tolist()), used.fre_mm, 0.6)
-    return (RecordedAttempt((), registration, ()),)
 
 
 @pytest.mark.parametrize("procedures", [40, pytest.param(1000, marks=pytest.mark.soak)])
@@ -222,29 +206,22 @@ def test_vtk_and_slicer_compute_the_same_errors_from_the_exported_files(
 
 
 def compare(errors, planned, shown, placed):
-    tip, expected = placed.end, pytest.approx
-    assert errors.entry_point_error.mm == expected(off_line(planned.start, placed), abs=EQUAL)
-    assert errors.entry_point_error.by_hand_mm == expected(off_line(shown.start, placed), abs=EQUAL)
-    assert errors.target_point_error.mm == expected(distance(tip, planned.end), abs=EQUAL)
-    assert errors.target_point_error.by_registration_mm == expected(
-        distance(shown.end, planned.end), abs=EQUAL
-    )
-    assert errors.target_point_error.by_hand_mm == expected(distance(tip, shown.end), abs=EQUAL)
-    assert errors.radial_error.mm == expected(off_line(tip, planned), abs=EQUAL)
-    depths = (
-        along(minus(tip, planned.end), planned),
-        along(minus(shown.end, planned.end), planned),
-        along(minus(tip, shown.end), planned),
-    )
-    assert errors.depth_error_mm == expected(depths[0], abs=EQUAL)
-    assert errors.depth_error_by_registration_mm == expected(depths[1], abs=EQUAL)
-    assert errors.depth_error_by_hand_mm == expected(depths[2], abs=EQUAL)
-    directions = planned.direction, shown.direction, placed.direction
-    assert errors.angular_deviation_deg == expected(angle(directions[0], directions[2]), abs=EQUAL)
-    assert errors.angular_deviation_by_registration_deg == expected(
-        angle(*directions[:2]), abs=EQUAL
-    )
-    assert errors.angular_deviation_by_hand_deg == expected(angle(*directions[1:]), abs=EQUAL)
+    tip, directions = placed.end, (planned.direction, shown.direction, placed.direction)
+    for name, expected in {
+        "entry_point_error.mm": off_line(planned.start, placed),
+        "entry_point_error.by_hand_mm": off_line(shown.start, placed),
+        "target_point_error.mm": distance(tip, planned.end),
+        "target_point_error.by_registration_mm": distance(shown.end, planned.end),
+        "target_point_error.by_hand_mm": distance(tip, shown.end),
+        "radial_error.mm": off_line(tip, planned),
+        "depth_error_mm": along(minus(tip, planned.end), planned),
+        "depth_error_by_registration_mm": along(minus(shown.end, planned.end), planned),
+        "depth_error_by_hand_mm": along(minus(tip, shown.end), planned),
+        "angular_deviation_deg": angle(directions[0], directions[2]),
+        "angular_deviation_by_registration_deg": angle(*directions[:2]),
+        "angular_deviation_by_hand_deg": angle(*directions[1:]),
+    }.items():
+        assert attrgetter(name)(errors) == pytest.approx(expected, abs=EQUAL), name
 
 
 def compare_registration(exported, fiducials, truth, lines):
@@ -268,8 +245,7 @@ def compare_registration(exported, fiducials, truth, lines):
 def compare_drill(errors, instrument, placed, skull):
     """Find both tables along the instrument by VTK."""
     far = [a + 3.0 * b for a, b in zip(placed.start, placed.direction, strict=True)]
-    points = vtk.vtkPoints()
-    points.SetDataTypeToDouble()
+    points = vtk_points()
     skull.IntersectWithLine(placed.start, far, points, None)
     crossings = sorted(
         distance(placed.start, points.GetPoint(row)) for row in range(points.GetNumberOfPoints())

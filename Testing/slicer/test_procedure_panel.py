@@ -63,32 +63,20 @@ def sent(simulator, name):
     return [arguments for command, arguments in simulator.commands if command == name]
 
 
-def test_a_procedure_is_started_beside_the_task(surgery):
-    host, simulator = surgery
-    host.choose("procedureComboBox", "Stereo-EEG of the right hemisphere")
-    host.press("startTaskButton")
-    host.wait_until(lambda: sent(simulator, "StartTask"), "the task is started")
-    assert sent(simulator, "StartTask")[0]["procedure"] == "seeg"
-    assert host.text("procedureStateText").startswith("No trial with a procedure is open")
-
-
-def test_the_registration_method_is_chosen_beside_the_task(surgery):
+def test_method_and_procedure_are_chosen_beside_the_task_as_far_as_the_head_allows(surgery):
     host, simulator = surgery
     assert host.find("methodComboBox").currentText == "Fiducials"
-    for method in ("Trace over the skin", "Fiducials"):
-        count = len(sent(simulator, "StartTask"))
+    host.choose("procedureComboBox", "Stereo-EEG of the right hemisphere")
+    for count, method in enumerate(("Trace over the skin", "Fiducials"), start=1):
         host.choose("methodComboBox", method)
         host.press("startTaskButton")
         host.wait_until(
-            lambda count=count: len(sent(simulator, "StartTask")) > count, "the task is started"
+            lambda count=count: len(sent(simulator, "StartTask")) == count, "the task is started"
         )
     traced, touched = sent(simulator, "StartTask")
-    assert traced["method"] == "surface"
+    assert (traced["method"], traced["procedure"]) == ("surface", "seeg")
     assert "method" not in touched
-
-
-def test_a_head_without_landmarks_offers_only_its_fiducials(surgery):
-    host, _simulator = surgery
+    assert host.text("procedureStateText").startswith("No trial with a procedure is open")
     session = host.widget.logic.session
     head = replace(session.scenarios.find("colin27"), landmarks=())
     host.choose("methodComboBox", "Landmarks of the face")

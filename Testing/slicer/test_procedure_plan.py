@@ -8,12 +8,8 @@ import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.procedure.plan import MAX_NO_GO_TRIANGLES
-from rastrainer.sections.procedure_plan_logic import (
-    PlanDescription,
-    ProcedurePlanLogic,
-    noGoMeshes,
-)
-from rastrainer.slicer.scene.nodes import setPoints
+from rastrainer.sections.procedure_plan_logic import PlanDescription, ProcedurePlanLogic, noGoMeshes
+from rastrainer.slicer.scene.nodes import setPoints, setValues
 from rastrainer.slicer.scene.procedure_lines import (
     instrumentOf,
     isNoGo,
@@ -44,13 +40,8 @@ def placed(scene, name="Line", ends=ENDS):
 
 
 def sphere_node(scene, name="Vessel", resolution=20, is_open=False):
-    source = vtk.vtkSphereSource()
-    source.SetRadius(5.0)
-    source.SetThetaResolution(resolution)
-    source.SetPhiResolution(resolution)
-    if is_open:
-        source.SetEndTheta(300.0)
-    source.Update()
+    source = setValues(vtk.vtkSphereSource(), Radius=5.0, EndTheta=300.0 if is_open else 360.0)
+    setValues(source, ThetaResolution=resolution, PhiResolution=resolution).Update()
     node = scene.AddNewNodeByClass("vtkMRMLModelNode", name)
     node.SetAndObservePolyData(source.GetOutput())
     setNoGo(node, True)
@@ -72,43 +63,36 @@ def test_a_displayed_plan_is_read_back_unchanged(scene, logic):
     assert read.checkpoints[0].name == "Vertex"
 
 
-@pytest.mark.parametrize(
-    ("spoil", "sentence"),
-    [
-        (lambda _scene, line: line.RemoveNthControlPoint(1), "Line needs two points: its entry"),
-        (lambda scene, line: scene.RemoveNode(line), "A procedure has 1 to 20 lines; the plan has"),
-        (
-            lambda _scene, line: setPoints(
-                line, ("", ""), ENDS * [1, 1, 0] + [[0, 0, 5], [0, 0, 1]]
-            ),
-            "Line is 4.0 mm long; it must be at least 10 mm.",
-        ),
-        (lambda scene, _line: placed(scene), "Two lines are named Line"),
-        (
-            lambda scene, _line: sphere_node(scene, is_open=True),
-            "The no-go structure Vessel is not closed: it has a hole.",
-        ),
-        (
-            lambda scene, _line: sphere_node(scene, resolution=400),
-            f"it may have {MAX_NO_GO_TRIANGLES}.",
-        ),
-        (
-            lambda scene, _line: setNoGo(scene.AddNewNodeByClass("vtkMRMLModelNode", "None"), True),
-            "The no-go structure None is empty.",
-        ),
-        (
-            lambda scene, _line: [sphere_node(scene), sphere_node(scene)],
-            "Two no-go structures are named Vessel",
-        ),
-        (
-            lambda scene, _line: [sphere_node(scene, f"V{number}") for number in range(11)],
-            "The plan has 11 no-go structures; it may have 10.",
-        ),
+def no_go(scene, name):
+    setNoGo(scene.AddNewNodeByClass("vtkMRMLModelNode", name), True)
+
+
+SHORT = ENDS * [1, 1, 0] + [[0, 0, 5], [0, 0, 1]]
+SPOILERS = {
+    "Line needs two points: its entry": lambda _s, line: line.RemoveNthControlPoint(1),
+    "A procedure has 1 to 20 lines; the plan has": lambda scene, line: scene.RemoveNode(line),
+    "Line is 4.0 mm long; it must be at least 10 mm.": lambda _s, line: setPoints(
+        line, ("", ""), SHORT
+    ),
+    "Two lines are named Line": lambda scene, _line: placed(scene),
+    "The no-go structure Vessel is not closed: it has a hole.": lambda scene, _line: sphere_node(
+        scene, is_open=True
+    ),
+    f"it may have {MAX_NO_GO_TRIANGLES}.": lambda scene, _l: sphere_node(scene, resolution=400),
+    "The no-go structure None is empty.": lambda scene, _line: no_go(scene, "None"),
+    "Two no-go structures are named Vessel": lambda scene, _line: [
+        sphere_node(scene),
+        sphere_node(scene),
     ],
-    ids=["unfinished", "none", "short", "twice", "open", "huge", "empty", "two", "many"],
-)
-def test_anything_missing_or_unusable_is_reported_in_one_sentence(scene, logic, spoil, sentence):
-    spoil(scene, placed(scene))
+    "The plan has 11 no-go structures; it may have 10.": lambda scene, _line: [
+        sphere_node(scene, f"V{number}") for number in range(11)
+    ],
+}
+
+
+@pytest.mark.parametrize("sentence", SPOILERS)
+def test_anything_missing_or_unusable_is_reported_in_one_sentence(scene, logic, sentence):
+    SPOILERS[sentence](scene, placed(scene))
     with pytest.raises(InputError) as refused:
         logic.read(PLAN)
     assert sentence in str(refused.value)
@@ -139,9 +123,7 @@ def test_each_segment_of_a_segmentation_is_a_structure(scene):
     node = scene.AddNewNodeByClass("vtkMRMLSegmentationNode", "Vessels")
     node.GetSegmentation().SetSourceRepresentationName("Closed surface")
     for name, x in (("Artery", -20.0), ("Vein", 20.0)):
-        source = vtk.vtkSphereSource()
-        source.SetCenter(x, 0.0, 0.0)
-        source.SetRadius(6.0)
+        source = setValues(vtk.vtkSphereSource(), Center=(x, 0.0, 0.0), Radius=6.0)
         source.Update()
         node.AddSegmentFromClosedSurfaceRepresentation(source.GetOutput(), name, [1.0, 0.0, 0.0])
     meshes = noGoMeshes([node])

@@ -58,16 +58,14 @@ def test_an_error_of_input_is_one_line_of_the_log_and_a_mistake_of_ours_its_trac
     assert "TypeError" in host.errors.pop()
 
 
-def test_saving_reopening_and_resaving_a_replay_leaves_the_log_empty(at_work, tmp_path):
+def test_replaying_saving_coloring_planning_plotting_and_closing_leave_the_log_empty(
+    at_work, tmp_path
+):
     at_work.press("replayButton")
     for name in ("first.mrb", "second.mrb"):
         at_work.save_scene(tmp_path / name)
         at_work.load_scene(tmp_path / name)
     assert findReplay(at_work.scene).GetNumberOfItems() > 100
-    assert at_work.errors == []
-
-
-def test_coloring_planning_plotting_and_closing_leave_the_log_empty(at_work):
     for _round in range(2):
         at_work.check("headColoredCheckBox")
         at_work.check("headColoredCheckBox", False)

@@ -2,7 +2,8 @@
 
 import time
 
-from rastrainer.protocol import PROTOCOL_VERSION
+import pytest
+
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.peer_socket import RETRY_PERIOD_S
@@ -29,13 +30,16 @@ def run_until_status_contains(link, words):
     run_link_until(link, lambda: words in link.status.sentence)
 
 
-def test_a_web_page_is_named_and_never_connected_to(link):
+def test_a_web_page_is_named_and_never_connected_to_and_a_simulator_after_it_is(link, clock):
     with web_server() as port:
         link.connectTo(port=port)
         run_until_status_contains(link, f"What answers at 127.0.0.1:{port} {WEB_PAGE}")
         assert link.status.state is LinkState.OTHER_PROGRAM
         assert "18944" in link.status.remedy
         assert link.connector is None
+    with SimulatorDouble(port=port):
+        clock.ahead += 5.0
+        run_until_state(link, LinkState.CONNECTED)
 
 
 def test_the_connector_stand_in_notices_commands_that_died_too_early(scene):
@@ -49,20 +53,16 @@ def test_the_connector_stand_in_notices_commands_that_died_too_early(scene):
     take_crashes()  # It may have connected again before it was stopped.
 
 
-def test_a_simulator_that_replaces_a_web_page_at_the_port_is_found(link, clock):
-    with web_server() as port:
-        link.connectTo(port=port)
-        run_until_state(link, LinkState.OTHER_PROGRAM)
-    with SimulatorDouble(port=port):
-        clock.ahead += 5.0
-        run_until_state(link, LinkState.CONNECTED)
-
-
-def test_after_a_loss_the_peer_is_recognized_again(link):
+@pytest.mark.parametrize("is_cleared", [False, True], ids=["lost", "cleared scene"])
+def test_after_a_loss_or_in_a_cleared_scene_the_peer_is_recognized_again(link, scene, is_cleared):
     with SimulatorDouble() as simulator:
         connect(link, simulator)
+        if is_cleared:
+            scene.Clear(False)
     with web_server(simulator.port):
         run_until_status_contains(link, WEB_PAGE)
+        assert link.status.state is LinkState.OTHER_PROGRAM
+        assert link.connector is None or not is_cleared
 
 
 def test_another_program_at_the_port_during_a_stall_is_not_connected_to(link):
@@ -71,15 +71,6 @@ def test_another_program_at_the_port_during_a_stall_is_not_connected_to(link):
     with stranger(says(HTTP), simulator.port):
         time.sleep(5 * RETRY_PERIOD_S)  # The connector's own thread continues all the time.
         run_until_state(link, LinkState.OTHER_PROGRAM)
-
-
-def test_after_the_scene_was_cleared_the_peer_is_recognized_again(link, scene):
-    with SimulatorDouble() as simulator:
-        connect(link, simulator)
-        scene.Clear(False)
-    with web_server(simulator.port):
-        run_until_state(link, LinkState.OTHER_PROGRAM)
-        assert link.connector is None
 
 
 def test_after_a_half_open_connection_the_peer_is_recognized_again(link, clock):
@@ -93,14 +84,6 @@ def test_after_a_half_open_connection_the_peer_is_recognized_again(link, clock):
     simulator.close()
 
 
-def test_a_simulator_of_another_version_is_not_connected_to(link):
-    with SimulatorDouble(version=PROTOCOL_VERSION + 1) as simulator:
-        link.connectTo(port=simulator.port)
-        run_until_state(link, LinkState.WRONG_VERSION)
-        assert link.connector is None
-        assert simulator.commands == []
-
-
 def test_a_connection_is_tested_without_being_made(link, simulator, clock):
     clock.stop()
     received = []
@@ -109,15 +92,10 @@ def test_a_connection_is_tested_without_being_made(link, simulator, clock):
     run_link_until(link, lambda: received)
     assert received[0].state is LinkState.CONNECTED
     assert f"A RASTrainer simulator answers at localhost:{simulator.port}" in received[0].sentence
-    assert link.status.state is LinkState.OFF
-    assert link.connector is None
-
-
-def test_a_connection_test_names_another_program(link, clock):
-    clock.stop()
-    received = []
     with web_server() as port:
         link.testConnection("127.0.0.1", port, received.append)
-        run_link_until(link, lambda: received)
-    assert received[0].state is LinkState.OTHER_PROGRAM
-    assert WEB_PAGE in received[0].sentence
+        run_link_until(link, lambda: len(received) == 2)
+    assert received[1].state is LinkState.OTHER_PROGRAM
+    assert WEB_PAGE in received[1].sentence
+    assert link.status.state is LinkState.OFF
+    assert link.connector is None

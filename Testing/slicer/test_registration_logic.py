@@ -15,7 +15,6 @@ from rastrainer.registration.registration import register, register_all_kinds
 from rastrainer.registration.target_error import expected_tre, target_error
 from rastrainer.scenario.points import LABELS
 from rastrainer.sections.registration_logic import RegistrationLogic
-from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.scene.error_colors import TRE_SCALARS
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints, worldPoints
 from rastrainer.slicer.scene.registration_input import Choices
@@ -27,7 +26,7 @@ from rastrainer.slicer.scene.trial_scene import (
     setApplied,
 )
 from Testing.slicer.shown_scenario import show_whole
-from Testing.slicer.work_at_once import WorkAtOnce
+from Testing.slicer.work_at_once import WorkAtOnce, in_turns
 
 LEGEND = "vtkMRMLColorLegendDisplayNode"
 
@@ -130,6 +129,13 @@ def test_a_bad_touch_is_named_excluded_by_one_click_and_restored(table):
     table.logic.undo()
     assert table.logic.comparison.shown.fre_mm == before
     assert not table.logic.canUndo
+    table.logic.change(table.logic.choices.without(LABELS[:12]))
+    assert len(table.logic.comparison.shown.labels) == 3
+    table.logic.change(table.logic.choices.without((LABELS[12],)))
+    assert table.logic.comparison is None
+    assert "at least 3" in table.logic.problem
+    table.logic.undo()
+    assert len(table.logic.comparison.shown.labels) == 3
 
 
 def test_a_touch_that_is_deselected_in_slicer_is_left_out_until_it_is_selected(table):
@@ -152,18 +158,6 @@ def test_a_touch_that_is_deselected_in_slicer_is_left_out_until_it_is_selected(t
     assert table.logic.comparison.shown.fre_mm == before
 
 
-def test_any_fiducial_may_be_left_out_until_too_few_are_left(table):
-    table.touch()
-    for label in LABELS[:12]:
-        table.logic.change(table.logic.choices.without((label,)))
-    assert len(table.logic.comparison.shown.labels) == 3
-    table.logic.change(table.logic.choices.without((LABELS[12],)))
-    assert table.logic.comparison is None
-    assert "at least 3" in table.logic.problem
-    table.logic.undo()
-    assert len(table.logic.comparison.shown.labels) == 3
-
-
 def test_a_stated_localization_error_weights_only_the_rigid_fit_and_can_be_undone(table):
     table.touch()
     plain = table.logic.comparison
@@ -182,12 +176,8 @@ def test_a_stated_localization_error_weights_only_the_rigid_fit_and_can_be_undon
     table.logic.undo()
     assert table.logic.comparison.fits["rigid"].weights is None
     assert table.logic.comparison.fits["rigid"].fre_mm == plain.fits["rigid"].fre_mm
-
-
-def test_the_default_localization_error_removes_the_weights(table):
-    table.touch()
-    table.logic.change(table.logic.choices.localized("4", 5.0))
-    table.logic.change(table.logic.choices.localized("4", 1.0))
+    for fle_mm in (5.0, 1.0):
+        table.logic.change(table.logic.choices.localized("4", fle_mm))
     assert table.logic.choices == Choices()
 
 
@@ -219,7 +209,8 @@ def test_the_target_may_be_any_point_and_is_followed(table):
     assert table.logic.comparison.errors[RIGID].target_mm == (0.0, 0.0, 0.0)
 
 
-def test_the_head_is_colored_by_the_expected_error_at_each_place(table):
+def test_the_head_is_colored_by_the_expected_error_at_each_place_with_a_legend(table):
+    table.scene.RegisterNodeClass(slicer.vtkMRMLColorLegendDisplayNode())
     table.touch()
     table.logic.setHeadColored(True)
     head = table.node(Role.HEAD_MODEL, "vtkMRMLModelNode")
@@ -232,22 +223,18 @@ def test_the_head_is_colored_by_the_expected_error_at_each_place(table):
     assert display.GetScalarVisibility()
     low, high = display.GetScalarRange()
     assert low <= values.min() < values.max() <= high
-    table.logic.setHeadColored(False)
-    assert not display.GetScalarVisibility()
-
-
-def test_color_bars_beside_the_head_are_labeled_in_mm(table):
-    table.scene.RegisterNodeClass(slicer.vtkMRMLColorLegendDisplayNode())
-    table.touch()
-    table.logic.setHeadColored(True)
     count = table.scene.GetNumberOfNodesByClass(LEGEND)
     legends = [table.scene.GetNthNodeByClass(n, LEGEND) for n in range(count)]
     titles = {legend.GetTitleText(): legend for legend in legends}
     assert set(titles) == {"Residual (mm)", "TRE (mm)"}
     table.logic.setHeadColored(False)
+    assert not display.GetScalarVisibility()
     assert not titles["TRE (mm)"].GetVisibility()
+    arrows = table.node(Role.RESIDUAL_ARROWS, "vtkMRMLModelNode")
+    assert arrows.GetPolyData().GetNumberOfPoints() > 0
     table.touch(table.touched[:2])
     assert not titles["Residual (mm)"].GetVisibility()
+    assert arrows.GetPolyData().GetNumberOfPoints() == 0
 
 
 def test_points_off_the_head_have_an_isotropic_error(table):
@@ -281,14 +268,6 @@ def test_other_lists_can_be_registered_and_deleted_nodes_do_not_matter(table):
     assert table.logic.problem == "Choose the list of fixed points."
 
 
-def test_without_a_registration_no_arrows_of_an_old_one_are_shown(table):
-    table.touch()
-    arrows = table.node(Role.RESIDUAL_ARROWS, "vtkMRMLModelNode")
-    assert arrows.GetPolyData().GetNumberOfPoints() > 0
-    table.touch(table.touched[:2])
-    assert arrows.GetPolyData().GetNumberOfPoints() == 0
-
-
 @pytest.fixture
 def threads(monkeypatch):
     """Returns the threads in which fits and normals are computed, by function."""
@@ -308,32 +287,19 @@ def threads(monkeypatch):
     return found
 
 
-def test_no_fit_and_no_error_is_computed_in_the_main_thread(table, logic_in_turns, work, threads):
+def test_nothing_is_computed_in_the_main_thread_and_normals_before_points_are_touched(
+    table, logic_in_turns, work, threads
+):
+    logic_in_turns.process()
+    in_turns(work)
+    assert threading.get_ident() not in threads.pop("nearest_on_mesh")
     logic_in_turns.setHeadColored(True)
     setPoints(capturedPointsNode(table.scene), LABELS, table.touched)
     logic_in_turns.process()
     in_turns(work)
     assert logic_in_turns.comparison is not None
-    assert threads.keys() == {
-        "nearest_on_mesh",
-        "register_all_kinds",
-        "target_error",
-        "expected_tre",
-    }
+    assert threads.keys() == {"register_all_kinds", "target_error", "expected_tre"}
     assert threading.get_ident() not in set.union(*threads.values())
-
-
-def test_the_normals_of_a_new_head_are_found_before_its_points_are_touched(
-    table, logic_in_turns, work, threads
-):
-    logic_in_turns.process()
-    in_turns(work)
-    assert threads.pop("nearest_on_mesh")
-    setPoints(capturedPointsNode(table.scene), LABELS, table.touched)
-    logic_in_turns.process()
-    in_turns(work)
-    assert logic_in_turns.comparison is not None
-    assert "nearest_on_mesh" not in threads
 
 
 def test_touches_are_registered_again_on_another_head(table, logic_in_turns, work):
@@ -353,22 +319,9 @@ def test_touches_are_registered_again_on_another_head(table, logic_in_turns, wor
 
 
 @pytest.fixture
-def work():
-    work = BackgroundWork()
-    yield work
-    work.close()
-
-
-@pytest.fixture
 def logic_in_turns(table, work):
     """Logic with turns; the table's own has none."""
     return RegistrationLogic(table.scene, work)
-
-
-def in_turns(work):
-    while work.isBusy:
-        work.yieldTime()
-        work.process()
 
 
 def test_with_turns_each_part_of_a_registration_is_shown_in_a_separate_turn(
@@ -377,13 +330,14 @@ def test_with_turns_each_part_of_a_registration_is_shown_in_a_separate_turn(
     logic, scene = logic_in_turns, table.scene
     setPoints(capturedPointsNode(scene), LABELS, table.touched)
     logic.process()
-    seen = []
-    while work.isBusy:
-        work.yieldTime()
-        work.process()
+    counts = []
+
+    def count():
         arrows = table.node(Role.RESIDUAL_ARROWS, "vtkMRMLModelNode")
-        seen.append((logic.transform, table.node(Role.FITS), arrows, logic.comparison))
-    counts = [sum(part is not None for part in parts) for parts in seen]
+        parts = logic.transform, table.node(Role.FITS), arrows, logic.comparison
+        counts.append(sum(part is not None for part in parts))
+
+    in_turns(work, count)
     assert counts == sorted(counts)
     assert set(counts) == {0, 1, 2, 3, 4}
     np.testing.assert_array_equal(

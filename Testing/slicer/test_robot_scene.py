@@ -45,7 +45,7 @@ def add_links(scene):
     followPlacement(scene)
 
 
-def test_each_link_is_one_colored_model_that_is_not_saved_with_the_scene(scene, robot):
+def test_each_link_is_one_colored_model_that_is_hidden_and_not_saved_with_the_scene(scene, robot):
     for node in robot:
         assert node.GetPolyData().GetNumberOfCells() > 1000
         colors = slicer.util.arrayFromModelPointData(node, "color")
@@ -54,6 +54,8 @@ def test_each_link_is_one_colored_model_that_is_not_saved_with_the_scene(scene, 
         np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0, atol=1e-4)
         assert not node.GetSaveWithScene()
     assert missingLinks(scene) == []
+    setRobotVisible(scene, False)
+    assert not any(node.GetDisplayVisibility() for node in robot)
 
 
 def test_a_link_comes_complete_so_that_no_view_draws_it_twice(scene):
@@ -108,11 +110,6 @@ def test_deleted_parts_are_recreated_when_the_robot_is_shown_again(scene, robot)
     add_links(scene)
     assert robotNode(scene, 3).GetParentTransformNode().GetName() == "Link3ToWorld"
     assert robotNode(scene, 5).GetParentTransformNode().GetName() == "Link5ToWorld"
-
-
-def test_the_robot_can_be_hidden(scene, robot):
-    setRobotVisible(scene, False)
-    assert not any(node.GetDisplayVisibility() for node in robot)
 
 
 def test_a_folder_without_a_robot_is_reported(tmp_path):

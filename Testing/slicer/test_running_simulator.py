@@ -83,22 +83,18 @@ def test_no_simulator_is_found_where_none_is_recording(running):
         running.connect()
 
 
-def test_a_leftover_simulator_is_found_and_connected_to(left_behind, running):
-    process = left_behind()
+@pytest.mark.parametrize("words", [(), ("stubborn",)])
+def test_a_leftover_simulator_is_found_connected_to_and_ended_with_its_window(
+    left_behind, running, monkeypatch, words
+):
+    monkeypatch.setattr(simulator_logic, "KILL_AFTER_S", 0.2)
+    process = left_behind(*words)
     assert running.look()
     assert (running.holder.pid, running.holder.started_by) == (process.pid, "Slicer")
     assert running.sentence.startswith("A simulator that was not started from here is running")
     assert " since 20" in running.sentence
     running.connect()
     assert running._link.made == [("127.0.0.1", 18999)]
-
-
-@pytest.mark.parametrize("words", [(), ("stubborn",)])
-def test_a_leftover_simulator_is_ended_with_its_window(left_behind, running, monkeypatch, words):
-    monkeypatch.setattr(simulator_logic, "KILL_AFTER_S", 0.2)
-    process = left_behind(*words)
-    running.look()
-    running.connect()
     running.end()
     assert running.isEnding
     assert running.sentence == "The simulator that was already running is ending."

@@ -22,13 +22,16 @@ def build(folder, title):
     os.utime(folder / "scenario.json", (later, later))
 
 
-def test_a_rebuilt_scenario_is_read_again(tmp_path):
+def test_a_rebuilt_scenario_is_read_again_and_a_removed_one_reported(tmp_path):
     build(tmp_path / "ball", "First")
     cache = ScenarioCache(tmp_path)
     first = cache.find("ball")
     assert cache.find("ball") is first
     build(tmp_path / "ball", "Second")
     assert cache.find("ball").title == "Second"
+    shutil.rmtree(tmp_path / "ball")
+    with pytest.raises(InputError, match="is not here"):
+        cache.find("ball")
 
 
 def test_listing_reads_only_the_scenarios_whose_files_have_changed(tmp_path, monkeypatch):
@@ -46,18 +49,8 @@ def test_listing_reads_only_the_scenarios_whose_files_have_changed(tmp_path, mon
     assert sorted(read) == ["ball", "egg"]
     read.clear()
     (tmp_path / "egg" / "head.ply").unlink()
-    cache.refresh()
     cache.listed()
     assert read == ["egg"]
-
-
-def test_a_removed_scenario_is_reported(tmp_path):
-    build(tmp_path / "ball", "First")
-    cache = ScenarioCache(tmp_path)
-    cache.find("ball")
-    shutil.rmtree(tmp_path / "ball")
-    with pytest.raises(InputError, match="is not here"):
-        cache.find("ball")
 
 
 def test_for_a_title_in_use_a_free_one_is_suggested(tmp_path):

@@ -23,6 +23,7 @@ from rastrainer.slicer.scene.scenario_nodes import (
 from rastrainer_headless.scene import HeadlessScene
 from Testing.domain.scenario.made_up_scenario import ball_head, ball_volume
 from Testing.slicer.scene_bundle import load_bundle
+from Testing.slicer.work_at_once import in_turns
 
 
 class Loading:
@@ -42,10 +43,7 @@ class Loading:
 
     def finish(self):
         self.loader.process()
-        while self.work.isBusy:
-            self.work.yieldTime()
-            self.work.process()
-            self.loader.process()
+        in_turns(self.work, self.loader.process)
 
     @property
     def node(self):
@@ -113,12 +111,13 @@ def test_meshes_and_images_are_read_beside_the_main_thread_and_shown_one_in_a_tu
     assert threads == {}
     loading, filled = Loading(scene), []
     loading.loader.process()
-    while loading.work.isBusy:
-        loading.work.yieldTime()
-        loading.work.process()
+
+    def count():
         models = [findNode(scene, MODEL, role) for role in (Role.HEAD_MODEL, Role.SKULL)]
         data = [*(model.GetPolyData() for model in models), loading.node.GetImageData()]
         filled.append(sum(each is not None for each in data))
+
+    in_turns(loading.work, count)
     assert threads.keys() == {"head.ply", "skull.ply", "volume.nrrd"}
     assert threading.get_ident() not in threads.values()
     assert {1, 2, 3} <= set(filled)
@@ -143,7 +142,9 @@ def test_displayed_images_are_not_read_again_and_a_users_changes_stay(scene, loa
     assert backgrounds(scene) == [loading.node.GetID()] * 3
 
 
-def test_rebuilt_images_are_read_again(scene, loading, imaged):
+def test_rebuilt_images_are_read_again_and_those_of_another_scenario_removed(
+    scene, loading, imaged, scenario
+):
     showScenario(scene, imaged)
     loading.finish()
     write_nrrd(imaged.volume.file, ball_volume(60.0).values, ball_volume(60.0).ijk_to_ras)
@@ -151,11 +152,6 @@ def test_rebuilt_images_are_read_again(scene, loading, imaged):
     loading.finish()
     assert np.array_equal(slicer.util.arrayFromVolume(loading.node).T, ball_volume(60.0).values)
     assert len(loading.shown) == 2
-
-
-def test_a_scenario_without_images_removes_those_of_another(scene, loading, imaged, scenario):
-    showScenario(scene, imaged)
-    loading.finish()
     showScenario(scene, scenario)
     loading.finish()
     assert loading.node is None
@@ -187,16 +183,15 @@ def test_unusable_images_are_reported_and_the_head_is_shown(scene, loading, imag
     assert findNode(scene, MODEL, Role.HEAD_MODEL) is not None
 
 
-def test_a_node_deleted_while_it_is_read_stays_deleted(scene, loading, imaged):
+def test_a_node_deleted_while_it_is_read_stays_deleted_and_one_without_display_is_filled(
+    scene, loading, imaged
+):
     showScenario(scene, imaged)
     loading.loader.process()
     scene.RemoveNode(loading.node)
     loading.finish()
     assert loading.node is None
     assert loading.problems == loading.shown == []
-
-
-def test_a_node_whose_display_is_deleted_is_filled_anyway(scene, loading, imaged):
     showScenario(scene, imaged)
     scene.RemoveNode(loading.node.GetDisplayNode())
     loading.finish()

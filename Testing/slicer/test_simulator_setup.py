@@ -71,18 +71,8 @@ def bolt(tmp_path):
 
 
 @pytest.fixture
-def source(bolt):
-    return {"wheels": bolt.parent}
-
-
-@pytest.fixture
-def package(tmp_path, bolt):
-    return write_module(tmp_path, bolt)
-
-
-@pytest.fixture
-def setup(tmp_path, package):
-    return setup_in(tmp_path, package)
+def setup(tmp_path, bolt):
+    return setup_in(tmp_path, write_module(tmp_path, bolt))
 
 
 @pytest.fixture(scope="module")
@@ -118,20 +108,26 @@ def left_beside(setup):
     return [path.name for path in kept.iterdir()]
 
 
-def replaced(wheel, text):
-    """Put other content under the name of a wheel, as the owner of the folder could."""
-    write_wheel(wheel.parent, *wheel.name.split("-")[:2], {"bolt.py": text})
-
-
-def test_the_simulator_is_set_up_from_a_folder_of_wheels_without_a_network(setup, source):
+def test_the_simulator_is_set_up_from_a_folder_of_wheels_without_a_network_or_the_users_settings(
+    setup, bolt, tmp_path, monkeypatch
+):
+    settings = tmp_path / "pip.conf"
+    settings.write_text("[global]\nno-binary = :all:\nuser = true\n", encoding="utf-8")
+    monkeypatch.setenv("PIP_CONFIG_FILE", str(settings))
+    monkeypatch.setenv("PIP_TARGET", str(tmp_path / "elsewhere"))
     left = setup.folder.with_name("simulator.removed-0123")
     left.mkdir(parents=True)
     (left / "library.so").touch()
     counts = []
     setup.progressed.connect(lambda _line: counts.append(setup.fetched))
     assert (setup.isCurrent, setup.folder.is_dir(), setup.count) == (False, False, 0)
-    lines, error = run_setup(setup, **source)
+    with PackageIndex([bolt]) as index:
+        monkeypatch.setenv("PIP_INDEX_URL", index.address)
+        monkeypatch.setenv("PIP_EXTRA_INDEX_URL", index.address)
+        lines, error = run_setup(setup, wheels=bolt.parent)
     assert error == "", lines
+    assert index.asked == []
+    assert not (tmp_path / "elsewhere").exists()
     assert (setup.installedVersion, setup.isCurrent) == (__version__, True)
     assert (setup.folder / "rastrainer_simulator" / "cli" / "main.py").is_file()
     assert (setup.folder / "bolt.py").is_file()
@@ -144,24 +140,14 @@ def test_the_simulator_is_set_up_from_a_folder_of_wheels_without_a_network(setup
     assert left_beside(setup) == ["simulator"]
 
 
-def test_nothing_is_installed_whose_hash_the_module_does_not_know(setup, source, bolt):
-    replaced(bolt, "SIZE = 'whatever'\n")
-    lines, error = run_setup(setup, **source)
-    assert "installation ended with status 1" in error
-    assert any("DO NOT MATCH THE HASHES" in line for line in lines)
-    assert left_beside(setup) == []
-
-
-def test_nothing_is_built_from_source_during_setup_even_if_its_hash_is_known(
-    setup, source, package, bolt, tmp_path
-):
+def test_nothing_is_built_from_source_during_setup_even_if_its_hash_is_known(setup, bolt, tmp_path):
     mark = tmp_path / "sources were run"
     path = bolt.with_name("bolt-1.0.zip")
     with zipfile.ZipFile(path, "w") as sources:
         sources.writestr("bolt-1.0/setup.py", f"open({str(mark)!r}, 'w').close()")
-    write_package(package.folder, CLI, [lock_entry(path)])
+    write_package(setup.package.folder, CLI, [lock_entry(path)])
     bolt.rename(bolt.with_name("other-1.0-py3-none-any.whl"))
-    lines, error = run_setup(setup, **source)
+    lines, error = run_setup(setup, wheels=bolt.parent)
     assert "installation ended with status 1" in error
     assert any("No matching distribution found for bolt==1.0" in line for line in lines)
     assert not mark.exists()
@@ -176,21 +162,6 @@ def test_only_third_party_packages_are_requested_from_a_private_index(setup, bol
     assert (setup.folder / "rastrainer_simulator" / "cli" / "main.py").is_file()
 
 
-def test_pip_ignores_the_users_settings(setup, source, bolt, tmp_path, monkeypatch):
-    with PackageIndex([bolt]) as index:
-        settings = tmp_path / "pip.conf"
-        text = f"[global]\nindex-url = {index.address}\nextra-index-url = {index.address}\n"
-        settings.write_text(f"{text}no-binary = :all:\nuser = true\n", encoding="utf-8")
-        monkeypatch.setenv("PIP_CONFIG_FILE", str(settings))
-        monkeypatch.setenv("PIP_INDEX_URL", index.address)
-        monkeypatch.setenv("PIP_EXTRA_INDEX_URL", index.address)
-        monkeypatch.setenv("PIP_TARGET", str(tmp_path / "elsewhere"))
-        lines, error = run_setup(setup, **source)
-        assert error == "", lines
-        assert index.asked == []
-    assert not (tmp_path / "elsewhere").exists()
-
-
 @pytest.mark.parametrize("address", ["pypi", "ftp://127.0.0.1/simple", "https://", "file:///tmp"])
 def test_an_invalid_index_address_is_reported_before_the_setup_starts(setup, address):
     with pytest.raises(InputError, match="start it with https://"):
@@ -198,14 +169,14 @@ def test_an_invalid_index_address_is_reported_before_the_setup_starts(setup, add
     assert not setup.folder.parent.exists()
 
 
-def test_a_simulator_missing_or_damaged_in_the_module_is_reported(setup, source, package):
-    wheel = package.folder / WHEEL
+def test_a_simulator_missing_or_damaged_in_the_module_is_reported(setup, bolt):
+    wheel = setup.package.folder / WHEEL
     wheel.write_bytes(wheel.read_bytes()[:-1])
     with pytest.raises(InputError, match="is damaged: reinstall the extension RASTrainer"):
-        setup.begin(**source)
-    (package.folder / f"{WHEEL}.sha256").unlink()
+        setup.begin(wheels=bolt.parent)
+    (setup.package.folder / f"{WHEEL}.sha256").unlink()
     with pytest.raises(InputError, match=r"is missing in .*: reinstall the extension"):
-        setup.begin(**source)
+        setup.begin(wheels=bolt.parent)
     assert not setup.folder.parent.exists()
 
 
@@ -242,16 +213,20 @@ def test_removing_the_simulator_leaves_nothing(installed):
     installed.remove()
 
 
-def test_an_installed_simulator_starts_reports_its_port_and_stops(installed):
+@pytest.mark.parametrize(
+    ("word", "state", "sentence"),
+    [
+        ("--end", ProgramState.FAILED, "(status 3): The port is taken."),
+        # As where its window is closed.
+        ("--close", ProgramState.STOPPED, "The simulator has ended."),
+    ],
+)
+def test_a_simulator_that_ends_by_itself_says_why(installed, word, state, sentence):
     program = SimulatorProgram()
-    command = installed.command(["simulator", "--port", "18999"])
-    program.start(command)
-    assert program.state is ProgramState.STARTING
-    wait_until(lambda: program.state is ProgramState.READY, program.process)
-    assert program.port == 18999
-    program.stop()
+    program.start(installed.command(["simulator", "--port", "1", word]))
     wait_until(lambda: not program.isRunning, program.process)
-    assert program.state is ProgramState.STOPPED
+    assert program.state is state
+    assert program.sentence.endswith(sentence)
 
 
 def test_the_pairing_of_a_headset_is_described_until_the_simulator_ends(installed):
@@ -262,9 +237,13 @@ def test_the_pairing_of_a_headset_is_described_until_the_simulator_ends(installe
             received.append(program.pairingSentence)
 
     program.changed.connect(note)
-    program.start(installed.command(["simulator", "--port", "1", "--lan"]))
+    program.start(installed.command(["simulator", "--port", "18999", "--lan"]))
+    assert program.state is ProgramState.STARTING
     wait_until(lambda: program.pairingCode == "678901", program.process)
+    assert (program.state, program.port) == (ProgramState.READY, 18999)
     program.stop()
+    wait_until(lambda: not program.isRunning, program.process)
+    assert program.state is ProgramState.STOPPED
     here = "In a browser or a headset open http://127.0.0.1:18945"
     everywhere = f"{here} or https://192.0.2.7:18946 or https://192.0.2.8:18946"
     warning = "The browser warns about a certificate made here; its SHA-256 fingerprint is AB:01."
@@ -277,44 +256,31 @@ def test_the_pairing_of_a_headset_is_described_until_the_simulator_ends(installe
     ]
 
 
-def test_a_simulator_that_ends_by_itself_says_why(installed):
-    program = SimulatorProgram()
-    program.start(installed.command(["simulator", "--port", "1", "--end"]))
-    wait_until(lambda: program.state is ProgramState.FAILED, program.process)
-    assert program.sentence.endswith("(status 3): The port is taken.")
-
-
-def test_a_simulator_whose_window_is_closed_has_simply_ended(installed):
-    program = SimulatorProgram()
-    program.start(installed.command(["simulator", "--port", "1", "--close"]))
-    wait_until(lambda: not program.isRunning, program.process)
-    assert (program.state, program.sentence) == (ProgramState.STOPPED, "The simulator has ended.")
-
-
-def test_a_failed_setup_leaves_the_old_one_and_says_what_to_do(installed, tmp_path):
-    (bolt,) = (tmp_path / "wheels").iterdir()
-    replaced(bolt, "")
-    _lines, error = run_setup(installed, wheels=bolt.parent)
+def test_nothing_is_installed_whose_hash_is_unknown_and_the_old_set_up_stays(installed, tmp_path):
+    write_wheel(tmp_path / "wheels", "bolt", "1.0", {"bolt.py": "SIZE = 'whatever'\n"})
+    lines, error = run_setup(installed, wheels=tmp_path / "wheels")
+    assert "installation ended with status 1" in error
     assert "choose a folder of wheels or your own package index" in error
+    assert any("DO NOT MATCH THE HASHES" in line for line in lines)
     assert installed.isCurrent
     assert left_beside(installed) == ["simulator"]
 
 
-def test_an_installation_that_cannot_be_run_is_not_used(setup, source, tmp_path, bolt):
+def test_an_installation_that_cannot_be_run_is_not_used(setup, tmp_path, bolt):
     package = write_package(tmp_path / "broken", CLI + ")", [lock_entry(bolt)])
     broken = SimulatorSetup(Path(sys.executable), setup.folder, package)
-    lines, error = run_setup(broken, **source)
+    lines, error = run_setup(broken, wheels=bolt.parent)
     assert "cannot be run (status 1)" in error
     assert "SyntaxError" in lines[-1]
     assert left_beside(setup) == []
 
 
-def test_a_setup_can_be_canceled(setup, source):
+def test_a_setup_can_be_canceled(setup, bolt):
     ends = []
     setup.finished.connect(ends.append)
-    setup.begin(**source)
+    setup.begin(wheels=bolt.parent)
     with pytest.raises(InputError, match="already being set up"):
-        setup.begin(**source)
+        setup.begin(wheels=bolt.parent)
     with pytest.raises(InputError, match="Cancel the set-up first"):
         setup.remove()
     setup.cancel()
@@ -325,10 +291,10 @@ def test_a_setup_can_be_canceled(setup, source):
     assert left_beside(setup) == []
 
 
-def test_a_folder_without_wheels_and_a_missing_python_are_reported(setup, package, tmp_path):
+def test_a_folder_without_wheels_and_a_missing_python_are_reported(setup, tmp_path):
     with pytest.raises(InputError, match="no wheels"):
         setup.begin(wheels=tmp_path)
-    missing = SimulatorSetup(tmp_path / "PythonSlicer", tmp_path / "simulator", package)
+    missing = SimulatorSetup(tmp_path / "PythonSlicer", tmp_path / "simulator", setup.package)
     with pytest.raises(InputError, match="cannot be started: No such file"):
         missing.begin()
 
@@ -343,8 +309,8 @@ def test_slicers_python_and_the_checkout_are_found_where_they_are(tmp_path):
     assert SimulatorPackage.of(tmp_path / "RASTrainer").checkout == tmp_path
 
 
-def test_the_size_of_a_setup_is_known_for_measured_platforms(package, monkeypatch):
-    assert package.sizesMB() is None
+def test_the_size_of_a_setup_is_known_for_measured_platforms(setup, monkeypatch):
+    assert setup.package.sizesMB() is None
     ours = SimulatorPackage.of(Path(__file__).parents[2] / "RASTrainer")
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setattr("platform.machine", lambda: "x86_64")

@@ -3,26 +3,22 @@
 import uuid
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from rastrainer import transforms
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.scenario.points import LABELS
-from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
 from rastrainer.slicer.scene.robot import robotNode
-from rastrainer_simulator.assets import asset_path
 from Testing.slicer.host.scene_load import SceneLoad
-from Testing.slicer.recorded_trial import store_trial_on_colin, write_recorded_trial
+from Testing.slicer.recorded_trial import (
+    COLIN27,
+    store_trial_on_colin,
+    touches_on_colin,
+    write_recorded_trial,
+)
 from Testing.slicer.simulator_double import SimulatorDouble
 
 TRIAL = str(uuid.UUID(int=1))
-
-
-@pytest.fixture
-def colin():
-    return load_scenario(asset_path("scenarios", "colin27"))
 
 
 @pytest.fixture
@@ -46,17 +42,13 @@ def triangles(path):
     return len(read_head_mesh(path).triangles)
 
 
-def test_a_scenario_comes_one_surface_and_one_view_at_a_time(opened, colin):
+def test_a_scenario_comes_one_surface_one_view_and_few_nodes_at_a_time(opened):
     load = shown(opened, lambda: opened.press("showScenarioButton"))
-    largest = max(triangles(colin.head), triangles(colin.skull.file))
+    largest = max(triangles(COLIN27.head), triangles(COLIN27.skull.file))
     assert load.most.cells == largest
-    assert load.total.cells == triangles(colin.head) + triangles(colin.skull.file)
+    assert load.total.cells == triangles(COLIN27.head) + triangles(COLIN27.skull.file)
     assert load.most.views == 1
     assert load.total.views > 1
-
-
-def test_the_nodes_of_a_scenario_come_a_few_in_each_turn(opened):
-    load = shown(opened, lambda: opened.press("showScenarioButton"))
     # A list of points, its display, and the planned pose.
     assert load.most.nodes <= 3
     assert load.total.nodes >= 12
@@ -86,13 +78,10 @@ def test_the_robot_comes_one_link_at_a_time_and_is_told_of_once(opened):
     assert load.most.events < 20
 
 
-def test_touches_are_shown_in_parts_and_each_once(opened, colin):
+def test_touches_are_shown_in_parts_and_each_once(opened):
     opened.press("showScenarioButton")
     opened.finish_work()
-    touched = transforms.apply(
-        colin.perturbed_head_to_world(3), colin.task("task-1").fiducials + 0.3
-    )
-    points = capturedPointsNode(opened.scene)
+    touched, points = touches_on_colin(), capturedPointsNode(opened.scene)
     load = shown(
         opened,
         lambda: setPoints(points, LABELS[:14], touched[:14]),
@@ -100,15 +89,8 @@ def test_touches_are_shown_in_parts_and_each_once(opened, colin):
     )
     assert opened.find("residualsTable").rowCount == 15
     # The arrows of both; the head is not handed over again.
-    assert 0 < load.most.cells < load.total.cells < triangles(colin.head)
+    assert 0 < load.most.cells < load.total.cells < triangles(COLIN27.head)
     assert load.most.events < 50
-
-
-def test_the_views_jump_to_a_chosen_point_one_after_the_other(opened):
-    opened.press("showScenarioButton")
-    opened.finish_work()
-    load = shown(opened, lambda: opened.widget.logic.session.slices.show(np.ones(3)))
-    assert (load.most.views, load.total.views) == (1, 3)
 
 
 def test_connecting_makes_one_node_at_a_time(opened):

@@ -11,8 +11,7 @@ from rastrainer.protocol import StepKind
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.questionnaires import SSQ
 from rastrainer.study.protocol.study_progress import StudyProgress
-from rastrainer.trial.aborted_trial import AbortedTrial
-from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.record import AbortedTrial
 from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record
 
 SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "published-protocol.json"
@@ -41,6 +40,15 @@ def begun(panel):
 def entries(host):
     with Study.open(host.find("studyPathLineEdit").currentPath) as study:
         return [(e.step, e.outcome) for e in StudyProgress(study).progress("T001").entries]
+
+
+def skip_to_a_trial(host):
+    """Skip every step before the first trial; return that step."""
+    study = host.widget.logic.session.study
+    while study.progress().next_step.kind is not StepKind.TRIAL:
+        host.answer("Why is it skipped?", "this is not what is tested")
+        host.press("skipStepButton")
+    return study.progress().next_step
 
 
 def outcomes(host):
@@ -83,19 +91,6 @@ def test_a_questionnaire_is_a_form_that_keeps_no_partial_answers(begun):
     assert outcomes(begun)[:3] == ["done", "next", ""]
 
 
-def test_the_form_states_that_performance_runs_from_perfect_to_failure(panel, tmp_path):
-    protocol = json.loads(SHIPPED.read_text())
-    protocol["questionnaires"] = [{"name": "nasa-tlx", "when": "before-all", "modes": []}]
-    path = tmp_path / "protocol.json"
-    path.write_text(json.dumps(protocol))
-    panel.type("protocolPathLineEdit", str(path))
-    panel.answer("Begin the study", "Yes")
-    panel.press("beginStudyButton")
-    panel.press("enrollButton")
-    assert panel.text("tlx_performanceLabel") == "4. Performance: 0 is perfect, 100 is failure"
-    assert panel.text("tlx_effortLabel") == "5. Effort"
-
-
 def test_a_step_is_skipped_only_with_a_reason_and_started_only_in_its_turn(begun):
     begun.answer("Why is it skipped?", "no sheets")
     begun.answer("only with a reason", "the sheets were missing")
@@ -118,27 +113,21 @@ def test_a_step_is_skipped_only_with_a_reason_and_started_only_in_its_turn(begun
     ],
 )
 def test_the_panel_says_why_a_trial_did_not_count(begun, changes, score, reason):
-    study = begun.widget.logic.session.study
-    while study.progress().next_step.kind is not StepKind.TRIAL:
-        begun.answer("Why is it skipped?", "this is not what is tested")
-        begun.press("skipStepButton")
+    study, step = begun.widget.logic.session.study, skip_to_a_trial(begun)
     assert "did not count" not in begun.text("stepText")
-    step, started = study.progress().next_step, datetime.now(timezone.utc).isoformat()
+    started = datetime.now(timezone.utc).isoformat()
     record = make_record(
         trainee="T001", mode=step.mode, task=step.task, startedUtc=started, **changes
     )
     with Study.open(begun.find("studyPathLineEdit").currentPath) as elsewhere:
         elsewhere.add_trial(record, score=score)
-    study.leadOn(record_from_json(TrialRecord, record).trainee)
+    study.leadOn("T001")
     assert f"The last trial did not count: {reason}." in begun.text("stepText")
     assert study.progress().next_step == step
 
 
 def test_an_aborted_trial_is_played_again_only_with_a_reason(begun):
-    while begun.widget.logic.session.study.progress().next_step.kind is not StepKind.TRIAL:
-        begun.answer("Why is it skipped?", "this is not what is tested")
-        begun.press("skipStepButton")
-    step = begun.widget.logic.session.study.progress().next_step
+    step = skip_to_a_trial(begun)
     started = datetime.now(timezone.utc).isoformat()
     record = make_aborted(
         trainee="T001", mode=step.mode, task=step.task, startedUtc=started, touches=15

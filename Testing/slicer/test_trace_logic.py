@@ -105,7 +105,7 @@ def has_points(tracing, count):
     return lambda: tracing.shown is not None and len(tracing.shown) == count
 
 
-def test_points_lie_where_the_landmarks_place_them_and_the_skin_is_colored(tracing):
+def test_points_lie_where_the_landmarks_place_them_with_the_place_to_draw_next(tracing):
     tracing.draw(40)
     tracing.run_until(has_points(tracing, 40))
     np.testing.assert_allclose(tracing.shown, tracing.places, atol=1e-3)
@@ -117,14 +117,12 @@ def test_points_lie_where_the_landmarks_place_them_and_the_skin_is_colored(traci
     away = vtk_to_numpy(data.GetPointData().GetArray(DISTANCE_SCALARS))
     expected = np.linalg.norm(vertices[:, None] - tracing.places, axis=2).min(axis=1)
     np.testing.assert_allclose(away, np.minimum(expected, 20.0), atol=1e-3)
-
-
-def test_the_next_place_to_draw_is_marked_away_from_the_trace(tracing):
-    tracing.draw(40)
-    tracing.run_until(lambda: tracing.node(Role.NEXT_PLACE) is not None)
     place = np.array(tracing.node(Role.NEXT_PLACE).GetNthControlPointPosition(0))
     assert np.linalg.norm(tracing.places - place, axis=1).min() > 10.0
     assert np.linalg.norm(place) == pytest.approx(90.0, abs=0.5)
+    # An undone stroke disappears.
+    tracing.draw(10)
+    tracing.run_until(has_points(tracing, 10))
 
 
 def test_a_trainee_without_guidance_is_shown_only_the_points(tracing):
@@ -149,15 +147,7 @@ def test_the_trace_is_requested_once_a_second_and_only_as_it_grows(tracing):
     assert tracing.sent("GetTrial") == 2 * [{"trialId": TRIAL}]
 
 
-def test_an_undone_stroke_disappears_from_the_scene(tracing):
-    tracing.draw(40)
-    tracing.run_until(has_points(tracing, 40))
-    tracing.draw(10)
-    tracing.run_until(has_points(tracing, 10))
-
-
 def test_the_whole_trace_disappears_when_the_trial_ends(tracing):
-    opacity = 1.0
     tracing.draw(40)
     tracing.run_until(lambda: tracing.node(Role.NEXT_PLACE) is not None)
     tracing.tell(phase="registered", method="surface", trace={"kept": 40, "strokes": 1})
@@ -165,7 +155,7 @@ def test_the_whole_trace_disappears_when_the_trial_ends(tracing):
     assert tracing.node(Role.TRACED_POINTS, MODEL) is None
     assert tracing.node(Role.NEXT_PLACE) is None
     assert not tracing.head.GetDisplayNode().GetScalarVisibility()
-    assert tracing.head.GetDisplayNode().GetOpacity() == opacity
+    assert tracing.head.GetDisplayNode().GetOpacity() == 1.0
     assert tracing.head.GetPolyData().GetPointData().GetArray(DISTANCE_SCALARS) is None
 
 

@@ -2,7 +2,6 @@
 
 import json
 import uuid
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -32,24 +31,6 @@ def truth_of(scenario, seed=1):
     return RevealedTruth(tuple(pose.ravel().tolist()), 0.3)
 
 
-def true_tre(scenario, analysis, seed):
-    there = transforms.apply(scenario.perturbed_head_to_world(seed), scenario.target.position_ras)
-    back = transforms.apply(analysis.rigid.matrix, there)
-    return float(np.linalg.norm(back - scenario.target.position_ras))
-
-
-def test_the_true_error_lies_in_the_interval_nearly_always(scenario, make_record):
-    hits = 0
-    for seed in range(25):
-        analysis = analyze_trial(
-            record_from_json(TrialRecord, make_record(str(uuid.UUID(int=seed)), seed=seed)),
-            scenario,
-        )
-        low, high = analysis.target_errors[RIGID].interval_mm
-        hits += low <= true_tre(scenario, analysis, seed) <= high
-    assert hits >= 21
-
-
 def test_touches_are_paired_with_fiducials_by_label(scenario, make_record):
     value = make_record(str(uuid.UUID(int=1)))
     expected = analyze_trial(record_from_json(TrialRecord, value), scenario).rigid
@@ -76,25 +57,18 @@ def test_all_three_kinds_are_fitted_and_the_true_error_of_the_rigid_one_is_score
     assert 0 < analysis.score.score < 100
 
 
-def test_there_is_no_score_before_the_truth_is_revealed(scenario, record):
-    analysis = analyze_trial(record, scenario)
-    assert analysis.score is None
-    assert not any(sentence.startswith("Score") for sentence in analysis.feedback.sentences)
-
-
-def test_a_common_bias_is_scored_and_reported_with_its_direction(scenario, make_record):
-    value = make_record(str(uuid.UUID(int=1)))
-    truth, record = truth_of(scenario), record_from_json(TrialRecord, value)
-    honest = analyze_trial(record, scenario, truth=truth)
-    task = scenario.task(record.task)
-    aims = task.fiducials - 1.4 * along_skin(fiducial_normals(scenario, record.task), [1.0, 0, 0])
+def test_a_common_bias_is_scored_and_reported_until_the_truth_is_unknown(scenario, make_record):
+    value, truth = make_record(str(uuid.UUID(int=1))), truth_of(scenario)
+    task, normals = scenario.task("task-1"), fiducial_normals(scenario, "task-1")
+    # The part along the skin of a shift to the patient's right.
+    shift = np.array([1.0, 0.0, 0.0])
+    aims = task.fiducials - 1.4 * (shift - normals * (normals @ shift)[:, None])
     for point in value["points"]:
         aim = aims[task.labels.index(point["label"])]
         point["positionMm"] = transforms.apply(truth.matrix, aim).tolist()
     beside = analyze_trial(record_from_json(TrialRecord, value), scenario, truth=truth)
     assert beside.score.measures.common_bias_mm == pytest.approx(1.4)
     assert beside.score.acceptable
-    assert beside.score.score < 0.7 * honest.score.score
     (advice,) = [each for each in beside.feedback.advice if each.topic == "common bias"]
     assert "the touches are 1.4 mm too far to the patient's left" in advice.sentence
     stored = analyze_trial(record_from_json(TrialRecord, value), scenario)
@@ -102,11 +76,6 @@ def test_a_common_bias_is_scored_and_reported_with_its_direction(scenario, make_
     assert again.feedback.advice == beside.feedback.advice
     unknown = stored.scored_as(beside.score, scenario, None).feedback.advice
     assert "common bias" not in [one.topic for one in unknown]
-
-
-def along_skin(normals, vector):
-    """The part of a vector along the skin, (n, 3) float."""
-    return vector - normals * (normals @ vector)[:, None]
 
 
 def test_only_the_score_detects_an_offset_shared_by_all_touches(scenario, make_record):
@@ -131,35 +100,19 @@ def test_ctps_compares_with_the_published_trials_of_the_same_mode(scenario, reco
     fre = analysis.rigid.fre_mm
     assert score.published == pytest.approx(100 * (90.0 / 129.435 - (fre - 1.01) / 1.01))
     assert score.equation_3 == pytest.approx(score.published / 2)
+    alone = analyze_trial(record, scenario)
+    # No score before the truth is revealed, and no CTPS without other trials.
+    assert (alone.published_score, alone.score) == (None, None)
+    assert not any(sentence.startswith("Score") for sentence in alone.feedback.sentences)
 
 
-def test_without_a_cohort_there_is_no_ctps(scenario, record):
-    assert analyze_trial(record, scenario).published_score is None
-
-
-def test_the_mode_does_not_affect_the_score_and_the_protocols_references_apply(scenario, record):
-    def score(record=record, **others):
+def test_the_protocols_references_apply(scenario, record):
+    def score(**others):
         return analyze_trial(record, scenario, truth=truth_of(scenario), **others).score
 
-    assert score(replace(record, mode="hmd")) == score()
     strict = {record.task: ScoreReference(20.0, 0.1, 0.5)}
     assert score(references=strict).score < score().score
-    others = {"task-5": ScoreReference(20.0, 0.1, 0.5)}
-    assert score(references=others) == score()
-
-
-def test_the_feedback_names_the_worst_touches_and_their_place_on_the_skin(scenario, record):
-    feedback = analyze_trial(record, scenario, truth=truth_of(scenario)).feedback
-    assert [touch.label for touch in feedback.touches] == list(record.labels)
-    for touch in feedback.touches:
-        assert touch.depth_mm**2 + touch.aside_mm**2 == pytest.approx(touch.residual_mm**2)
-    assert feedback.sentences[0].startswith("Score ")
-
-
-def test_a_task_missing_from_the_scenario_is_reported_with_a_message(scenario, make_record):
-    value = make_record(str(uuid.UUID(int=1))) | {"task": "task-9"}
-    with pytest.raises(InputError, match="it has trial-run, task-1, task-2"):
-        analyze_trial(record_from_json(TrialRecord, value), scenario)
+    assert score(references={"task-5": strict[record.task]}) == score()
 
 
 def test_the_results_are_json_with_finite_numbers(scenario, record):

@@ -70,24 +70,17 @@ def test_the_tool_is_where_it_was_at_every_time(scene, replayed, tips):
         assert said == f"{30.0 - 5.0 * shown:.1f} mm"
 
 
-def test_touches_appear_at_the_time_they_were_made(scene, replayed):  # noqa: ARG001
-    counts = []
-    for seconds in (0.9, 1.1, 2.5, 3.0):
-        goTo(scene, seconds)
-        counts.append(node(scene, "touches").GetNumberOfControlPoints())
-    assert counts == [0, 1, 2, 3]
-    assert node(scene, "touches").GetNthControlPointLabel(2) == "3"
-
-
-def test_a_trace_grows_as_it_was_drawn_on_the_head_and_is_removed_with_the_replay(scene, tmp_path):
+def test_touches_and_trace_appear_as_they_were_made_and_leave_with_the_replay(scene, tmp_path):
     tips = write_recorded_trial(tmp_path, TRIAL, traced=45)
     track = find_track(tmp_path, TRIAL)
     showReplay(scene, "Trial 1", track, readArmChain(URDF), WORLD_TO_HEAD)
     counts = []
-    for seconds in (0.02, 0.3, 0.5, 3.0):
+    for seconds in (0.02, 0.3, 0.5, 1.1, 2.5, 3.0):
         goTo(scene, seconds)
-        counts.append(node(scene, "trace").GetPolyData().GetNumberOfPoints())
-    assert counts == [0, 10, 20, 45]
+        touches = node(scene, "touches").GetNumberOfControlPoints()
+        counts.append((node(scene, "trace").GetPolyData().GetNumberOfPoints(), touches))
+    assert counts == [(0, 0), (10, 0), (20, 0), (45, 1), (45, 2), (45, 3)]
+    assert node(scene, "touches").GetNthControlPointLabel(2) == "3"
     trace = node(scene, "trace")
     last = np.array(trace.GetPolyData().GetPoint(44))
     np.testing.assert_allclose(last, tips[44], atol=1e-3)
@@ -109,20 +102,14 @@ def test_another_trial_replaces_the_previous_one(scene, replayed, tmp_path):
     goTo(scene, 1.0)
 
 
-def test_a_replay_is_saved_with_the_scene(headless_scene, replayed, tmp_path):
+def test_a_replay_with_its_trace_is_saved_with_the_scene(headless_scene, scene, tmp_path):
+    write_recorded_trial(tmp_path, TRIAL, traced=45)
+    track = find_track(tmp_path, TRIAL)
+    replayed = showReplay(scene, "Trial 1", track, readArmChain(URDF), WORLD_TO_HEAD)
     headless_scene.save(tmp_path / "trial.mrb")
     again = HeadlessScene()
     load_bundle(again, tmp_path / "trial.mrb")
     assert findReplay(again.scene).GetNumberOfItems() == replayed.GetNumberOfItems()
-
-
-def test_a_replayed_trace_is_saved_with_the_scene(headless_scene, scene, tmp_path):
-    write_recorded_trial(tmp_path, TRIAL, traced=45)
-    track = find_track(tmp_path, TRIAL)
-    showReplay(scene, "Trial 1", track, readArmChain(URDF), WORLD_TO_HEAD)
-    headless_scene.save(tmp_path / "trial.mrb")
-    again = HeadlessScene()
-    load_bundle(again, tmp_path / "trial.mrb")
     goTo(again.scene, 3.0)
     assert node(again.scene, "trace").GetPolyData().GetNumberOfPoints() == 45
 

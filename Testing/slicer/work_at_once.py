@@ -1,4 +1,4 @@
-"""Background work that is done at once, for tests of its results."""
+"""Background work, done at once or turn by turn until nothing is left, for tests of its results."""
 
 from __future__ import annotations
 
@@ -18,3 +18,11 @@ class WorkAtOnce:
 
     def later(self, function):
         function()
+
+
+def in_turns(work, then=lambda: None):
+    """Let all work be done; `then` is called after each turn."""
+    while work.isBusy:
+        work.yieldTime()
+        work.process()
+        then()

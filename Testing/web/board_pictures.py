@@ -39,10 +39,7 @@ def assignments(found: Standings, trainee: str) -> str:
 
 
 def seat(
-    trainee: str,
-    task: str,
-    state: tuple[Phase, TouchStage, int, int],
-    **others: object,
+    trainee: str, task: str, state: tuple[Phase, TouchStage, int, int], **others: object
 ) -> str:
     """Return what a seat reports; its state is phase, touch, touched points and time, s."""
     phase, touch, touched, elapsed = state

@@ -260,9 +260,9 @@ def test_a_scrolled_list_shows_the_item_in_focus_and_its_help(told_page, served,
         assert told_page.evaluate(IN_FOCUS) == [True, True], item.name
 
 
-TORN = """() => [...document.querySelectorAll("#menu dd")].flatMap((value) => {
+TORN = """() => [...document.querySelectorAll("#menu :is(dt, dd)")].flatMap((value) => {
   const text = value.firstChild.data;
-  const whole = /\\d\\s(?:mm|s|%)|(?:m[aá]x\\.|最大)\\s\\d|\\d+[.,]?\\d*[)）]/gu;
+  const whole = /\\d\\s(?:mm|s|%)|(?:m[aá]x\\.|最大)\\s\\d|\\d+[.,]?\\d*[)）]|\\p{Script=Latin}+/gu;
   return [...text.matchAll(whole)].filter(({ index, 0: found }) => {
     const range = document.createRange();
     range.setStart(value.firstChild, index);
@@ -272,7 +272,9 @@ TORN = """() => [...document.querySelectorAll("#menu dd")].flatMap((value) => {
 })"""
 
 
-def test_no_number_is_torn_from_its_unit_or_limit_on_a_phone(told_page, served, screens):
+def test_no_word_of_a_fact_is_torn_and_no_number_from_its_unit_or_limit_on_a_phone(
+    told_page, served, screens
+):
     resize(told_page, *SIZES["phone"])
     for language in LANGUAGES:
         shown = screens(language)

@@ -12,6 +12,7 @@ from rastrainer_simulator.report.report import report_html
 from Testing.domain.study.played_study import STUDIES
 from Testing.simulator.report.test_report import cohort
 from Testing.simulator.report.test_tables_have_n import in_two_groups, with_intervals
+from Testing.simulator.report.without_charts import without_charts
 from Testing.simulator.statistics.test_variation import drawn
 from Testing.web.chromium import PATIENCE_MS
 
@@ -86,7 +87,8 @@ def filled_share(page):
 def test_a_phone_scrolls_wide_tables_in_their_section_and_not_the_whole_report(browser):
     page = browser.new_page(viewport={"width": 390, "height": 844})
     page.set_default_timeout(PATIENCE_MS)
-    page.set_content(report_html(STUDY["four trainees"](), "today"))
+    with without_charts():
+        page.set_content(report_html(STUDY["four trainees"](), "today"))
     width, widest = page.evaluate("""[document.documentElement.scrollWidth,
       Math.max(...[...document.querySelectorAll("table")].map((table) => table.offsetWidth))]""")
     page.close()

@@ -42,12 +42,11 @@ from rastrainer.protocol import (
     Phase,
     Rate,
 )
-from rastrainer.study_messages import CurriculumMessage, Skin, StudyStep
+from rastrainer.study_messages import AnyMode, CurriculumMessage, Skin, StudyStep
 
 _Numbers = tuple[float, ...]
 _Position = Annotated[_Numbers, numbers(3, WORLD_LIMIT_MM, "mm")]
 _TrialId = Annotated[str, trial_id]
-_Mode = Annotated[str, one_of(*(mode.value for mode in Mode))]
 _Name = Annotated[str, text(40, 0)]
 """Name of a procedure, a method or an assignment; empty for none."""
 
@@ -88,7 +87,7 @@ class StartTutorialArguments:
     """
 
     trainee: Annotated[str, pseudonym]
-    mode: _Mode = Mode.DESKTOP.value
+    mode: AnyMode = Mode.DESKTOP.value
 
 
 @dataclass(frozen=True)
@@ -97,7 +96,7 @@ class StartTaskArguments:
 
     task: str
     trainee: Annotated[str, pseudonym]
-    mode: _Mode = Mode.DESKTOP.value
+    mode: AnyMode = Mode.DESKTOP.value
     seed: Annotated[
         int | None,
         whole_number(0, 2**63 - 1),
@@ -232,28 +231,22 @@ class GetJournalArguments:
 class CommandEntry(str):
     """A command that clients may send: its name, and all that both sides have to know about it.
 
-    Attributes:
-        effect: sentences for docs/openigtlink.md.
-        answer: data of the answer, for docs/openigtlink.md.
-        arguments: record of the arguments. Texts in its annotations are for docs/openigtlink.md.
-        refused: code of the refusal in each phase in which the command is wrong; None for a
-            command that does not go to the simulation.
-        entries: kinds of journal entries, each of which shows that the command was carried out:
-            by them an interrupted trial is resumed.
-        is_stateless: whether it does not change the trial. All others are carried out one at a
-            time.
-        is_for_past_trials: whether it may name a trial that is over.
-        is_for_scorers: whether only clients that register and score trials may send it.
+    Effect, answer and texts in the annotations of the arguments are for docs/openigtlink.md.
     """
 
     effect: str
     arguments: type[Any]
     answer: str
     refused: Mapping[Phase, str] | None
+    """Code of the refusal in each phase in which it is wrong; None if it does not go to the
+    simulation."""
     entries: frozenset[str]
+    """Kinds of journal entries that show that it was carried out: by them a trial is resumed."""
     is_stateless: bool
+    """Whether it does not change the trial. All others are carried out one at a time."""
     is_for_past_trials: bool
     is_for_scorers: bool
+    """Whether only clients that register and score trials may send it."""
 
     def __new__(
         cls,

@@ -29,7 +29,7 @@ limits."""
 
 
 def decode_finite_json(text: str, deepest: int = MAX_DEPTH) -> Any:
-    """Return decoded JSON with finite numbers.
+    """Return decoded JSON.
 
     Raise ValueError if it is not JSON, nested more than `deepest` levels, or a number is not
     finite.
@@ -38,13 +38,29 @@ def decode_finite_json(text: str, deepest: int = MAX_DEPTH) -> Any:
         value = _DECODER.decode(text)
     except RecursionError:
         raise ValueError("too deeply nested") from None
-    # Fast path: few brackets cannot be deep.
-    if text.count("[") + text.count("{") > deepest and _is_deeper_than(deepest, value):
-        raise ValueError("too deeply nested")
-    if not _is_finite(value):
-        # Decode again, to report the digits.
-        json.loads(text, parse_float=_finite_float)
+    depth, level = 0, [value]
+    # A callback of the decoder for each number would be much slower.
+    while level:
+        below: list[Any] = []
+        for each in level:
+            kind = each.__class__
+            if kind is float:
+                if math.isinf(each):
+                    raise ValueError("a number is too large")
+            elif kind is list or kind is dict:
+                if depth == deepest:
+                    raise ValueError("too deeply nested")
+                below += each if kind is list else each.values()
+        depth, level = depth + 1, below
     return value
+
+
+def _refuse_constant(word: str) -> float:
+    raise ValueError(f"{word} is not a number")
+
+
+_DECODER = json.JSONDecoder(parse_constant=_refuse_constant)
+"""Shared, because `json.loads` with arguments makes a new one each time."""
 
 
 def decode_message_object(text: str, what: str, most: int = MAX_MESSAGE_VALUES) -> dict[str, Any]:
@@ -64,57 +80,9 @@ def decode_message_object(text: str, what: str, most: int = MAX_MESSAGE_VALUES) 
     return value
 
 
-def _is_deeper_than(deepest: int, value: Any) -> bool:
-    level = [value] if isinstance(value, (dict, list)) else []
-    for _ in range(deepest):
-        level = [
-            item
-            for each in level
-            for item in (each.values() if isinstance(each, dict) else each)
-            if isinstance(item, (dict, list))
-        ]
-    return bool(level)
-
-
-def _refuse_constant(word: str) -> float:
-    raise ValueError(f"{word} is not a number")
-
-
-def _finite_float(digits: str) -> float:
-    value = float(digits)
-    if not math.isfinite(value):
-        raise ValueError(f"{digits} is too large a number")
-    return value
-
-
-def _is_finite(value: Any) -> bool:
-    """Return whether decoded JSON has no infinity, which digits like 1e999 become.
-
-    Checking afterward is much faster than a callback for each number.
-    """
-    values = [value]
-    # The list grows during iteration.
-    for each in values:
-        kind = each.__class__
-        if kind is float:
-            if math.isinf(each):
-                return False
-        elif kind is list:
-            values += each
-        elif kind is dict:
-            values += each.values()
-    return True
-
-
-_DECODER = json.JSONDecoder(parse_constant=_refuse_constant)
-"""Shared, because `json.loads` with arguments makes a new one each time."""
-
-
 T = TypeVar("T")
 OBJECT_LIMIT = 65_536
 """Characters of a JSON object that is kept with a trial, such as the details of a score."""
-
-
 IDENTIFIER_WORDS = "lower-case letters, digits and hyphens"
 _IDENTIFIER = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 
@@ -125,7 +93,6 @@ def is_identifier(name: str) -> bool:
 
 
 def identifier(value: Any) -> str:
-    """Accept a name for commands and files."""
     if not isinstance(value, str) or not is_identifier(value):
         raise ValueError(IDENTIFIER_WORDS)
     return value
@@ -211,23 +178,21 @@ def numbers(count: int, limit: float, unit: str = "") -> Callable[[Any], tuple[f
     return check
 
 
+def _array(values: tuple[float, ...], shape: tuple[int, ...]) -> np.ndarray:
+    array = np.reshape(values, shape)
+    array.setflags(write=False)
+    return array
+
+
 def point(limit: float, unit: str = "mm") -> Callable[[Any], np.ndarray]:
     """Accept three numbers within ±`limit`: (3,) float, read-only."""
-    check_numbers = numbers(3, limit, unit)
-
-    def check(value: Any) -> np.ndarray:
-        accepted_point = np.array(check_numbers(value))
-        accepted_point.setflags(write=False)
-        return accepted_point
-
-    return check
+    check = numbers(3, limit, unit)
+    return lambda value: _array(check(value), (3,))
 
 
 def transform(value: Any) -> np.ndarray:
     """Accept 16 numbers, row by row: (4, 4) float, read-only."""
-    matrix = np.reshape(numbers(16, 1e6)(value), (4, 4))
-    matrix.setflags(write=False)
-    return matrix
+    return _array(numbers(16, 1e6)(value), (4, 4))
 
 
 @dataclass(frozen=True)

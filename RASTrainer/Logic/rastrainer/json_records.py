@@ -51,10 +51,9 @@ class RecordField:
 def record_from_json(kind: type[T], value: object, what: str = "", only_known: bool = False) -> T:
     """Return the record of a dataclass `kind` that a decoded JSON object holds.
 
-    Args:
-        what: begins the sentence of an error; without it, "The trial record" of a `TrialRecord`.
-        only_known: whether unknown keys are refused, as in files that people write: a misspelled
-            one must not be without effect.
+    `what` begins the sentence of an error; without it, "The trial record" of a `TrialRecord`.
+    `only_known` refuses unknown keys, as in files that people write: a misspelled one must not be
+    without effect.
     """
     what = what or "The" + re.sub("[A-Z]", lambda each: f" {each[0].lower()}", kind.__name__)
     return _read_record(kind, value, what, f"{what}: ", only_known)
@@ -111,7 +110,6 @@ def _keys(kind: Any) -> tuple[tuple[str, str, Callable[[], Any] | None], ...]:
 
 
 def camel_case(name: str) -> str:
-    """Return the key of a field: `sim_time_s` is `simTimeS`."""
     first, *others = name.split("_")
     return first + "".join(word[:1].upper() + word[1:] for word in others)
 

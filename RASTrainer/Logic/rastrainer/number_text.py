@@ -8,6 +8,8 @@ _BEFORE_UNIT = re.compile(
     r"(?<=\d) (?=[%/]|(?:mm|cm|s|min|MB|of 100)(?![\w’']))|(?<=\d /) (?=\d)|(?<=,) (?=(?:mm|s)\b)"
     r"|(?<=m[aá]x\.) (?=\d)|(?<=最大) (?=\d)"
 )
+PAST_HALF = 1 + 1e-12
+"""Takes a number slightly farther from 0: 0.1465, stored as 0.14649…, becomes 0.147."""
 
 
 def with_units(text: str) -> str:
@@ -17,7 +19,7 @@ def with_units(text: str) -> str:
 
 def fixed(value: float, digits: int) -> str:
     """Return a number with `digits` decimals."""
-    text = f"{_past_half(value):.{digits}f}"
+    text = f"{value * PAST_HALF:.{digits}f}"
     if float(text) == 0:
         # Zero has no sign.
         text = text.removeprefix("-")
@@ -31,7 +33,7 @@ def signed(value: float, digits: int) -> str:
 
 
 def significant(value: float, digits: int = 3, sign: bool = False) -> str:
-    return f"{_past_half(value):{'+' if sign else ''}.{digits}g}".replace("-", "−")
+    return f"{value * PAST_HALF:{'+' if sign else ''}.{digits}g}".replace("-", "−")
 
 
 def p_text(p: float) -> str:
@@ -59,8 +61,3 @@ def clock(seconds: float) -> str:
 def counted(count: int, what: str) -> str:
     """Return a count with its noun: `1 trial`, `2 trials`."""
     return f"{count} {what}{'' if count == 1 else 's'}"
-
-
-def _past_half(value: float) -> float:
-    """Return the number slightly farther from 0: 0.1465, stored as 0.14649…, becomes 0.147."""
-    return value * (1 + 1e-12)

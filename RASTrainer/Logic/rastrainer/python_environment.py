@@ -144,13 +144,10 @@ def python_libraries(environment: Mapping[str, str]) -> dict[str, Path]:
 
     Slicer's Python finds its own OpenSSL only by it, in a folder with all of Slicer's libraries.
     """
-    if not _MAPS.exists():
-        return {}
     for name in _LINKED_MODULES:
         with contextlib.suppress(ImportError):
             importlib.import_module(name)
-    lines = _MAPS.read_text(encoding="utf-8", errors="surrogateescape").splitlines()
-    mapped = {os.path.realpath(line.split(None, 5)[5]) for line in lines if "/" in line}
+    mapped = {os.path.realpath(path) for path in mapped_files()}
     found: dict[str, Path] = {}
     for place in filter(None, environment.get("LD_LIBRARY_PATH", "").split(os.pathsep)):
         with contextlib.suppress(OSError):
@@ -158,3 +155,11 @@ def python_libraries(environment: Mapping[str, str]) -> dict[str, Path]:
                 if os.path.realpath(path) in mapped:
                     found.setdefault(path.name, Path(os.path.realpath(path)))
     return found
+
+
+def mapped_files() -> list[str]:
+    """Return the files that this process has loaded, on Linux; elsewhere none."""
+    if not _MAPS.exists():
+        return []
+    lines = _MAPS.read_text(encoding="utf-8", errors="surrogateescape").splitlines()
+    return [line.split(None, 5)[5] for line in lines if "/" in line]

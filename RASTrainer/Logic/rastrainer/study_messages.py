@@ -65,19 +65,12 @@ _Minutes = Annotated[float, number(0, 43_200, "min")]
 class StudyStep:
     """A step of a trainee through a study; texts that do not apply are empty.
 
-    Attributes:
-        kind: A `StepKind`, `REPEAT` if an aborted trial needs a reason, `ALL_DONE` after the last
-            step, or `FREE` without a study.
-        number, count: Of the step, from 1, and of all steps; 0 if none.
-        minutes: Duration of a trial run, or minimum of a break; 0 if unlimited.
-        over: Minutes elapsed when sent; not compared, since a step is the same whenever it is sent.
-        guidance: "" for the simulator's setting.
-        ghost: Of a trial; "" for none.
-        procedure: That the trial continues with; "" for the touches alone.
-        tutorial: Before a trial run; "" for the simulator's setting.
-        skin: How far the skin shifts and is indented; empty for what the scenario says.
-        name: Unique for the trainee, such as `desktop/2/task-3`; it is stored.
-        allows: What counts although it is not how a trainee plays, `Allowance`s.
+    Its `kind` is a `StepKind`, `REPEAT` if an aborted trial needs a reason, `ALL_DONE` after the
+    last step, or `FREE` without a study. It is the `number`th of `count` steps, from 1. `minutes`
+    are the duration of a trial run, or the minimum of a break, 0 if unlimited, of which some were
+    `over` when it was sent. Without `guidance` or `tutorial` the simulator's settings apply, and
+    without amounts of `skin` the scenario's. Its `name`, such as `desktop/2/task-3`, is stored.
+    What it `allows` counts although it is not how a trainee plays (`Allowance`).
     """
 
     trainee: str
@@ -116,14 +109,9 @@ class StudyStep:
 class Assignment:
     """A task of a curriculum that is played until a goal is reached.
 
-    Attributes:
-        name: Unique in its curriculum.
-        scenario: Whose task it is; "" for any that has it.
-        mode: "" for any.
-        procedure: That its trials continue with, and whose score counts; "" for touches alone.
-        trials: How many trials in a row are to pass, for a goal by scores.
-        mark: Score that passes; None for the pass mark of the study.
-        after: Names of earlier assignments that have to be reached before this one opens.
+    An empty `scenario` or `mode` stands for any. The score of the `procedure` counts, without one
+    that of the touches. For a goal by scores, so many `trials` in a row have to reach the `mark`,
+    which is the pass mark of the study if None. It opens once those in `after` are reached.
     """
 
     name: _Name
@@ -163,16 +151,10 @@ class Assignment:
 class AssignmentStanding(Assignment):
     """An assignment, and a trainee's standing in it.
 
-    Attributes:
-        mark: Score that passes a trial; None without one.
-        done: Trials in a row that pass now, or percent of the way to competence.
-        needed: How many there have to be.
-        played: Number of trials, including aborted trials.
-        mean: Of the latest scores; None before the first.
-        missing: Names of the assignments that it waits for.
-        weakest: Part of the score that cost most in the latest trials; "" before the first.
-        reached_utc: Start of the trial by which it was reached, ISO 8601; of a gate's where that
-            was later, "" until then.
+    So many trials in a row pass now (`done`), or percent of the way to competence, of `needed`.
+    `played` counts aborted trials, too; `mean` is that of the latest scores, in which the part
+    `weakest` cost most. It waits for the assignments in `missing`. `reached_utc` is the start of
+    the trial by which it was reached, or of a gate's where that was later.
     """
 
     goal: GoalKind = field(kw_only=True)
@@ -188,13 +170,7 @@ class AssignmentStanding(Assignment):
 
 @dataclass(frozen=True)
 class CurriculumMessage:
-    """A trainee's standing in a curriculum, as the menu shows it.
-
-    Attributes:
-        title: Of the curriculum, for people.
-        next: Name of the assignment to practice next; "" for none.
-        assignments: In their order; none for a trainee without a curriculum.
-    """
+    """A trainee's standing in a curriculum, as the menu shows it: what to practice `next`."""
 
     trainee: str
     title: Annotated[str, text(80)] = ""

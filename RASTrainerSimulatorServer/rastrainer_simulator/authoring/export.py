@@ -19,10 +19,9 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, read_head_mesh
 from rastrainer.head.volume import KEPT_MM, HeadVolume, read_head_volume
-from rastrainer.procedure.plan import read_all_no_go
 from rastrainer.scenario.library import checked_scenario, pack
 from rastrainer.scenario.scenario import PREVIEW_NAME, Camera, Scenario
-from rastrainer.scenario.writer import scenario_name, write_scenario
+from rastrainer.scenario.writer import read_files, scenario_name, write_scenario
 from rastrainer_simulator.authoring.face_removal import (
     RADIUS_MM,
     check_front,
@@ -196,17 +195,12 @@ def pack_for_sharing(
 ) -> str:
     """Write a scenario as one zip file, and return a sentence that lists the removed parts.
 
-    Args:
-        keeps_face: keep the head, its picture, its images and its skull; otherwise head, picture
-            and images have no face, and the skull is left out with the procedures, which need it.
-        keeps_names: keep title, name and source, which often are the patient's name, and the
-            sources of the procedures; otherwise the scenario is named by a number computed from
-            its head's surface.
+    Without the face, head, picture and images lack it, and the skull is left out with the
+    procedures, which need it. Title, name and sources, which often are the patient's name, are
+    replaced by a number computed from the head's surface, unless they are kept.
     """
     scenario, taken = checked_scenario(folder), []
-    head = read_head_mesh(scenario.head)
-    skull = read_head_mesh(scenario.skull.file) if scenario.skull else None
-    volume = read_head_volume(scenario.volume) if scenario.volume else None
+    head, skull, volume, no_go = read_files(scenario)
     preview = scenario.preview
     warning = "" if keeps_face else check_front(head)
     if not keeps_face:
@@ -217,14 +211,22 @@ def pack_for_sharing(
             scenario = replace(scenario, landmarks=())
             taken.append("the landmarks, most of which were on the face")
         if scenario.procedures:
-            scenario = replace(scenario, procedures=())
+            scenario, no_go = replace(scenario, procedures=()), {}
             taken.append("the procedures, which need the skull")
     if not keeps_names:
-        scenario = _nameless(scenario, head)
+        number = hashlib.sha256(head.vertices.astype("<f4").tobytes()).hexdigest()[:6]
+        title = f"Head {number}"
+        scenario = replace(
+            scenario,
+            name=scenario_name(title),
+            title=title,
+            provenance=replace(scenario.provenance, source=NO_SOURCE),
+            procedures=tuple(replace(each, source=NO_SOURCE) for each in scenario.procedures),
+        )
         taken += ["its title", "its name", "its source"]
     with tempfile.TemporaryDirectory() as temporary:
         clean = Path(temporary)
-        write_scenario(clean, scenario, head, skull, volume, read_all_no_go(scenario.procedures))
+        write_scenario(clean, scenario, head, skull, volume, no_go)
         if not keeps_face:
             draw_preview(clean / PREVIEW_NAME, scenario, head)
         elif preview:
@@ -249,15 +251,3 @@ def _faceless(scenario: Scenario, head: HeadMesh) -> tuple[Scenario, HeadMesh]:
     if not provenance.method.endswith(FACELESS):
         provenance = replace(provenance, method=provenance.method + FACELESS)
     return replace(scenario, provenance=provenance), head
-
-
-def _nameless(scenario: Scenario, head: HeadMesh) -> Scenario:
-    number = hashlib.sha256(head.vertices.astype("<f4").tobytes()).hexdigest()[:6]
-    title = f"Head {number}"
-    return replace(
-        scenario,
-        name=scenario_name(title),
-        title=title,
-        provenance=replace(scenario.provenance, source=NO_SOURCE),
-        procedures=tuple(replace(each, source=NO_SOURCE) for each in scenario.procedures),
-    )

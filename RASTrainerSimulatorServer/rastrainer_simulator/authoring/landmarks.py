@@ -72,8 +72,7 @@ def unreachable(planning: PlanningSetup, landmarks: Sequence[Landmark]) -> list[
         around = mesh.vertices[_thinned(np.flatnonzero(away < NEAR_MM), PLACES_TRIED)]
         places = np.vstack([landmark.position_ras, around]).astype(float)
         each = [*zip(places[:, None], outward_normals(mesh, places)[:, None], strict=True)]
-        is_reached = all(any(planning.touchable(*one, [pose])[0] for one in each) for pose in poses)
-        if not is_reached:
+        if not all(any(planning.touchable(*one, [pose])[0] for one in each) for pose in poses):
             found.append(landmark.name)
     return found
 
@@ -204,16 +203,10 @@ def write_proposal(folder: Path, path: Path) -> list[str]:
     kept = spread_first([each for each in found if each.name not in unreached])
     places = np.array([each.position_ras for each in kept], dtype=float).reshape(-1, 3)
     write_markups(path, PointList(tuple(each.name for each in kept), places))
-    on_head = {each.name for each in found}
+    missing = [name for name in FACE_LANDMARKS if name not in {each.name for each in found}]
+    out_of_reach = "is left out: the robot does not reach it in every pose of a trial."
     return [
         f"{len(kept)} landmarks are proposed: look at each, and move it where it is wrong.",
-        *(
-            f"{name} is not on the head, which ends above it."
-            for name in FACE_LANDMARKS
-            if name not in on_head
-        ),
-        *(
-            f"{name} is left out: the robot does not reach it in every pose of a trial."
-            for name in unreached
-        ),
+        *(f"{name} is not on the head, which ends above it." for name in missing),
+        *(f"{name} {out_of_reach}" for name in unreached),
     ]

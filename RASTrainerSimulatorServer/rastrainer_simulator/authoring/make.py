@@ -13,9 +13,8 @@ from typing import TextIO
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.head.mesh import HeadMesh, read_head_mesh
-from rastrainer.head.volume import read_head_volume
-from rastrainer.procedure.plan import Procedure, read_all_no_go
+from rastrainer.head.mesh import HeadMesh
+from rastrainer.procedure.plan import Procedure
 from rastrainer.python_environment import python_command
 from rastrainer.scenario.library import checked_scenario
 from rastrainer.scenario.points import Landmark, PlannedTarget, PlannedTrajectory, Task, on_skin
@@ -34,6 +33,7 @@ from rastrainer.scenario.writer import (
     HeadDraft,
     new_folder,
     read_draft,
+    read_files,
     scenario_name,
     write_scenario,
 )
@@ -85,16 +85,13 @@ def make_scenario(
 ) -> Scenario:
     """Write the scenario of a head into a new folder and return it.
 
-    Args:
-        progress: called with each step's name and the share done; may raise to cancel.
-        wait_for_skull: returns the same draft with the skull, which is made meanwhile; None if
-            `draft` is complete.
-        warn: called with a sentence for each deviation from the options.
+    `progress` may raise to cancel; `warn` is called with a sentence for each deviation from the
+    options. `wait_for_skull` returns the same draft with the skull, which is made meanwhile; it is
+    None if `draft` is complete.
     """
     with new_folder(folder) as made:
-        scenario = without_tasks(draft, options, warn)
-        planning = PlanningSetup(scenario, draft.head)
-        tasks = _placed(planning, options, progress, warn)
+        planning, tasks = check_options(draft, options, progress, warn)
+        scenario = planning.scenario
         if not tasks:
             tasks = TaskSetProposer(planning, progress).propose(options.seed)
         progress("Drawing the picture", 0.95)
@@ -116,20 +113,14 @@ def make_scenario(
 
 def check_options(
     draft: HeadDraft, options: ScenarioOptions, progress: Progress, warn: Warn
-) -> None:
-    """Check set-up, plan and placed fiducials as `make_scenario` does."""
-    _placed(PlanningSetup(without_tasks(draft, options, warn), draft.head), options, progress, warn)
-
-
-def _placed(
-    planning: PlanningSetup, options: ScenarioOptions, progress: Progress, warn: Warn
-) -> tuple[Task, ...]:
-    """Return the manually placed tasks if set-up, plan and tasks are all right."""
+) -> tuple[PlanningSetup, tuple[Task, ...]]:
+    """Return the set-up and the manually placed tasks if both and the plan are all right."""
+    planning = PlanningSetup(without_tasks(draft, options, warn), draft.head)
     wrong = check_plan(planning)
     tasks, wrong_tasks = read_placed_tasks(planning, options.task_files, progress, warn)
     if wrong or wrong_tasks:
         raise InputError(" ".join([*wrong, *wrong_tasks]))
-    return tasks
+    return planning, tasks
 
 
 def without_tasks(
@@ -188,25 +179,17 @@ def copy_with_plan(
 ) -> Scenario:
     """Write a copy of a scenario with another plan into a new folder and return it.
 
-    Arguments that are empty or None change nothing.
-
-    Args:
-        targets: RAS mm, replacing all others; the first is where the error is reported.
-        trajectory: RAS mm, replacing the other one.
-        warn: called if the first target is too deep for trials to start above it.
-        procedure: added, or replacing the procedure of the same name.
-        landmarks: RAS mm, replacing all others; those near the skin are moved onto it.
+    Arguments that are empty or None change nothing; a procedure replaces that of the same name, all
+    others replace what there is. The target error is reported at the first target; `warn` is called
+    if it is too deep for trials to start above it. Landmarks near the skin are moved onto it.
     """
     before = checked_scenario(folder)
-    head = read_head_mesh(before.head)
-    skull = read_head_mesh(before.skull.file) if before.skull else None
-    volume = read_head_volume(before.volume) if before.volume else None
+    head, skull, volume, no_go = read_files(before)
     scenario = replace(
         before, name=scenario_name(title), title=title, trajectory=trajectory or before.trajectory
     )
     if targets:
         scenario = _with_main_target(replace(scenario, targets=targets), head, warn)
-    no_go = read_all_no_go(scenario.procedures)
     wrong: list[str] = []
     if procedure is not None:
         scenario, no_go = with_procedure(scenario, procedure)

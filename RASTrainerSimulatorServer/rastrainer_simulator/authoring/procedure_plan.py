@@ -12,11 +12,7 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
-from rastrainer.procedure.checks import (
-    MeasuredProcedure,
-    check_procedure,
-    measure_lines,
-)
+from rastrainer.procedure.checks import MeasuredProcedure, check_procedure, measure_lines
 from rastrainer.procedure.plan import (
     NO_GO_FOLDER,
     Procedure,
@@ -142,23 +138,18 @@ def with_procedure(
     structures = []
     for structure in procedure.no_go:
         name, mesh = structure.file.name, read_head_mesh(structure.file)
-        stem = structure.file.stem
         numbers = count(2)
         while name in kept and not (
             np.array_equal(kept[name].vertices, mesh.vertices)
             and np.array_equal(kept[name].triangles, mesh.triangles)
         ):
-            name = f"{stem[:36]}-{next(numbers)}.ply"
+            name = f"{structure.file.stem[:36]}-{next(numbers)}.ply"
         kept[name] = mesh
         structures.append(replace(structure, file=Path(NO_GO_FOLDER, name)))
-    placed = replace(procedure, no_go=tuple(structures))
-    names = [each.name for each in scenario.procedures]
-    procedures = list(scenario.procedures)
-    if procedure.name in names:
-        procedures[names.index(procedure.name)] = placed
-    else:
-        procedures.append(placed)
-    return replace(scenario, procedures=tuple(procedures)), kept
+    # In place of the one of its name.
+    procedures = {each.name: each for each in scenario.procedures}
+    procedures[procedure.name] = replace(procedure, no_go=tuple(structures))
+    return replace(scenario, procedures=tuple(procedures.values())), kept
 
 
 def _skull(scenario: Scenario) -> Path:

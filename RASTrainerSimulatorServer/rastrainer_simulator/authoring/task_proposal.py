@@ -88,10 +88,6 @@ class Proposal:
     complexity: Complexity
 
 
-_Draw = tuple[np.ndarray, float]
-"""Fiducials (15, 3) float in the order to touch, and an estimate of their index."""
-
-
 def places_seen_from(
     mesh: HeadMesh, positions: np.ndarray, normals: np.ndarray, eye: np.ndarray
 ) -> CandidatePlaces:
@@ -117,21 +113,14 @@ class TaskProposer:
         accepts: Callable[[Proposal], bool] = lambda _proposal: True,
         usable: Callable[[np.ndarray], np.ndarray] = lambda places: np.ones(len(places), bool),
     ) -> None:
-        """Prepare proposals on a head.
+        """Prepare proposals for the default view's eye and a target to be located well, RAS mm.
 
-        Args:
-            eye: (3,) float, position of the default view, RAS mm.
-            target: (3,) float, to be located well, RAS mm.
-            usable: returns which of some points (n, 3) can be used, (n,) bool; it is expensive, so
-                it is called for chosen points only, and unusable points are not chosen again.
+        `usable` returns which of some points (n, 3) can be used, (n,) bool; it is expensive, so it
+        is called for chosen points only, and unusable points are not chosen again.
         """
-        self._mesh = mesh
-        self._graph = SurfaceGraph(mesh)
-        self._places = places
-        self._eye = eye
-        self._target = target
-        self._accepts = accepts
-        self._usable = usable
+        self._mesh, self._graph, self._places = mesh, SurfaceGraph(mesh), places
+        self._eye, self._target = eye, target
+        self._accepts, self._usable = accepts, usable
 
     def propose_rising(
         self, plans: Sequence[TaskPlan], seed: int, begins_easy: bool = False
@@ -172,7 +161,8 @@ class TaskProposer:
         demands = complexity(fiducials, self._mesh, self._graph, self._eye)
         return Proposal(plan, fiducials, demands) if demands.index >= least else None
 
-    def _draw(self, plan: TaskPlan, seed: int) -> _Draw:
+    def _draw(self, plan: TaskPlan, seed: int) -> tuple[np.ndarray, float]:
+        """Return fiducials (15, 3) in the order to touch, and an estimate of their index."""
         places, random = self._places, np.random.default_rng(seed)
         shown = np.flatnonzero(~places.hidden & (places.off_axis_deg <= plan.off_axis_deg))
         hidden = np.flatnonzero(places.hidden)

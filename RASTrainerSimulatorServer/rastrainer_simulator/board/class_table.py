@@ -79,7 +79,6 @@ class ClassReader:
 
 
 def _file(place: StudyPlace) -> tuple[int, ...]:
-    """Return numbers that change with a file; none for a database of PostgreSQL."""
     if not isinstance(place, Path):
         return ()
     try:
@@ -104,7 +103,6 @@ class ClassWatch:
     """Keeps the standings that were last read, also while the study cannot be read."""
 
     def __init__(self, place: StudyPlace | None) -> None:
-        """Read nothing yet; without a study nothing is ever read."""
         self._reader = None if place is None else ClassReader(place)
         self._thread = ThreadPoolExecutor(1, "study")
         self._found: Standings | None = None
@@ -202,5 +200,4 @@ def _row(name: str, standing: CurriculumStanding, words: AssignmentTexts) -> Tra
 
 
 def _spoken(name: str) -> str:
-    """Return the name of a task or procedure as people write it."""
     return name.replace("-", " ").capitalize()

@@ -70,7 +70,6 @@ class SeatsFile:
 
 
 def read_seats(config: Path) -> tuple[SeatEntry, ...]:
-    """Return the seats in the folder of settings; without a file there are none."""
     path = config / SEATS_FILE
     if not path.exists():
         return ()
@@ -130,6 +129,7 @@ MAX_FILE_BYTES = 32 * 2**20
 MAX_REASON = 300
 AWAY = "The simulator does not answer at {address}."
 OTHER_CERTIFICATE = "The certificate has changed: compare its fingerprint again."
+UNPAIRED = "The simulator no longer knows this board: pair again."
 NOT_OURS = "The server at {address} is not a simulator of this version."
 
 
@@ -153,7 +153,6 @@ class SeatClient:
     """
 
     def __init__(self) -> None:
-        """Open nothing yet; in the event loop's thread."""
         self._session = aiohttp.ClientSession(
             cookie_jar=aiohttp.DummyCookieJar(),
             timeout=aiohttp.ClientTimeout(total=TIMEOUT_S, sock_connect=TIMEOUT_S / 2),
@@ -188,7 +187,6 @@ class SeatClient:
         return key
 
     async def stream(self, entry: SeatEntry) -> aiohttp.ClientWebSocketResponse:
-        """Open the stream of a simulator; the caller sends the hello."""
         try:
             return await self._session.ws_connect(
                 f"{entry.address}/stream",
@@ -198,8 +196,6 @@ class SeatClient:
                 headers=_headers(entry),
                 ssl=_certificate(entry),
             )
-        except aiohttp.WSServerHandshakeError as error:
-            raise _away(entry, error.status) from None
         except (aiohttp.ClientError, OSError, asyncio.TimeoutError) as error:
             raise _away(entry, error) from None
 
@@ -225,12 +221,11 @@ class SeatClient:
         if response.status == 200:
             return content, response.headers
         if response.status in (401, 503):
-            raise _away(entry, response.status)
+            raise UnpairedError(UNPAIRED) if response.status == 401 else _away(entry)
         raise RefusedError(content[:MAX_REASON].decode(errors="replace"))
 
 
 async def _content(response: aiohttp.ClientResponse) -> bytes:
-    """Return an answer that is not larger than the largest file."""
     pieces = bytearray()
     async for piece in response.content.iter_chunked(2**16):
         pieces += piece
@@ -252,12 +247,12 @@ def _certificate(entry: SeatEntry) -> aiohttp.Fingerprint | bool:
     return aiohttp.Fingerprint(bytes.fromhex(entry.fingerprint.replace(":", "")))
 
 
-def _away(entry: SeatEntry, reason: Exception | int) -> InputError:
-    """Return what an error, or the status of an answer, says of a simulator."""
+def _away(entry: SeatEntry, reason: Exception | None = None) -> InputError:
+    """Return what an error says of a simulator."""
     if isinstance(reason, aiohttp.ServerFingerprintMismatch):
         return OtherCertificateError(OTHER_CERTIFICATE)
-    if reason == 401:
-        return UnpairedError("The simulator no longer knows this board: pair again.")
+    if isinstance(reason, aiohttp.WSServerHandshakeError) and reason.status == 401:
+        return UnpairedError(UNPAIRED)
     return InputError(AWAY.format(address=entry.address))
 
 
@@ -269,7 +264,6 @@ class WatchedSeat:
     """Watches one simulator in a separate task."""
 
     def __init__(self, entry: SeatEntry, client: SeatClient, changed: Callable[[], None]) -> None:
-        """Start to watch; `changed` is called whenever the tile changes."""
         self.entry = entry
         self._client = client
         self._changed = changed
@@ -300,7 +294,6 @@ class WatchedSeat:
             await asyncio.sleep(RETRY_S)
 
     async def _receive(self) -> None:
-        """Receive what the simulator sends until the connection ends."""
         stream = await self._client.stream(self.entry)
         try:
             await stream.send_str(_BOARD_HELLO)

@@ -13,7 +13,7 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.protocol.study_protocol import StudyProtocol, mode_order
 from rastrainer.trial.score_reference import score_reference
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli.printing import text_table
+from rastrainer_simulator.cli.printing import picked, text_table
 from rastrainer_simulator.virtual.cohort import simulate_cohort
 from rastrainer_simulator.virtual.outcome_model import OutcomeModel, rejection_rates
 from rastrainer_simulator.virtual.play import PlaySettings
@@ -41,16 +41,9 @@ def simulate(arguments: argparse.Namespace) -> int:
 
     try:
         result = simulate_cohort(
-            protocol,
-            _population(arguments),
-            arguments.trainees,
-            arguments.seed,
-            arguments.output,
-            PlaySettings(arguments.scenario, arguments.step),
-            arguments.records,
-            arguments.engine,
-            arguments.workers,
-            arguments.address,
+            *(protocol, _population(arguments), arguments.trainees, arguments.seed),
+            *(arguments.output, PlaySettings(arguments.scenario, arguments.step)),
+            *(arguments.records, arguments.engine, arguments.workers, arguments.address),
             show_progress,
         )
     except KeyboardInterrupt:
@@ -71,17 +64,13 @@ def simulate(arguments: argparse.Namespace) -> int:
 
 def _population(arguments: argparse.Namespace) -> Population:
     effect = ModeEffect(arguments.hmd_speed, arguments.hmd_aim, tuple(arguments.hmd_bias))
+    names = ("learning", "accuracy_learning", "interaction", "tempo_spread", "trade_off", "lapses")
     return Population(
         skill=Skill(speed_mm_s=arguments.speed, aim_sd_mm=arguments.aim),
         speed_spread=arguments.spread,
         aim_spread=arguments.spread,
-        learning=arguments.learning,
         modes={Mode.HMD.value: effect},
-        accuracy_learning=arguments.accuracy_learning,
-        interaction=arguments.interaction,
-        tempo_spread=arguments.tempo_spread,
-        trade_off=arguments.trade_off,
-        lapses=arguments.lapses,
+        **picked(arguments, *names),
     )
 
 
@@ -109,9 +98,8 @@ def _power(protocol: StudyProtocol, arguments: argparse.Namespace) -> str:
     )
     modes = sorted(protocol.modes)
     orders = [mode_order(protocol, place) for place in range(arguments.trainees)]
-    rates = rejection_rates(
-        model, arguments.trainees, modes, arguments.power, arguments.seed, orders
-    )
+    counts = arguments.power, arguments.seed
+    rates = rejection_rates(model, arguments.trainees, modes, *counts, orders)
     rows = [
         [
             r.outcome,
@@ -122,12 +110,9 @@ def _power(protocol: StudyProtocol, arguments: argparse.Namespace) -> str:
         for r in rates
     ]
     header = ["outcome", "true difference", "p < .05", "p (Holm) < .05", "rank test", "95 % covers"]
-    is_balanced = len(set(orders)) > 1
-    order = (
-        "balanced: the effect of the period is separated"
-        if is_balanced
-        else "the same for all: practice is part of the difference"
-    )
+    order = "the same for all: practice is part of the difference"
+    if len(set(orders)) > 1:
+        order = "balanced: the effect of the period is separated"
     return (
         f"{arguments.power} studies of {arguments.trainees} trainees, {modes[1]} minus {modes[0]}, "
         f"drawn from a model of outcomes (not played)\norder of the modes {order}\n"

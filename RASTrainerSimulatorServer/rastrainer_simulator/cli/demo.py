@@ -17,7 +17,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 import numpy as np
 
@@ -60,20 +60,24 @@ def play_demo(arguments: argparse.Namespace) -> int:
         # Reports and exports need the consent to research.
         study.create_trainee(TRAINEE, consent=True)
     scenario = load_scenario(asset_path(*DEFAULT_SCENARIO))
-    with _simulator(output, seed, speed) as port, _slicer(output, port) as slicer:
-        states, record = _play(port, scenario, seed, speed)
-        print("Slicer's side registers, scores, stores and draws ...", flush=True)
-        log = output / "slicer.log"
-        try:
-            status = slicer.wait(SLICER_TIMEOUT_S)
-        except subprocess.TimeoutExpired:
-            status = None
-        if status != 0:
-            raise RASTrainerError(f"Slicer's side did not finish its work; see {log}.")
+    log = output / "slicer.log"
+    with _simulator(output, seed, speed) as port:
+        # Slicer's side without Slicer, which ends when it has stored all trials.
+        words = ["rastrainer_headless.main", "--port", str(port), "--output", str(output)]
+        words += ["--assets", str(asset_path()), "--trials", str(len(TASKS))]
+        with _process(words, log, None) as slicer:
+            state, record = _play(port, scenario, seed, speed)
+            print("Slicer's side registers, scores, stores and draws ...", flush=True)
+            try:
+                status = slicer.wait(SLICER_TIMEOUT_S)
+            except subprocess.TimeoutExpired:
+                status = None
+    if status != 0:
+        raise RASTrainerError(f"Slicer's side did not finish its work; see {log}.")
     lines = (output / "results.jsonl").read_text(encoding="utf-8").splitlines()
     trials = [json.loads(line) for line in lines]
     head_to_world = np.reshape(trials[-1]["truth"]["headToWorld"], (4, 4))
-    _draw_pictures(output, scenario, states[-1], record, head_to_world)
+    _draw_pictures(output, scenario, state, record, head_to_world)
     task = scenario.task(record.task)
     fiducials = zip(task.labels, task.fiducials.tolist(), strict=True)
     touches = ((point.label, point.position_mm) for point in record.points)
@@ -104,70 +108,57 @@ def _simulator(output: Path, seed: int, speed: float) -> Iterator[int]:
     """Run the simulator on a free port, which is yielded."""
     words = ["rastrainer_simulator.cli.main", "simulator", "--port", "0", "--seed", str(seed)]
     words += ["--speed", str(speed), "--records", str(output / "records")]
-    with (
-        (output / "simulator.log").open("w") as log,
-        _process(words, log, stdout=subprocess.PIPE) as process,
-    ):
+    log = output / "simulator.log"
+    with _process(words, log, subprocess.PIPE) as process:
         assert process.stdout is not None  # It is a pipe.
         line = process.stdout.readline()
         if "ready" not in line:
-            raise RASTrainerError(f"The simulator did not start; see {log.name}.")
+            raise RASTrainerError(f"The simulator did not start; see {log}.")
         yield int(line.rsplit(":", 1)[1])
 
 
 @contextlib.contextmanager
-def _slicer(output: Path, port: int) -> Iterator[subprocess.Popen]:
-    """Run Slicer's side without Slicer, which ends when it has stored all trials."""
-    words = ["rastrainer_headless.main", "--port", str(port), "--output", str(output)]
-    words += ["--assets", str(asset_path()), "--trials", str(len(TASKS))]
-    with (output / "slicer.log").open("w") as log, _process(words, log, stdout=log) as process:
-        yield process
-
-
-@contextlib.contextmanager
-def _process(words: list[str], log: TextIO, stdout: Any) -> Iterator[subprocess.Popen]:
+def _process(words: list[str], log: Path, stdout: int | None) -> Iterator[subprocess.Popen]:
     """Run a module with its arguments, `words`, and terminate it at the end."""
-    process = subprocess.Popen(python_command(*words), stdout=stdout, stderr=log, text=True)
-    try:
-        yield process
-    finally:
-        process.terminate()
+    with log.open("w") as file:
+        out = file if stdout is None else stdout
+        process = subprocess.Popen(python_command(*words), stdout=out, stderr=file, text=True)
         try:
-            process.wait(10)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
+            yield process
+        finally:
+            process.terminate()
+            try:
+                process.wait(10)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
 
 
 def _play(
     port: int, scenario: Scenario, seed: int, speed: float
-) -> tuple[list[dict[str, Any]], TrialRecord]:
-    """Play the tasks; return the states at their last touches, and the record with a procedure."""
+) -> tuple[dict[str, Any], TrialRecord]:
+    """Play the tasks; return the state at the last touch, and the record with the procedure."""
     from rastrainer_simulator.virtual.scripted_trial import play_procedure, play_trial, send_hello
 
-    states, records = [], []
     with Client(DEFAULT_HOST, port) as client:
         send_hello(client, "scripted trainee")
         for number, name in enumerate(TASKS):
             title = scenario.task(name).title
             print(f"{TRAINEE} plays {title} ({speed:g} times faster than real time)")
             procedure = PROCEDURES.get(name, "")
-            trial = play_trial(
+            trial_id, state = play_trial(
                 *(client, scenario, name, TRAINEE, seed + number),
                 on_progress=_progress_bar(title),
                 procedure=procedure,
             )
             print()
-            states.append(trial.last_state)
             if procedure:
                 print(scenario.procedure(procedure).title, flush=True)
-                records.append(
-                    play_procedure(
-                        *(client, scenario, trial.trial_id),
-                        on_progress=lambda done: print(f"  {done}", flush=True),
-                    )
+                record = play_procedure(
+                    *(client, scenario, trial_id),
+                    on_progress=lambda done: print(f"  {done}", flush=True),
                 )
-    return states, records[-1]
+    return state, record
 
 
 def _progress_bar(title: str) -> Callable[[dict[str, Any]], None]:

@@ -15,7 +15,8 @@ from rastrainer.study import tidy_csv
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
-from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.study.study_data import StudyData
+from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.cli.printing import json_text, read_known_study
 from rastrainer_simulator.export.grades import grade, grades_csv
 from rastrainer_simulator.export.trial_files import write_motion_bids, write_slicer_files

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from rastrainer.files.point_files import read_point_numbers, read_points
 from rastrainer.files.point_list import PointList, pair
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.registration.localization_error import (
+    LocalizationError,
     degrees_of_freedom,
     expected_fre,
     misfit_probability,
@@ -21,7 +22,7 @@ from rastrainer.registration.localization_error import (
 )
 from rastrainer.registration.registration import Registration, register
 from rastrainer.registration.surface_error import knowledge_of, surface_target_error
-from rastrainer.registration.surface_match import SurfaceMatch, match_surface
+from rastrainer.registration.surface_match import match_surface
 from rastrainer.registration.target_error import INTERVAL_NOTE, TargetError, target_error
 from rastrainer_simulator.cli.printing import json_text, picked, text_table
 
@@ -38,15 +39,6 @@ RESIDUAL_NOTE = (
 )
 
 
-@dataclass(frozen=True)
-class StatedErrors:
-    """The RMS lengths of the points' errors, (n,) float, as the user states them."""
-
-    fle_mm: np.ndarray
-    expected_fre_mm: float
-    misfit_probability: float
-
-
 def register_points(arguments: argparse.Namespace) -> int:
     if arguments.fle is not None and arguments.weights is not None:
         raise InputError("--fle and --weights exclude each other.")
@@ -58,101 +50,91 @@ def register_points(arguments: argparse.Namespace) -> int:
             left_out[name] = points.left_out_names
         return points
 
+    paired = pair(read(arguments.moving), read(arguments.fixed))
     if arguments.surface is None:
-        found = register_files(arguments, read)
-        answer, text = registration_json(*found), registration_text(*found)
+        answer, lines, warnings = _registered(arguments, *paired)
     else:
-        match = match_files(arguments, read)
-        answer, text = match_json(*match), match_text(*match)
+        answer, lines, warnings = _matched(arguments, read, *paired)
     if arguments.json:
         print(json_text({**answer, "left_out": left_out}))
         return 0
-    print(text)
+    print("\n".join(lines + ([""] if warnings else [])))
+    for warning in warnings:
+        print(f"Warning: {warning}")
     for name, names in left_out.items():
         print(f"Left out of {name}, deselected or not placed in Slicer: {', '.join(names)}")
     return 0
 
 
-def register_files(
-    arguments: argparse.Namespace, read: Callable[[str], PointList]
-) -> tuple[Registration, TargetError | None, StatedErrors | None]:
-    """Return the registration of a command's files, the error to expect, and the stated errors."""
-    labels, moving, fixed = pair(read(arguments.moving), read(arguments.fixed))
-    fle_mm = weights = stated = localization = None
+Answer = tuple[dict[str, Any], list[str], list[str]]
+"""An answer as a JSON object, the same as lines of text, and its warnings."""
+
+
+def _registered(
+    arguments: argparse.Namespace, labels: tuple[str, ...], moving: np.ndarray, fixed: np.ndarray
+) -> Answer:
+    """Register points to points; the stated FLE are the RMS lengths of their errors."""
+    fle_mm = weights = localization = stated = None
     if arguments.fle is not None:
         fle_mm = read_point_numbers(arguments.fle, "fle", labels, *FLE_RANGE_MM)
-        weights = 1.0 / fle_mm**2
+        weights, localization = 1.0 / fle_mm**2, stated_error(fle_mm)
     elif arguments.weights is not None:
         weights = read_point_numbers(arguments.weights, "weight", labels, *WEIGHT_RANGE)
-    registration = register(moving, fixed, arguments.type, labels, weights)
-    if fle_mm is not None:
-        localization = stated_error(fle_mm)
-        expected_mm = expected_fre(registration, localization)
-        stated = StatedErrors(fle_mm, expected_mm, misfit_probability(registration, fle_mm))
-    target = arguments.target
-    if target is None:
-        try:
-            degrees_of_freedom(registration)
-        except InputError:
-            return registration, None, stated
-        target = registration.fixed_mm.mean(axis=0)
-    return registration, target_error(registration, np.array(target), localization), stated
-
-
-def registration_json(
-    registration: Registration, error: TargetError | None, stated: StatedErrors | None = None
-) -> dict[str, Any]:
-    """Return a registration as a JSON object; `expected_tre` is None if it is unknown."""
-    given = None
-    if stated is not None:
-        given = picked(stated, "fle_mm", "expected_fre_mm", "misfit_probability")
-    names = ("fre_mm", "matrix", "labels", "residuals_mm", "residual_vectors_mm", "warnings")
-    return {
-        "type": registration.kind,
-        **picked(registration, *names, "weights", "weighted_fre_mm"),
-        "stated": given,
-        "expected_tre": None if error is None else {**asdict(error), "note": INTERVAL_NOTE},
-    }
-
-
-def registration_text(
-    registration: Registration, error: TargetError | None, stated: StatedErrors | None = None
-) -> str:
-    count = len(registration.labels)
-    weighted = "" if registration.weights is None else ", weighted"
+    found = register(moving, fixed, arguments.type, labels, weights)
+    warnings = [warning.message for warning in found.warnings]
     lines = [
-        f"{registration.kind.capitalize()} registration of {count} pairs of points{weighted}",
+        f"{found.kind.capitalize()} registration of {len(found.labels)} pairs of points"
+        + ("" if weights is None else ", weighted"),
         "",
-        f"FRE  {registration.fre_mm:.3f} mm (root mean square of the residuals)",
+        f"FRE  {found.fre_mm:.3f} mm (root mean square of the residuals)",
     ]
-    if registration.weights is not None:
-        lines.append(f"     {registration.weighted_fre_mm:.3f} mm with the weights")
-    if stated is not None:
-        lines.append(f"     {stated.expected_fre_mm:.3f} mm to be expected from the stated FLE")
+    if weights is not None:
+        lines.append(f"     {found.weighted_fre_mm:.3f} mm with the weights")
+    if fle_mm is not None and localization is not None:
+        expected_mm, misfit = expected_fre(found, localization), misfit_probability(found, fle_mm)
+        stated = {"fle_mm": fle_mm, "expected_fre_mm": expected_mm, "misfit_probability": misfit}
+        lines.append(f"     {expected_mm:.3f} mm to be expected from the stated FLE")
+        if misfit < MISFIT_LEVEL:
+            warnings.append(
+                "The residuals are larger than the stated FLE allow; the expected TRE, which is "
+                "computed from these, is too small."
+            )
+    error = _target_error(found, arguments.target, localization)
     if error is not None:
         lines += [f"TRE  {_expected(error)}", INTERVAL_NOTE]
-    lines += [FRE_NOTE, "", "Moving to fixed (mm)", *_matrix_lines(registration.matrix)]
-    header, last = ["Point", "Residual (mm)", "x", "y", "z"], None
-    if stated is not None:
-        header, last = [*header, "FLE (mm)"], stated.fle_mm
-    elif registration.weights is not None:
-        header, last = [*header, "Weight"], registration.weights
-    lengths, vectors = registration.residuals_mm, registration.residual_vectors_mm
+    lines += [FRE_NOTE, "", "Moving to fixed (mm)", *_matrix_lines(found.matrix), ""]
+    header, last = ["Point", "Residual (mm)", "x", "y", "z"], weights if fle_mm is None else fle_mm
     rows = [
-        [label, f"{lengths[row]:.3f}", *(f"{value:+.3f}" for value in vectors[row])]
-        + ([] if last is None else [f"{last[row]:g}"])
-        for row, label in enumerate(registration.labels)
-    ]
-    lines += ["", text_table(header, rows)]
-    warnings = [warning.message for warning in registration.warnings]
-    if stated is not None and stated.misfit_probability < MISFIT_LEVEL:
-        warnings.append(
-            "The residuals are larger than the stated FLE allow; the expected TRE, which is "
-            "computed from these, is too small."
+        [label, f"{length:.3f}", *(f"{value:+.3f}" for value in vector)]
+        for label, length, vector in zip(
+            found.labels, found.residuals_mm, found.residual_vectors_mm, strict=True
         )
-    if warnings:
-        lines += ["", *(f"Warning: {warning}" for warning in warnings)]
-    return "\n".join(lines)
+    ]
+    if last is not None:
+        header.append("Weight" if fle_mm is None else "FLE (mm)")
+        rows = [[*row, f"{number:g}"] for row, number in zip(rows, last, strict=True)]
+    lines.append(text_table(header, rows))
+    names = ("fre_mm", "matrix", "labels", "residuals_mm", "residual_vectors_mm", "warnings")
+    answer = {
+        "type": found.kind,
+        **picked(found, *names, "weights", "weighted_fre_mm"),
+        "stated": stated,
+        "expected_tre": None if error is None else {**asdict(error), "note": INTERVAL_NOTE},
+    }
+    return answer, lines, warnings
+
+
+def _target_error(
+    found: Registration, target: list[float] | None, localization: LocalizationError | None
+) -> TargetError | None:
+    """Return the error to expect at a target, or at the center of the points if it is known."""
+    if target is None:
+        try:
+            degrees_of_freedom(found)
+        except InputError:
+            return None
+        return target_error(found, found.fixed_mm.mean(axis=0), localization)
+    return target_error(found, np.array(target), localization)
 
 
 def _expected(error: TargetError) -> str:
@@ -168,40 +150,32 @@ def _matrix_lines(matrix: np.ndarray) -> list[str]:
     return ["  ".join(f"{value:12.6f}" for value in row) for row in matrix]
 
 
-def match_files(
-    arguments: argparse.Namespace, read: Callable[[str], PointList]
-) -> tuple[SurfaceMatch, TargetError]:
-    """Return the match of a command's files and the error to expect at its target.
-
-    The points MOVING and FIXED, three landmarks or more, give the start.
-    """
+def _matched(
+    arguments: argparse.Namespace,
+    read: Callable[[str], PointList],
+    labels: tuple[str, ...],
+    moving: np.ndarray,
+    fixed: np.ndarray,
+) -> Answer:
+    """Match a trace to a head; the paired points, three landmarks or more, give the start."""
     for name in ("type", "fle", "weights"):
         if getattr(arguments, name) not in (None, "rigid"):
             raise InputError(f"--surface matches rigidly and unweighted: leave out --{name}.")
     if arguments.head is None:
         raise InputError("--surface needs the head: give its mesh with --head HEAD.ply.")
-    mesh = read_head_mesh(arguments.head)
-    labels, moving, fixed = pair(read(arguments.moving), read(arguments.fixed))
-    trace = read(arguments.surface).points
+    mesh, trace = read_head_mesh(arguments.head), read(arguments.surface).points
     match = match_surface(trace, mesh, register(moving, fixed, labels=labels).matrix)
     target = mesh.middle if arguments.target is None else np.array(arguments.target)
-    return match, surface_target_error(knowledge_of(match), target)
-
-
-def match_json(match: SurfaceMatch, error: TargetError) -> dict[str, Any]:
+    error, slide = surface_target_error(knowledge_of(match), target), match.slide
     names = ("rms_mm", "inlier_share", "converged", "starts", "best_starts", "spread_mm")
-    return {
+    answer = {
         "type": "surface",
         "points": len(match.residuals_mm),
-        "slide_mm": match.slide.distance_mm,
-        "slide_place": match.slide.place,
+        "slide_mm": slide.distance_mm,
+        "slide_place": slide.place,
         **picked(match, "matrix", *names, "residuals_mm", "warnings"),
         "expected_tre": {**asdict(error), "note": RESIDUAL_NOTE},
     }
-
-
-def match_text(match: SurfaceMatch, error: TargetError) -> str:
-    slide = match.slide
     lines = [
         f"Surface registration of {len(match.residuals_mm)} points",
         "",
@@ -217,6 +191,4 @@ def match_text(match: SurfaceMatch, error: TargetError) -> str:
         "Trace to head (mm)",
         *_matrix_lines(match.matrix),
     ]
-    if match.warnings:
-        lines += ["", *(f"Warning: {warning.message}" for warning in match.warnings)]
-    return "\n".join(lines)
+    return answer, lines, [warning.message for warning in match.warnings]

@@ -125,7 +125,7 @@ def _mean_scores(
                     f"{pseudonym} has {len(trials)} scored trials, and {LAST_TRIALS} are needed of "
                     "each."
                 )
-            methods |= {trial.method for trial in trials}
+            methods |= {RegistrationMethod(trial.method) for trial in trials}
             means[-1].append(fmean(trial.score for trial in trials))
     if len(methods) > 1:
         names = " and ".join(sorted(method.value for method in methods))

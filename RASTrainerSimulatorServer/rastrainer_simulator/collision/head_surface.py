@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
-from functools import lru_cache
 from typing import NamedTuple
 
 import fcl
@@ -48,10 +48,8 @@ class ClosedSurface:
         a, b, c = vertices[triangles].swapaxes(0, 1)
         if np.einsum("ij,ij->", a, np.cross(b, c)) < 0.0:
             triangles, neighbors = triangles[:, ::-1], neighbors[:, [1, 0, 2]]
-        self.vertices = vertices
-        self.triangles = triangles
-        self._corners = vertices[triangles]
-        u = np.roll(self._corners, -1, axis=1) - self._corners
+        corners = vertices[triangles]
+        u = np.roll(corners, -1, axis=1) - corners
         faces = np.cross(u[:, 0], u[:, 1])
         sizes = np.linalg.norm(faces, axis=1)
         # A triangle without area takes the normals of its neighbors.
@@ -59,26 +57,21 @@ class ClosedSurface:
         faces /= np.where(flat, 1.0, sizes)[:, None]
         faces[flat] = 0.0
         faces[flat] = faces[neighbors[flat]].sum(axis=1)
-        v = np.roll(self._corners, 1, axis=1) - self._corners
+        v = np.roll(corners, 1, axis=1) - corners
         sines = np.linalg.norm(np.cross(u, v), axis=2)
         angles = np.arctan2(sines, np.einsum("ijk,ijk->ij", u, v))
         around = [
             np.bincount(triangles.ravel(), (faces[:, None, k] * angles).ravel(), len(vertices))
             for k in range(3)
         ]
-        # Rows: the face, its edges 01, 12, 20, its vertices 0, 1, 2.
-        self._normals = np.concatenate(
-            [
-                faces[:, None],
-                faces[:, None] + faces[neighbors],
-                np.stack(around, axis=1)[triangles],
-            ],
-            axis=1,
-        )
+        self.vertices, self.triangles = vertices, triangles
+        self._neighbors, self._face_normals = neighbors, faces
+        self._vertex_normals = np.stack(around, axis=1)
 
     def pseudonormal(self, triangle: int, point: np.ndarray) -> list[float]:
         """Return the outward direction (3 floats, not of unit length) at a point of a triangle."""
-        (ax, ay, az), (bx, by, bz), (cx, cy, cz) = self._corners[triangle].tolist()
+        corners = self.triangles[triangle]
+        (ax, ay, az), (bx, by, bz), (cx, cy, cz) = self.vertices[corners].tolist()
         px, py, pz = point.tolist()
         ux, uy, uz = bx - ax, by - ay, bz - az
         vx, vy, vz = cx - ax, cy - ay, cz - az
@@ -93,18 +86,24 @@ class ClosedSurface:
         small = _ON_FEATURE * area
         at_1, at_2 = vv * wu - uv * wv, uu * wv - uv * wu
         at_0 = area - at_1 - at_2
+        # The face is 0, its edges 01, 12 and 20 are 1 to 3, its vertices 4 to 6.
         if at_2 < small:
             feature = 5 if at_0 < small else 4 if at_1 < small else 1
         elif at_0 < small:
             feature = 6 if at_1 < small else 2
         else:
             feature = 3 if at_1 < small else 0
-        return self._normals[triangle, feature].tolist()
+        if feature > 3:
+            return self._vertex_normals[corners[feature - 4]].tolist()
+        face = self._face_normals[triangle]
+        if feature == 0:
+            return face.tolist()
+        return (face + self._face_normals[self._neighbors[triangle, feature - 1]]).tolist()
 
     def crossing(self, triangle: int, start: Vector, end: Vector) -> tuple[Vector, Vector]:
         """Return where a segment goes through a triangle, and the outward normal there."""
-        normal = self._normals[triangle, 0]
-        corner = self._corners[triangle, 0]
+        normal = self._face_normals[triangle]
+        corner = self.vertices[self.triangles[triangle, 0]]
         before, behind = (float(normal @ (np.array(point) - corner)) for point in (start, end))
         share = before / (before - behind) if before != behind else 0.0
         point = vector(a + share * (b - a) for a, b in zip(start, end, strict=True))
@@ -154,8 +153,7 @@ class HeadSurface:
     def __init__(self, vertices: np.ndarray, triangles: np.ndarray) -> None:
         """Take (n, 3) float vertices and (m, 3) int triangles; the last surface is cached."""
         self._surface, mesh = _shapes(
-            np.asarray(vertices, dtype=float).tobytes(),
-            np.asarray(triangles, dtype=np.int64).tobytes(),
+            np.asarray(vertices, dtype=float), np.asarray(triangles, dtype=np.int64)
         )
         vertices = self._surface.vertices
         base = vertices[vertices[:, 2] <= vertices[:, 2].min() + _BASE_THICKNESS]
@@ -227,14 +225,20 @@ class HeadSurface:
         return Nearest(distance - radius, foot, normal, triangle)
 
 
-@lru_cache(maxsize=1)
-def _shapes(vertices: bytes, triangles: bytes) -> tuple[ClosedSurface, fcl.BVHModel]:
+_last: dict[bytes, tuple[ClosedSurface, fcl.BVHModel]] = {}
+
+
+def _shapes(vertices: np.ndarray, triangles: np.ndarray) -> tuple[ClosedSurface, fcl.BVHModel]:
     """Return what takes half a second to build; it is read only, so that all may share it."""
-    surface = ClosedSurface(
-        np.frombuffer(vertices).reshape(-1, 3), np.frombuffer(triangles, np.int64).reshape(-1, 3)
-    )
-    mesh = fcl.BVHModel()
-    mesh.beginModel(len(surface.triangles), len(surface.vertices))
-    mesh.addSubModel(surface.vertices, surface.triangles)
-    mesh.endModel()
-    return surface, mesh
+    key = hashlib.sha256(vertices.tobytes() + triangles.tobytes()).digest()
+    found = _last.get(key)
+    if found is None:
+        surface = ClosedSurface(vertices, triangles)
+        mesh = fcl.BVHModel()
+        mesh.beginModel(len(surface.triangles), len(surface.vertices))
+        mesh.addSubModel(surface.vertices, surface.triangles)
+        mesh.endModel()
+        found = surface, mesh
+        _last.clear()
+        _last[key] = found
+    return found

@@ -10,7 +10,7 @@ from __future__ import annotations
 import contextlib
 import itertools
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -30,6 +30,7 @@ from rastrainer.journal.entries import (
     Reach,
     Registered,
     Sample,
+    Stamp,
     StartingPoint,
     TracePoint,
 )
@@ -113,6 +114,7 @@ def meters(value_mm: float) -> float:
 
 _EFFECTS: Mapping[str, frozenset[str]] = {
     **{each: each.entries for each in COMMANDS.values() if each.entries},
+    CommandName.ABORT: frozenset({"phase"}),
     RECORDING_FAILED: frozenset({"phase"}),
 }
 """The kinds of entries that show that a command was carried out."""
@@ -144,7 +146,7 @@ class InterruptedTrial:
         header = lines[0].entry
         assert isinstance(header, JournalHeader), "a journal begins with one"
         recorded = RecordedFeed()
-        steps = list(_steps(lines, header, recorded))
+        steps = [step[1:] for step in recorded_steps(lines, header, recorded)]
         if not steps:
             return None
         last = max(lines, key=lambda line: line.at.tick).at
@@ -200,10 +202,10 @@ def recorded_command(recorded: CommandDone, seed: int) -> OperatorCommand:
     return OperatorCommand(name, check_arguments(name, arguments) | own, 0, recorded.sender)
 
 
-def _steps(
-    lines: Sequence[Line], header: JournalHeader, recorded: RecordedFeed
-) -> Iterator[tuple[OperatorCommand, TouchMoment]]:
-    """Yield what changed the trial.
+def recorded_steps(
+    lines: Iterable[Line], header: JournalHeader, recorded: RecordedFeed
+) -> Iterator[tuple[Stamp, OperatorCommand, TouchMoment]]:
+    """Yield what changed the trial, and when it was recorded.
 
     A command whose effect is not in the journal was refused, or the server ended before the effect
     was written: no client has seen it.
@@ -214,16 +216,16 @@ def _steps(
         for number, (at, entry) in enumerate(together):
             recorded.take(entry)
             if isinstance(entry, Continued):
-                yield OperatorCommand(INTERRUPTED), TouchMoment(entry.since_s, ZERO, 0.0)
+                yield at, OperatorCommand(INTERRUPTED), TouchMoment(entry.since_s, ZERO, 0.0)
             if isinstance(entry, TracePoint):
                 # It was left at the end of its tick, unlike the effect of a command.
                 place = vector(map(meters, entry.position_mm))
-                yield OperatorCommand(TRACED), TouchMoment(at.sim_time_s, place, 0.0)
+                yield at, OperatorCommand(TRACED), TouchMoment(at.sim_time_s, place, 0.0)
             if not isinstance(entry, CommandDone) or entry.name not in _EFFECTS:
                 continue
             kinds = _EFFECTS[entry.name]
             effects = (each.entry for each in together[number:])
-            effect = next((each for each in effects if each.kind in kinds), None)
+            effect = next((each for each in effects if not kinds.isdisjoint(_kinds(each))), None)
             if effect is not None:
                 # Commands are carried out at the state reached, one tick before their line.
                 place = getattr(effect, "position_mm", None) or ZERO
@@ -234,4 +236,9 @@ def _steps(
                     direction=getattr(effect, "direction", None) or ZERO,
                     feed=recorded.before(effect),
                 )
-                yield recorded_command(entry, seed), moment
+                yield at, recorded_command(entry, seed), moment
+
+
+def _kinds(entry: Entry) -> tuple[str, ...]:
+    """Return the kind of an entry; a registration and an abort also change the phase."""
+    return ("phase", entry.kind) if isinstance(entry, PhaseChange) else (entry.kind,)

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.study.tidy_csv import csv_text
-from rastrainer.trial.trial_feedback import PastTrial
+from rastrainer.trial.trial_row import TrialRow
 
 GRADE_COLUMN = "RASTrainer"
 FULL_GRADE = 100
@@ -15,7 +15,7 @@ CANVAS_COLUMNS = ("Student", "ID", "SIS User ID", "SIS Login ID", "Section", GRA
 
 
 def grade(
-    trials: Iterable[PastTrial],
+    trials: Iterable[TrialRow],
     task: str | None,
     mode: str | None,
     method: RegistrationMethod,
@@ -31,7 +31,7 @@ def grade(
         trial.score
         for trial in trials
         if trial.acceptable
-        and trial.method is method
+        and trial.method == method
         and task in (None, trial.task)
         and mode in (None, trial.mode)
     ]
@@ -41,7 +41,6 @@ def grade(
 
 
 def grades_csv(grades: Mapping[str, float], platform: str) -> str:
-    """Return grades by pseudonym as a file for "moodle" or "canvas"."""
     rows = [(name, f"{score:.2f}") for name, score in sorted(grades.items())]
     if platform == "moodle":
         return csv_text(("ID number", GRADE_COLUMN), rows)

@@ -27,8 +27,9 @@ from rastrainer.motion.trial_motion import RATE_HZ
 from rastrainer.procedure.errors import true_lines
 from rastrainer.registration.fits import RIGID
 from rastrainer.study.database.values import StoredTrial
-from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.study.study_data import StudyData
 from rastrainer.study.tidy_csv import csv_text
+from rastrainer.trial.trial_row import TrialRow
 
 BIDS_VERSION = "1.10.0"
 TRACKING = "tooltip"
@@ -45,7 +46,6 @@ FindTrajectory = Callable[[str], Trajectory | None]
 
 
 def write_motion_bids(data: StudyData, folder: Path, find_trajectory: FindTrajectory) -> int:
-    """Write the dataset and return the number of trials in it."""
     make_empty_folder(folder)
     labels = participant_labels(data.trainees)
     runs: dict[tuple[str, str, str], int] = defaultdict(int)
@@ -66,7 +66,6 @@ def write_motion_bids(data: StudyData, folder: Path, find_trajectory: FindTrajec
 
 
 def participant_labels(trainees: tuple[str, ...]) -> dict[str, str]:
-    """Return a unique alphanumeric label for each pseudonym."""
     labels: dict[str, str] = {}
     for index, trainee in enumerate(trainees, start=1):
         label = re.sub(r"[^A-Za-z0-9]", "", trainee) or f"P{index:03d}"

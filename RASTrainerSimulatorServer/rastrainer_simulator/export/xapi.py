@@ -8,9 +8,10 @@ from typing import Any
 from rastrainer.study.outcomes import mode_title, task_title
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers
 from rastrainer.study.protocol.study_protocol import pass_mark_of
-from rastrainer.study.study_data import StudyData, TrialRow
-from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.study.study_data import StudyData
+from rastrainer.trial.record import AbortedTrial
 from rastrainer.trial.scoring import passes
+from rastrainer.trial.trial_row import TrialRow
 
 VERSION = "1.0.0"
 """That of the data model, which every xAPI 1.0.x shares; a provider must not name a later patch."""
@@ -37,7 +38,7 @@ def statements(data: StudyData, home_page: str = HOME_PAGE) -> list[dict[str, An
         for trial in data.trials
         if trial.trial_id
     ]
-    trials += [_aborted(stored.record, home_page) for stored in data.aborted]
+    trials += [_aborted(record, home_page) for record in data.aborted]
     return trials + [_answers(answered, home_page) for answered in data.answers]
 
 

@@ -18,7 +18,6 @@ from rastrainer.errors import RASTrainerError
 from rastrainer.journal.entries import PlayingSession, Report, Stamp
 from rastrainer.journal.journal_file import JournalReading
 from rastrainer.protocol import FINISHED_PHASES, OPEN_PHASES
-from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.results import DurableResults, PendingAnswers, Subscribers
 from rastrainer_simulator.loop.timing import (
@@ -84,6 +83,7 @@ class ControlLoop:
         """
         self.simulation = simulation
         """The present one; it belongs to the loop's thread."""
+        self.setup = simulation.setup
         self._dt = 1.0 / rate_hz
         self._period = 0.0 if speed is None else self._dt / speed
         self.archive = TrialArchive(records)
@@ -116,7 +116,7 @@ class ControlLoop:
         self._subscribers: Subscribers[StepResult] = Subscribers()
         self.subscribe = self._subscribers.add
         """Calls a callback in the loop's thread after each tick; it must return immediately."""
-        self._statistics = LoopStatistics()
+        self.statistics = LoopStatistics()
         self.thread = threading.Thread(target=self._run, name="control loop", daemon=True)
         self._is_stopping = threading.Event()
         self._is_over = False
@@ -135,14 +135,6 @@ class ControlLoop:
         self._is_stopping.set()
         if self.thread.is_alive():
             self.thread.join()
-
-    @property
-    def setup(self) -> SimulationSetup:
-        return self.simulation.setup
-
-    @property
-    def statistics(self) -> LoopStatistics:
-        return replace(self._statistics)
 
     def hold_sticks(self, sticks: OperatorInput) -> None:
         self._sticks = replace(sticks, commands=())
@@ -192,13 +184,13 @@ class ControlLoop:
             with precise_timing(self.is_first_in_line):
                 due = time.monotonic()
                 while not self._is_stopping.is_set():
-                    self._statistics.count(time.monotonic() - due if self._period else 0.0)
+                    self.statistics.count(time.monotonic() - due if self._period else 0.0)
                     self._tick()
                     due += self._period
                     behind = time.monotonic() - due
                     if self._period and behind > CATCH_UP_S:
                         skipped = int(behind / self._period)
-                        self._statistics.skipped += skipped
+                        self.statistics.skipped += skipped
                         due += skipped * self._period
                     sleep_until(due)
         except Exception:
@@ -209,7 +201,7 @@ class ControlLoop:
     def _tick(self) -> None:
         if self._successor is not None and not self._held.is_waiting:
             self.simulation, ticket = self._successor
-            self._successor = None
+            self.setup, self._successor = self.simulation.setup, None
             self.simulation.restart_from(self._state.starting_point)
             self._answers.give(Answer(ticket, True))
         commands = self._commands()

@@ -37,60 +37,50 @@ class DurableResults:
 
     def __init__(self, training: TrainingState) -> None:
         self.safe = training
-        self._awaited: deque[tuple[Written, StepResult]] = deque()
-        self._unwatched: deque[tuple[Written, StepResult]] = deque()
+        # In the order in which one thread writes them.
+        self._unwritten: deque[tuple[Written, StepResult]] = deque()
 
     @property
     def is_waiting(self) -> bool:
         """Whether a change of the trial is still being written."""
-        return bool(self._awaited)
+        return any(written.is_awaited for written, _ in self._unwritten)
 
     def publishable(
         self, result: StepResult, written: Written | None
     ) -> tuple[StepResult, str | None]:
         """Return the result to publish now, and the reason if writing has failed."""
-        if written is None and not self._awaited and not self._unwatched:
+        if written is None and not self._unwritten:
             self.safe = result.state.training
             return result, None
         events: list[Event] = []
         answers: list[Answer] = []
+        reason = None
         if written is not None:
-            (self._awaited if written.is_awaited else self._unwatched).append((written, result))
-        reason = self._collect(events, answers)
+            self._unwritten.append((written, result))
+        while self._unwritten and self._unwritten[0][0].future.done():
+            done, earlier = self._unwritten[0]
+            error = done.future.exception()
+            if error is not None:
+                # The control loop undoes what has not been written.
+                reason = str(error)
+                sentence = f"This could not be recorded and does not count: {reason}."
+                for each, undone in self._unwritten:
+                    if each.is_awaited:
+                        answers += [Answer(a.ticket, False, sentence) for a in undone.answers]
+                self._unwritten.clear()
+                break
+            self._unwritten.popleft()
+            if done.is_awaited:
+                self.safe = earlier.state.training
+                events += earlier.events
+                answers += earlier.answers
         if written is None or not written.is_awaited:
-            events.extend(result.events)
-            answers.extend(result.answers)
-        if not self._awaited and reason is None:
+            events += result.events
+            answers += result.answers
+        if not self.is_waiting and reason is None:
             self.safe = result.state.training
         state = replace(result.state, training=self.safe)
         return StepResult(state, tuple(events), tuple(answers)), reason
-
-    def _collect(self, events: list[Event], answers: list[Answer]) -> str | None:
-        """Add the results written since the last tick, in order; return the reason of a failure."""
-        while self._unwatched and self._unwatched[0][0].future.done():
-            error = self._unwatched.popleft()[0].future.exception()
-            if error is not None:
-                return self._refuse(error, answers)
-        while self._awaited and self._awaited[0][0].future.done():
-            written, result = self._awaited[0]
-            error = written.future.exception()
-            if error is not None:
-                return self._refuse(error, answers)
-            self._awaited.popleft()
-            self.safe = result.state.training
-            events.extend(result.events)
-            answers.extend(result.answers)
-        return None
-
-    def _refuse(self, error: BaseException, answers: list[Answer]) -> str:
-        """Answer all waiting commands with the reason: the control loop undoes them."""
-        sentence = f"This could not be recorded and does not count: {error}."
-        for _written, result in self._awaited:
-            for answer in result.answers:
-                answers.append(Answer(answer.ticket, ok=False, message=sentence))
-        self._awaited.clear()
-        self._unwatched.clear()
-        return str(error)
 
 
 T = TypeVar("T")

@@ -58,7 +58,6 @@ class RatingPresenter(ReplayPresenter):
         return self._texts.say(key, **self.work.numbers, **values)
 
     def advance(self, dt: float) -> None:
-        """Show a replay that has been loaded."""
         self.pages.advance(dt)
         loading = self._loading
         if loading is None or not loading.done():
@@ -83,7 +82,6 @@ class RatingPresenter(ReplayPresenter):
         self._refresh()
 
     def rate(self) -> None:
-        """Open the next domain that has no mark, or the marks of the replay."""
         self._playback.pause(True)
         open_ = self.work.open_domain
         self.pages.show(RatedPage(self) if open_ is None else DomainPage(self, *open_))
@@ -152,7 +150,6 @@ class RatingPresenter(ReplayPresenter):
             self._try(lambda: self.pages.choose(name))
 
     def _watch(self, playback: Playback) -> None:
-        """Show a replay from its beginning, under its number."""
         self.shown.show(playback)
         self.pages.show(None)
         self._play(playback, self.say("rating.replay"))
@@ -166,7 +163,6 @@ class RatingPresenter(ReplayPresenter):
             self.pages.pressed(control)
 
     def _try(self, act: Callable[[], None]) -> None:
-        """Carry out the request, and report failures."""
         self._problem = ""
         try:
             act()
@@ -199,7 +195,6 @@ class RatingPresenter(ReplayPresenter):
 
 
 def _pressed(values: Sequence[float]) -> frozenset[int]:
-    """Return which axes or buttons are away from rest."""
     return frozenset(number for number, value in enumerate(values) if abs(value) > _DOWN)
 
 
@@ -219,7 +214,6 @@ class RatingPage(Page):
         return self.actions.say(key, **values)
 
     def rows(self, *names: str) -> tuple[PageRow, ...]:
-        """Return buttons that several pages have; "watch" goes back."""
         actions = self.actions
         acts = {
             "undo": actions.undo,

@@ -14,8 +14,7 @@ class RatingWork:
     Every mark is stored when it is given, so that a rater can stop and resume at any time.
 
     Attributes:
-        trial_ids: In the rater's order; their places are all that the rater learns about them.
-        place: Of the present replay, from 0.
+        place: Of the present replay, from 0, in the rater's order: all that the rater learns.
     """
 
     def __init__(
@@ -42,7 +41,6 @@ class RatingWork:
 
     @property
     def marks(self) -> dict[str, int]:
-        """The marks of the present replay, by domain, in the order in which they were given."""
         return self._marks[self.trial_id]
 
     @property
@@ -60,7 +58,6 @@ class RatingWork:
             self._store_mark(form, domain.name, mark)
 
     def undo(self) -> bool:
-        """Withdraw the last mark of this replay; return whether there was one."""
         names = {domain.name: form for form in self.forms for domain in form.domains}
         given = [domain for domain in self.marks if domain in names]
         if given:

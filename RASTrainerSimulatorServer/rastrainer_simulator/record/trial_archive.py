@@ -33,8 +33,7 @@ from rastrainer.journal.recording import WholeRecording
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.procedure.record import UsedRegistration
 from rastrainer.protocol import PROCEDURE_PHASES, AbortReason, Phase
-from rastrainer.trial.aborted_trial import AbortedTrial
-from rastrainer.trial.record import TouchedPoint, TrialRecord
+from rastrainer.trial.record import AbortedTrial, TouchedPoint, TrialRecord
 from rastrainer_simulator.core.interrupted_trial import (
     MALFORMED,
     InterruptedTrial,

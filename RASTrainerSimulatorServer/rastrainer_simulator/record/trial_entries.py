@@ -196,7 +196,17 @@ class TrialEntries:
             is_registered = is_registered or isinstance(entry, Registered)
             self._append(at, entry)
         if is_sampled:
-            self._append(at, self._sample(state))
+            moved_by, self._moved_by = self._moved_by, ""
+            is_fed = state.tool in (Tool.DRILL, Tool.ELECTRODE)
+            sample = Sample(
+                q=state.q,
+                tip_mm=in_millimeters(state.tool_tip_to_world[:3, 3].tolist()),
+                clearance_mm=MM_PER_M * state.clearance,
+                depth_mm=MM_PER_M * state.depth,
+                feed_mm=MM_PER_M * state.feed if is_fed else None,
+                moved_by=moved_by,
+            )
+            self._append(at, sample)
         if not is_registered:
             return None
         # The record covers the whole tick: the tip may have touched the head after the command.
@@ -220,18 +230,6 @@ class TrialEntries:
         self._recording.add(line)
         self.records.feeds.add(line)
         self.records.play.add(line)
-
-    def _sample(self, state: SimulationState) -> Sample:
-        moved_by, self._moved_by = self._moved_by, ""
-        is_fed = state.tool in (Tool.DRILL, Tool.ELECTRODE)
-        return Sample(
-            q=state.q,
-            tip_mm=in_millimeters(state.tool_tip_to_world[:3, 3].tolist()),
-            clearance_mm=MM_PER_M * state.clearance,
-            depth_mm=MM_PER_M * state.depth,
-            feed_mm=MM_PER_M * state.feed if is_fed else None,
-            moved_by=moved_by,
-        )
 
     def motion(self) -> dict[str, float]:
         return trial_motion(self._recording.trajectory())

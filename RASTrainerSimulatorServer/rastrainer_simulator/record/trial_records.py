@@ -7,9 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from rastrainer.errors import InputError
 from rastrainer.journal.entries import (
-    AcceptedCheckpoint,
     Continued,
     Line,
     PhaseChange,
@@ -17,7 +15,6 @@ from rastrainer.journal.entries import (
     Sample,
 )
 from rastrainer.journal.folder import UNNUMBERED
-from rastrainer.journal.recording import RecordedEvent
 from rastrainer.json_records import record_to_json
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.motion.trial_motion import trial_motion
@@ -31,20 +28,16 @@ from rastrainer.procedure.record import (
 )
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
-from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.how_played import PlayRecording, SeedSource
-from rastrainer.trial.record import TouchedPoint, TrialRecord
+from rastrainer.trial.record import AbortedTrial, TouchedPoint, TrialRecord
 from rastrainer_simulator.record.trial_context import DisplayUse, versions
 from rastrainer_simulator.state import SimulationState, TrainingState
-from rastrainer_simulator.training.head_pose import RegisteredPlan
 from rastrainer_simulator.trial_state import (
-    CheckedPoint,
-    GuideAxis,
     ProcedureState,
     RegistrationAttempt,
     TrajectoryState,
 )
-from rastrainer_simulator.vectors import in_meters, in_millimeters, vector
+from rastrainer_simulator.vectors import in_millimeters, vector
 
 if TYPE_CHECKING:
     from rastrainer_simulator.core.simulation import Simulation
@@ -293,40 +286,3 @@ def _times(parts: Iterable[Mapping[Phase, float]]) -> dict[str, float]:
         for phase, seconds in part.items():
             total[phase.value] = total.get(phase.value, 0.0) + seconds
     return total
-
-
-def procedure_after(
-    before: ProcedureState, event: RecordedEvent, plan: Procedure
-) -> ProcedureState:
-    """Return the progress of a procedure after an event of its trial."""
-    entry = event.entry
-    if isinstance(entry, AcceptedCheckpoint):
-        touched = CheckedPoint(
-            entry.checkpoint,
-            in_meters(entry.position_mm),
-            entry.error_mm / MM_PER_M,
-            event.sim_time_s,
-            event.time_s,
-        )
-        return replace(before, checkpoints=(*before.checkpoints, touched))
-    if not isinstance(entry, PhaseChange) or entry.procedure is None:
-        return before
-    if entry.registration is not None:
-        registered = RegisteredPlan.of(entry.registration.matrix)
-        if registered is None:
-            raise InputError("A journal entry is malformed: its registration is not rigid.")
-        lines = tuple(TrajectoryState(registered.line(each)) for each in plan.trajectories)
-        before = replace(before, registration=entry.registration, trajectories=lines)
-    stage, number = entry.procedure.stage, entry.procedure.trajectory
-    if before.stage is Phase.INSERTING and stage is not Phase.INSERTING:
-        here, depth = before.trajectories[before.trajectory], (entry.feed_mm or 0.0) / MM_PER_M
-        before = before.with_present(replace(here, instrument_depth=depth))
-    after = replace(before, stage=stage, trajectory=number)
-    if stage is Phase.RUNNING:
-        return replace(after, registration=None, checkpoints=(), trajectories=())
-    if entry.ahead is not None and entry.position_mm and entry.direction:
-        here = after.trajectories[number]
-        guide = GuideAxis(in_meters(entry.position_mm), entry.direction)
-        locked = replace(here, alignments=here.alignments + 1, guide=guide)
-        return after.with_present(locked)
-    return after

@@ -109,6 +109,7 @@ class PlaybackSwitch:
         self.alter: Callable[[SimulationState], SimulationState] | None = None
         self.playback: Playback | None = None
         self._source = source
+        self.statistics = source.statistics
         self._subscribers: Subscribers[StepResult] = Subscribers()
         self.subscribe = self._subscribers.add
         self._end_playback: Callable[[], None] = lambda: None
@@ -124,10 +125,6 @@ class PlaybackSwitch:
     @property
     def setup(self) -> SimulationSetup:
         return (self.playback or self._source).setup
-
-    @property
-    def statistics(self) -> LoopStatistics:
-        return self._source.statistics
 
     def show(self, playback: Playback | None) -> None:
         """Show a playback from now on, or the other source for None."""

@@ -4,38 +4,33 @@ from __future__ import annotations
 
 import bisect
 import threading
+from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Generic, TypeVar
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.journal.entries import (
-    AcceptedTouch,
-    CameraChange,
-    PhaseChange,
-    ProximityChange,
-    Registered,
-    Rejected,
-    Stroke,
-    TracePoint,
-    Undo,
-)
-from rastrainer.journal.recording import RecordedEvent, ReplayTrack, read_track
+from rastrainer.journal.entries import CameraChange, Line, ProximityChange, Registered
+from rastrainer.journal.recording import ReplayTrack, read_track
 from rastrainer.json_records import record_from_json
-from rastrainer.procedure.plan import Procedure
-from rastrainer.protocol import TRACED_METHODS, Phase, Proximity
-from rastrainer.scenario.scenario import task_by_method
+from rastrainer.protocol import Phase, Proximity
+from rastrainer.scenario.scenario import Scenario, task_by_method
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.analysis import analyze_trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.collision.collision import stand_pose
-from rastrainer_simulator.core.interrupted_trial import refusing_malformed, seed_of
+from rastrainer_simulator.core.interrupted_trial import (
+    RecordedFeed,
+    recorded_steps,
+    refusing_malformed,
+    seed_of,
+)
+from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.loop.timing import raise_thread_priority
-from rastrainer_simulator.record.trial_records import procedure_after
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.state import (
     Event,
@@ -44,14 +39,8 @@ from rastrainer_simulator.state import (
     TrainingState,
 )
 from rastrainer_simulator.training.rules import TouchMoment, touch_stage
-from rastrainer_simulator.trial_state import (
-    ProcedureState,
-    Tool,
-    TouchState,
-    TracedPoint,
-    TraceState,
-)
-from rastrainer_simulator.vectors import in_meters
+from rastrainer_simulator.training.training import Training
+from rastrainer_simulator.trial_state import Tool
 
 AFTER_S = 0.25
 """How long after the worst touch its replay ends."""
@@ -100,14 +89,9 @@ class RecordedTrial:
             self._stand_to_world = stand_pose(self._head_to_world, base)
             self._event_times = [event.time_s for event in track.events]
             self.duration_s = max(float(track.trajectory.times_s[-1]), self._event_times[-1])
-            settings = setup.settings
+            settings = record_from_json(SimulationSettings, header.settings, "The settings")
             task = task_by_method(scenario, self.task, header.registration_method)
-            self._situations = _situations(
-                track,
-                task.labels,
-                header.before.camera or settings.camera,
-                scenario.procedure(header.procedure.name) if header.procedure else None,
-            )
+            self._situations = _situations(track, scenario, settings)
             places = self._head_to_world[:3, :3] @ (task.fiducials / MM_PER_M).T
             places = (places + self._head_to_world[:3, 3:]).T
             self._goals = dict(zip(task.labels, map(tuple, places.tolist()), strict=True))
@@ -164,7 +148,8 @@ class RecordedTrial:
         """Return what happened later than one time and no later than another."""
         first = bisect.bisect_right(self._event_times, after_s)
         end = bisect.bisect_right(self._event_times, until_s)
-        return tuple(Event(each.sim_time_s, each.entry) for each in self._track.events[first:end])
+        found = self._track.events[first:end]
+        return tuple(Event(each.at.sim_time_s, each.entry) for each in found)
 
 
 T = TypeVar("T")
@@ -208,78 +193,25 @@ def load_trial(journal: Path, setup: SimulationSetup) -> TrialLoading:
 
 
 def _situations(
-    track: ReplayTrack,
-    labels: tuple[str, ...],
-    camera: str,
-    plan: Procedure | None,
+    track: ReplayTrack, scenario: Scenario, settings: SimulationSettings
 ) -> list[_Situation]:
-    """Return the situation after each event; `plan` is the trial's procedure, if any."""
-    header, method = track.header, track.header.registration_method
-    training = TrainingState(
-        trainee=header.trainee,
-        task=header.task,
-        mode=header.mode,
-        trial_id=header.trial_id,
-        procedure=None if plan is None else ProcedureState(plan.name),
-        method=method,
-        trace=TraceState() if method in TRACED_METHODS else None,
-    )
-    situation = _Situation(training, Proximity.FREE, camera)
+    """Return the situation after each event; the trial's state machine repeats the commands."""
+    header, training = track.header, Training(scenario, 0, settings.training, settings.procedure)
+    lines = [Line(event.at, event.entry) for event in track.events]
+    steps = deque(recorded_steps(lines, header, RecordedFeed()))
+    proximity, camera = Proximity.FREE, header.before.camera or settings.camera
     situations = []
-    for event in track.events:
-        match event.entry:
-            case ProximityChange(to=proximity):
-                situation = replace(situation, proximity=proximity)
-            case CameraChange(camera=chosen):
-                situation = replace(situation, camera=chosen)
-            case _:
-                changed = _training_after(situation.training, event, labels)
-                situation = replace(situation, training=changed)
-        training = situation.training
-        if plan is not None and training.procedure is not None:
-            procedure = procedure_after(training.procedure, event, plan)
-            situation = replace(situation, training=replace(training, procedure=procedure))
-        situations.append(situation)
+    for line in lines:
+        while steps and steps[0][0].tick <= line.at.tick:
+            _at, command, moment = steps.popleft()
+            training.handle(command, moment)
+        match line.entry:
+            case ProximityChange():
+                proximity = line.entry.to
+            case CameraChange():
+                camera = line.entry.camera
+        situations.append(_Situation(training.state, proximity, camera))
     return situations
-
-
-def _training_after(
-    before: TrainingState, event: RecordedEvent, labels: tuple[str, ...]
-) -> TrainingState:
-    touches, trace = before.touches, before.trace
-    match event.entry:
-        case Rejected(checkpoint=checkpoint, message=message):
-            rejected = before.rejected + (checkpoint is None)
-            return replace(before, rejected=rejected, instruction=message)
-        case TracePoint(position_mm=place) if trace is not None:
-            point = TracedPoint(in_meters(place), event.sim_time_s, event.time_s)
-            return replace(before, trace=trace.with_point(point))
-        case Stroke(on=True) if trace is not None:
-            return replace(before, trace=trace.begun())
-        case Stroke(undone=undone) if trace is not None:
-            return replace(before, trace=trace.undone() if undone else trace.ended())
-        case AcceptedTouch(label=label, position_mm=place):
-            touch = TouchState(label, in_meters(place), event.sim_time_s, event.time_s)
-            touches = (*touches, touch)
-            following = labels[len(touches)] if len(touches) < len(labels) else None
-            return replace(before, touches=touches, next_point=following)
-        case Undo(kept=kept, next_point=following):
-            undone_touches = before.undone + 1
-            return replace(
-                before, touches=touches[:kept], next_point=following, undone=undone_touches
-            )
-        case PhaseChange(phase=phase, next_point=following, instruction=instruction):
-            # Touches that could not be written were undone: the phase has the next fiducial.
-            kept = labels.index(following) if following in labels else len(touches)
-            return replace(
-                before,
-                phase=phase,
-                next_point=following,
-                instruction=instruction,
-                touches=touches[:kept],
-                trace=None if trace is None else trace.cut(event.entry.traced or 0),
-            )
-    return before
 
 
 def _worst(track: ReplayTrack, setup: SimulationSetup) -> tuple[str, float, float] | None:

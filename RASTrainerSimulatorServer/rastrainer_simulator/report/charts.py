@@ -67,7 +67,6 @@ class Chart:
         opacity: float = 1.0,
         titles: Sequence[str] = (),
     ) -> None:
-        """Draw dots with a thin white rim; `titles` show under the mouse."""
         name = f"dots-{len(self.titles)}"
         self.titles[name] = titles
         self.axes.scatter(
@@ -200,7 +199,6 @@ LANE_HEIGHT, MAX_LANE_DOTS = 74, len(SCATTER)
 
 
 def distribution(heading: str, lanes: Sequence[tuple[str, str, Sequence[float]]]) -> Markup:
-    """Return the chart of lanes with name, color and values."""
     height = 54 + LANE_HEIGHT * len(lanes)
     box = (66, 318, 28, height - 24)
     with drawn(HALF_WIDTH, height, box, heading, f"Distribution of {heading}") as chart:
@@ -269,7 +267,6 @@ FIRST, SECOND, DIFFERENCE = 0.0, 1.0, 268
 
 
 def paired_lines(comparison: ModeComparison) -> Markup:
-    """Return the chart of one outcome; differences have their own axis on the right."""
     outcome, result = comparison.outcome, comparison.result
     described = f"{outcome.title} of every trainee in both modes"
     few = len(comparison.trainees) <= 12

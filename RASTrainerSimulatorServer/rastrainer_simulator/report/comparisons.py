@@ -15,7 +15,7 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.study.outcomes import Outcome
 from rastrainer.study.study_data import StudyData
-from rastrainer_simulator.statistics.paired import PairedComparison, compare_paired, holm
+from rastrainer_simulator.statistics.paired import PairedComparison, compare_paired, holm_by_name
 
 SCORE = "score"
 
@@ -95,35 +95,30 @@ def compare_modes(
 def with_adjusted_p(
     comparisons: Iterable[ModeComparison], confirmatory: Sequence[str]
 ) -> tuple[ModeComparison, ...]:
-    """Return comparisons with the p of the `confirmatory` outcomes adjusted together (Holm)."""
     found = list(comparisons)
-    p_values = {
-        index: comparison.result.p
-        for index, comparison in enumerate(found)
-        if comparison.result is not None and comparison.outcome.name in confirmatory
+    tested = {
+        at: one.result.p
+        for at, one in enumerate(found)
+        if one.result is not None and one.outcome.name in confirmatory
     }
-    adjusted = dict(zip(p_values, holm(np.array([*p_values.values()])).tolist(), strict=True))
+    adjusted = holm_by_name(tested)
     return tuple(replace(one, adjusted_p=adjusted.get(at)) for at, one in enumerate(found))
 
 
 def paired_means(
     data: StudyData, name: str, first: str, second: str
 ) -> dict[str, tuple[float, float]]:
-    """Return for each trainee the means in both modes over the tasks done in both."""
-    values: dict[tuple[str, str], dict[str, list[float]]] = {}
+    values: dict[str, dict[str, dict[str, list[float]]]] = {name: {} for name in data.trainees}
     for trial in data.trials:
         if trial.mode in (first, second) and name in trial.values:
-            of_task = values.setdefault((trial.trainee, trial.task), {})
+            of_task = values[trial.trainee].setdefault(trial.task, {})
             of_task.setdefault(trial.mode, []).append(trial.values[name])
-    pairs: dict[str, list[list[float]]] = {}
-    for (trainee, _task), own in sorted(values.items()):
-        if len(own) == 2:
-            pair = [float(np.mean(own[mode])) for mode in (first, second)]
-            pairs.setdefault(trainee, []).append(pair)
     means = {}
-    for trainee in data.trainees:
-        if trainee in pairs:
-            one, other = np.mean(pairs[trainee], axis=0).tolist()
+    for trainee, of_tasks in values.items():
+        both = [own for _task, own in sorted(of_tasks.items()) if len(own) == 2]
+        if both:
+            pairs = [[float(np.mean(own[mode])) for mode in (first, second)] for own in both]
+            one, other = np.mean(pairs, axis=0).tolist()
             means[trainee] = one, other
     return means
 

@@ -60,9 +60,8 @@ def answers(
 
 
 def left_out_methods(data: StudyData) -> dict[str, int]:
-    """Return the number of started trials by each method but the compared one."""
     started = [trial.method for trial in data.trials]
-    started += [stored.record.method.value for stored in data.aborted]
+    started += [record.method.value for record in data.aborted]
     compared = compared_method(data)
     return dict(sorted(Counter(method for method in started if method != compared).items()))
 

@@ -30,7 +30,6 @@ def cell(content: Any, span: int = 1, color: str = "", kind: str = "") -> Cell:
 
 
 def left(words: str) -> Cell:
-    """Return a cell that is aligned to the left, and may take several lines."""
     return Cell(words, kind="text")
 
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import Counter
 from dataclasses import dataclass
-from datetime import datetime
 
 import numpy as np
 from markupsafe import Markup
@@ -16,6 +15,7 @@ from rastrainer.study.protocol.study_protocol import pass_mark_of
 from rastrainer.study.study_data import StudyData
 from rastrainer.study.tre_calibration import Proportion, proportion
 from rastrainer.trial import lc_cusum, scoring, trial_feedback
+from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.report import charts
 from rastrainer_simulator.report.comparisons import SCORE, compared_method
 from rastrainer_simulator.report.page import render
@@ -27,19 +27,15 @@ def started_trials(data: StudyData) -> Markup:
     """Return the section; "" if only finished trials are known, as in a CSV file."""
     if not data.has_order:
         return Markup()
-    scored = [stored for stored in data.aborted if stored.record.task != TRIAL_RUN]
+    scored = [record for record in data.aborted if record.task != TRIAL_RUN]
     finished = Counter((trial.trainee, trial.mode, trial.task) for trial in data.trials)
     early: Counter[tuple[str, str, str]] = Counter()
     late: Counter[tuple[str, str, str]] = Counter()
-    for stored in scored:
-        record = stored.record
+    for record in scored:
         counter = late if record.is_after_all_touches else early
         counter[record.trainee, record.mode, record.task] += 1
     counts = [
-        (
-            (key[0], mode_title(key[1]), task_title(key[2])),
-            (finished[key], early[key], late[key]),
-        )
+        ((key[0], mode_title(key[1]), task_title(key[2])), (finished[key], early[key], late[key]))
         for key in sorted({*early, *late})
     ]
     whole = (len(data.trials), early.total(), late.total())
@@ -52,7 +48,7 @@ def started_trials(data: StudyData) -> Markup:
         rows=[[*names, sum(numbers), *numbers] for names, numbers in counts],
         unscored=sorted(trial.trial_id for trial in data.trials if SCORE not in trial.values),
         most_named=MAX_NAMED_TRIALS,
-        repeats=[stored for stored in scored if stored.repeat_reason],
+        repeats=[record for record in scored if record.repeat_reason],
     )
 
 
@@ -124,30 +120,21 @@ def passing(data: StudyData, found: list[ModePassing]) -> Markup:
 
 
 def _failures(data: StudyData, mode: str, mark: float) -> tuple[dict[str, list[bool]], int]:
-    """Return whether each trial of each trainee failed, in order; one without a score did.
+    """Return whether each trial of each trainee failed, in order of starting.
 
-    Aborted trials that count as not passed are included in order of time; their number is
-    returned, too.
+    A trial without a score did, and an aborted one that counts as not passed; the number of these
+    is returned, too.
     """
-    records = [stored.record for stored in data.aborted]
-    aborted: dict[str, list[datetime]] = defaultdict(list)
-    for record in records:
-        if record.mode == mode and record.counts_as_failed:
-            aborted[record.trainee].append(moment(record.started_utc))
-    count = sum(map(len, aborted.values()))
-    failures: dict[str, list[bool]] = defaultdict(list)
-    for trial in sorted(data.of_mode(mode), key=lambda trial: trial.number):
-        own = aborted[trial.trainee]
-        while own and own[0] <= moment(trial.started_utc):
-            own.pop(0)
-            failures[trial.trainee].append(True)
-        score = trial.values.get(SCORE)
-        has_passed = score is not None and scoring.passes(score, trial.acceptable, mark)
-        failures[trial.trainee].append(not has_passed)
-    for trainee, own in aborted.items():
-        if own:
-            failures[trainee] += [True] * len(own)
-    return failures, count
+    aborted = [
+        TrialRow.of(record)
+        for record in data.aborted
+        if record.mode == mode and record.counts_as_failed
+    ]
+    finished = sorted(data.of_mode(mode), key=lambda trial: trial.number)
+    failures: dict[str, list[bool]] = {trial.trainee: [] for trial in [*finished, *aborted]}
+    for trial in sorted([*aborted, *finished], key=lambda trial: moment(trial.started_utc)):
+        failures[trial.trainee].append(not scoring.passes(trial.score, trial.acceptable, mark))
+    return failures, len(aborted)
 
 
 def _chart(data: StudyData, found: ModePassing) -> Markup:

@@ -11,18 +11,15 @@ from markupsafe import Markup
 
 from rastrainer.number_text import fixed
 from rastrainer.procedure.errors import TrajectoryErrors
-from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.study.study_data import StudyData
 from rastrainer.trial import procedure_outcome
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
+from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.report import charts
 from rastrainer_simulator.report.page import render
 from rastrainer_simulator.statistics.intervals import mean, rms
 
-KINDS = {
-    "biopsy": ("Biopsy", "#1b6ca8"),
-    "dbs": ("DBS", "#c2571a"),
-    "seeg": ("SEEG", "#3f8f4f"),
-}
+KINDS = {"biopsy": ("Biopsy", "#1b6ca8"), "dbs": ("DBS", "#c2571a"), "seeg": ("SEEG", "#3f8f4f")}
 """Title and color of each kind."""
 PHASES = {
     "running": "touching",
@@ -84,13 +81,10 @@ def _lines(done: Done, by_robot: bool | None = None) -> list[TrajectoryErrors]:
 
 
 def _lengths(lines: Sequence[TrajectoryErrors], part: str) -> np.ndarray:
-    """Return the target point errors of lines, or one of their parts, mm."""
     return np.array([getattr(line.target_point_error, part) for line in lines])
 
 
 def _figures(done: Done) -> dict[str, Any]:
-    """Return the numbers of some procedures, as the tables show them."""
-
     def rms_text(lines: Sequence[TrajectoryErrors], part: str) -> str:
         return fixed(rms(_lengths(lines, part)), 2) if lines else "–"
 

@@ -13,6 +13,8 @@ from rastrainer.number_text import counted, fixed, significant
 from rastrainer.study.study_data import StudyData
 from rastrainer.trial.ctps import (
     CTPS_WARNING,
+    RMSE,
+    TIME,
     CohortScores,
     Printed,
     published_ctps,
@@ -28,14 +30,12 @@ RED, YELLOW, GREEN = (244, 165, 158), (252, 234, 170), (171, 219, 165)
 
 
 def with_ctps(data: StudyData) -> StudyData:
-    """Return the study with `ctps` in the values of each registered trial."""
     references = {mode: cohort_scores(data, mode) for mode in data.modes}
     trials = []
     for trial in data.trials:
         scores, values = references[trial.mode], trial.values
-        if scores is not None and "rmse_mm" in values:
-            measures = values["completion_time_s"], values["rmse_mm"]
-            ctps = published_ctps(*measures, scores.reference)
+        if scores is not None and RMSE in values:
+            ctps = published_ctps(values[TIME], values[RMSE], scores.reference)
             trial = replace(trial, values={**values, "ctps": ctps})
         trials.append(trial)
     return replace(data, trials=tuple(trials))
@@ -56,7 +56,7 @@ def published_tables(data: StudyData) -> Markup:
         scores = cohort_scores(data, mode)
         if scores is None:
             continue
-        trials = [trial for trial in data.of_mode(mode) if "rmse_mm" in trial.values]
+        trials = data.ctps_trials(mode)
         tables.append(
             {
                 "number": number,
@@ -85,7 +85,6 @@ def published_tables(data: StudyData) -> Markup:
 
 
 def performance_color(value: float, values: Iterable[float]) -> str:
-    """Return the color of a score among others, from red to green."""
     values = list(values)
     low, high = min(values), max(values)
     share = 0.5 if low == high else (value - low) / (high - low)
@@ -96,11 +95,10 @@ def performance_color(value: float, values: Iterable[float]) -> str:
 
 
 def complexity(data: StudyData, mode: str, scores: CohortScores) -> dict[str, Correlation] | None:
-    """Return how times and CTPS of trials and tasks correlate with the tasks' numbers."""
     trials = data.ctps_trials(mode)
-    times = {task: [t.completion_time_s for t in trials if t.task == task] for task in scores.tasks}
+    times = {task: [t.values[TIME] for t in trials if t.task == task] for task in scores.tasks}
     values = {
-        "times": [(trial.task, trial.completion_time_s) for trial in trials],
+        "times": [(trial.task, trial.values[TIME]) for trial in trials],
         "scores": [(t.task, score) for t, score in zip(trials, scores.trials, strict=True)],
         "task_times": [(task, float(np.mean(own))) for task, own in times.items()],
         "task_scores": list(scores.tasks.items()),
@@ -136,9 +134,9 @@ def _ours(data: StudyData, printed: Printed) -> str:
     if scores is None:
         return "–"
     if printed.quantity == "mean_ct":
-        value = float(np.mean([trial.completion_time_s for trial in trials]))
+        value = float(np.mean([trial.values[TIME] for trial in trials]))
     elif printed.quantity == "mean_rmse":
-        value = float(np.mean([trial.rmse_mm for trial in trials]))
+        value = float(np.mean([trial.values[RMSE] for trial in trials]))
     else:
         value = getattr(scores, printed.quantity)
     if value is None:

@@ -101,7 +101,6 @@ def _word(value: float) -> str:
 
 
 def agreement_text(agreement: Agreement) -> str:
-    """Return a coefficient with its interval, such as `0.85 [0.62, 0.94]`."""
     value = fixed(agreement.value, 2)
     if agreement.interval is None:
         return f"{value} [–]"

@@ -40,7 +40,6 @@ PAGE, NUMBERS = "report.html", "trials.csv"
 def write_report(
     data: StudyData, folder: Path, made_utc: str | None = None, progress: Progress = no_progress
 ) -> Path:
-    """Write the page of a study and its numbers into a folder, and return the page."""
     page_text = report_html(data, made_utc, progress)
     make_folder(folder)
     write_text(folder / PAGE, page_text)
@@ -92,10 +91,9 @@ def report_html(
 
 
 def with_one_method(data: StudyData) -> StudyData:
-    """Return the study with the trials of the compared method only, finished and aborted."""
     method = compared_method(data)
     return replace(
         data,
         trials=tuple(t for t in data.trials if t.method == method),
-        aborted=tuple(stored for stored in data.aborted if stored.record.method == method),
+        aborted=tuple(record for record in data.aborted if record.method == method),
     )

@@ -14,14 +14,11 @@ from rastrainer.number_text import fixed
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.study.outcomes import Outcome, mode_title, short_mode_title
-from rastrainer.study.study_data import StudyData, TrialRow, values_of
+from rastrainer.study.study_data import StudyData, values_of
 from rastrainer.study.tre_calibration import calibration_of
+from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.report import charts
-from rastrainer_simulator.report.comparisons import (
-    ModeComparison,
-    compare_modes,
-    with_adjusted_p,
-)
+from rastrainer_simulator.report.comparisons import ModeComparison, compare_modes, with_adjusted_p
 from rastrainer_simulator.report.page import interval_text, render
 from rastrainer_simulator.statistics.intervals import mean
 
@@ -99,22 +96,17 @@ def compare_methods(by_method: StudyData) -> tuple[ModeComparison, ...]:
 
 def _row(by_method: StudyData, method: str) -> list[str]:
     trials = by_method.of_mode(method)
-    held = [
-        values["tre_low_mm"] <= values["true_tre_mm"] <= values["tre_high_mm"]
-        for values in (trial.values for trial in trials)
-        if {"tre_low_mm", "true_tre_mm"} <= set(values)
-    ]
+    held = calibration_of(trials).inside
     return [
         TITLES[method],
         str(len({trial.trainee for trial in trials})),
         str(len(trials)),
         *(_mean_text(trials, outcome) for outcome in COLORS),
-        f"{sum(held)} of {len(held)}" if held else "–",
+        f"{held.count} of {held.total}" if held else "–",
     ]
 
 
 def _mean_text(trials: Sequence[TrialRow], outcome: Outcome) -> str:
-    """Return the mean of the trainees' means with its interval."""
     own: dict[str, list[float]] = defaultdict(list)
     for trial in trials:
         if outcome.name in trial.values:
@@ -122,8 +114,7 @@ def _mean_text(trials: Sequence[TrialRow], outcome: Outcome) -> str:
     means = np.array([float(np.mean(values)) for values in own.values()])
     if len(means) < 2:
         return outcome.text(means[0]) if len(means) else "–"
-    estimate = mean(means)
-    return interval_text(estimate, outcome.digits)
+    return interval_text(mean(means), outcome.digits)
 
 
 def shifted_skin(data: StudyData) -> Markup:

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from markupsafe import Markup
 
-from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.study.study_data import StudyData
 from rastrainer.study.tre_calibration import Proportion, proportion
+from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.report.page import interval_text, render
 from rastrainer_simulator.statistics.intervals import Estimate, mean
 from rastrainer_simulator.statistics.variation import (

@@ -90,7 +90,6 @@ def _limits(n: int, k: int, rows: float, columns: float, error: float) -> tuple[
 
 
 def _single(n: int, k: int, rows: _Number, columns: _Number, error: _Number) -> _Number:
-    """Return ICC(2,1) from mean squares."""
     return (rows - error) / (rows + (k - 1) * error + k * (columns - error) / n)
 
 
@@ -137,9 +136,8 @@ def quadratic_kappa(first: np.ndarray, second: np.ndarray, lowest: int, highest:
 def kappa_of_table(table: np.ndarray, weights: np.ndarray) -> float:
     """Return a weighted kappa (Cohen 1968).
 
-    Args:
-        table: (m, m) float, how many objects, or which share, have each pair of marks.
-        weights: (m, m) float, 1 where the marks are equal.
+    The (m, m) table has how many objects, or which share, have each pair of marks; the (m, m)
+    weights are 1 where the marks are equal.
     """
     shares = table / table.sum()
     observed = float(np.sum(weights * shares))

@@ -62,12 +62,9 @@ MAX_SUBJECTS = 10_000
 def paired_power(effect_dz: float, n: int, with_period: bool = False) -> float:
     """Return the probability that n subjects show an effect (two-sided paired t-test, 5 %).
 
-    Args:
-        effect_dz: True mean difference over the true standard deviation of the differences (of
-            subjects with the same order, where the period is separated).
-        n: Subjects, at least 2; 3 with the period.
-        with_period: Whether the effect of the period is separated, which takes a degree of
-            freedom; the orders are taken as balanced.
+    The effect is the true mean difference over the true standard deviation of the differences. To
+    separate the effect of the period (`with_period`) takes a degree of freedom; the orders are
+    taken as balanced.
     """
     dof = n - 1 - with_period
     critical, shift = scipy.stats.t.ppf(1 - ALPHA / 2, dof), effect_dz * math.sqrt(n)
@@ -80,7 +77,6 @@ def paired_power(effect_dz: float, n: int, with_period: bool = False) -> float:
 
 
 def subjects_needed(effect_dz: float, with_period: bool = False) -> int:
-    """Return the least number of subjects with `TARGET_POWER`; arguments as of `paired_power`."""
     sizes = range(2 + with_period, MAX_SUBJECTS + 1)
     place = bisect.bisect_left(
         sizes, TARGET_POWER, key=lambda n: paired_power(effect_dz, n, with_period)

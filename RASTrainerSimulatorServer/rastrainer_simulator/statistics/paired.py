@@ -12,7 +12,9 @@ Wilcoxon's signed-rank and rank-sum tests are exact for any number of ties.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 import scipy
@@ -26,6 +28,7 @@ from rastrainer_simulator.statistics.intervals import (
     small_sample_factor,
 )
 
+Name = TypeVar("Name")
 MIN_SUBJECTS = 4
 """Difference and period take two; one degree of freedom for the variance is not enough."""
 
@@ -83,10 +86,6 @@ def fit_differences(differences: np.ndarray, order: np.ndarray | None = None) ->
     )
 
 
-MIN_SEQUENCE_SIZE = 2
-"""Subjects of a sequence, to estimate how much they scatter."""
-
-
 @dataclass(frozen=True)
 class Sequences:
     """Subjects by the condition that they did first.
@@ -115,7 +114,8 @@ def compare_sequences(
         raise ValueError("The effect of the period is not separated.")
     means, between = (first + second) / 2, None
     one, other = means[order > 0], means[order < 0]
-    if min(len(one), len(other)) >= MIN_SEQUENCE_SIZE and np.ptp(means) > 0:
+    # One subject does not say how much they scatter.
+    if min(len(one), len(other)) > 1 and np.ptp(means) > 0:
         low, high = scipy.stats.ttest_ind(other, one).confidence_interval(CONFIDENCE)
         between = Estimate(float(other.mean() - one.mean()), (float(low), float(high)))
     later = coefficient(float(fit.later), float(fit.later_error), fit.dof)
@@ -164,11 +164,10 @@ def compare_paired(
         raise InputError("A paired comparison needs at least two subjects who did both.")
     order = np.asarray(order, dtype=float) if is_separable(order) else None
     fit = fit_differences(differences, order)
-    mean, sd = float(fit.mean), float(fit.sd)
+    mean, sd, error, dof = float(fit.mean), float(fit.sd), float(fit.standard_error), fit.dof
     if sd <= 1e-12 * max(1.0, float(np.abs(differences).max())):
         raise InputError("All subjects differ by the same amount: no test can be computed.")
-    error = float(fit.standard_error)
-    t, dof = mean / error, fit.dof
+    t = mean / error
     effect, factor = None, small_sample_factor(dof)
     if factor is not None:
         low, high = noncentrality_interval(t, dof)
@@ -200,12 +199,13 @@ def holm(p_values: np.ndarray) -> np.ndarray:
     """Return p-values adjusted for multiple testing (Holm 1979), in order along the last axis."""
     p_values = np.asarray(p_values, dtype=float)
     order = np.argsort(p_values, axis=-1)
-    weights = np.arange(p_values.shape[-1], 0, -1)
-    ranked = np.take_along_axis(p_values, order, axis=-1) * weights
-    adjusted = np.empty(p_values.shape)
+    ranked = np.take_along_axis(p_values, order, axis=-1) * np.arange(p_values.shape[-1], 0, -1)
     ranked = np.minimum(np.maximum.accumulate(ranked, axis=-1), 1.0)
-    np.put_along_axis(adjusted, order, ranked, axis=-1)
-    return adjusted
+    return np.take_along_axis(ranked, np.argsort(order, axis=-1), axis=-1)
+
+
+def holm_by_name(p_values: Mapping[Name, float]) -> dict[Name, float]:
+    return dict(zip(p_values, holm(np.array([*p_values.values()])).tolist(), strict=True))
 
 
 def rank_test(differences: np.ndarray, order: np.ndarray | None) -> RankTest | None:

@@ -31,8 +31,7 @@ class TraineeClusters:
     """Groups of trainees.
 
     Attributes:
-        members: Pseudonyms of each cluster, the largest cluster first.
-        centers: Mean of each cluster in the metrics' own units.
+        members, centers: Pseudonyms and means of each cluster, the largest cluster first.
         dip_p: How often a population with a single peak looks at least as parted as this.
         stability: Mean Jaccard similarity of each cluster under resampling, 0 to 1.
     """

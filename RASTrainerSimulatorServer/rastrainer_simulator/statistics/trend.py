@@ -1,12 +1,11 @@
 """Do times or errors fall from trial to trial? A test that five trials are enough for.
 
-A curve with a free rate and plateau has as many parameters as the published protocol has trials
-to spare, and no criterion can prefer it. Two facts make a test out of five trials:
-practice does not make slower or worse, so the test is one-sided; and it gains most at first, so the
-trials are set against the logarithm of their number. The p-value is the share of all orders of the
-same values that would fall as steeply. It is exact for independent values of any distribution,
-skewed or heavy-tailed, too. Where they fall, a power law
-describes how.
+A curve with a free rate and plateau has as many parameters as the published protocol has trials to
+spare, and no criterion can prefer it. Two facts make a test out of five trials: practice does not
+make slower or worse, so the test is one-sided; and it gains most at first, so the trials are set
+against the logarithm of their number. The p-value is the share of all orders of the same values
+that would fall as steeply. It is exact for independent values of any distribution, skewed or
+heavy-tailed, too. Where they fall, a power law describes how.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ import scipy
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.statistics.intervals import ALPHA, Estimate, mean
-from rastrainer_simulator.statistics.paired import holm
+from rastrainer_simulator.statistics.paired import holm_by_name
 
 MIN_TRIALS = 4
 """Three trials have six orders: their smallest p is 1/6."""
@@ -32,7 +31,7 @@ MAX_ORDERS = 9999
 
 
 class TrendVerdict(Enum):
-    """The result of a series of trials."""
+    """What a series of trials shows."""
 
     FALLS = "falls"
     STEADY = "steady"
@@ -131,7 +130,6 @@ class CohortTrend:
 
     @property
     def is_shown(self) -> bool:
-        """Whether getting better is more than chance."""
         if self.adjusted_p is None:
             return self.verdicts[TrendVerdict.FALLS] > 0
         return self.adjusted_p < ALPHA
@@ -147,13 +145,9 @@ def cohort_trends(tested: Sequence[tuple[Series, int]]) -> list[CohortTrend | No
     if less is better, 1 if more is. The trend is None if no trainee has four trials.
     """
     found = [_cohort_trend(*each) for each in tested]
-    p_values = {
-        place: each.p for place, each in enumerate(found) if each is not None and each.p is not None
-    }
-    adjusted = dict(zip(p_values, holm(np.array([*p_values.values()])).tolist(), strict=True))
-    return [
-        each and replace(each, adjusted_p=adjusted.get(place)) for place, each in enumerate(found)
-    ]
+    known = {at: each.p for at, each in enumerate(found) if each and each.p is not None}
+    adjusted = holm_by_name(known)
+    return [each and replace(each, adjusted_p=adjusted.get(at)) for at, each in enumerate(found)]
 
 
 def _cohort_trend(series: Series, better: int) -> CohortTrend | None:
@@ -183,11 +177,8 @@ class LearningCurve:
     It describes (Newell and Rosenbloom 1981), in the unit of the values; the test says whether
     there is learning at all. The plateau of few trials is a guess: it lies beyond them.
 
-    Attributes:
-        gain: a, how much the first trial is above the plateau.
-        rate: b, how fast it falls.
-        plateau: c, where it leads.
-        r_squared: Share of the variance that the curve explains.
+    Its gain is a, its rate b and its plateau c; `r_squared` is the share of the variance that it
+    explains.
     """
 
     gain: float
@@ -212,11 +203,9 @@ def fit_learning_curve(values: Sequence[float]) -> LearningCurve:
     trials = np.arange(1, len(y) + 1)
     fits = []
     for rate in RATES.tolist():
-        (gain, plateau), off = scipy.optimize.nnls(
-            np.column_stack([trials**-rate, np.ones(len(y))]), y
-        )
-        fits.append((off**2, gain, rate, plateau))
-    squares, gain, rate, plateau = min(fits, key=lambda fit: fit[0])
+        columns = np.column_stack([trials**-rate, np.ones(len(y))])
+        (gain, plateau), off = scipy.optimize.nnls(columns, y)
+        fits.append((float(off), float(gain), rate, float(plateau)))
+    off, gain, rate, plateau = min(fits, key=lambda fit: fit[0])
     total = float(((y - y.mean()) ** 2).sum())
-    r_squared = float(1 - squares / total) if total > 0 else 0.0
-    return LearningCurve(float(gain), rate, float(plateau), r_squared)
+    return LearningCurve(gain, rate, plateau, 1 - off**2 / total if total > 0 else 0.0)

@@ -32,7 +32,7 @@ from rastrainer.trial.ctps import PUBLISHED_STUDY, read_trials
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import PASS_MARK
 from rastrainer.trial.touch_registration import GivenPoints, register_trial
-from rastrainer.trial.trial_feedback import PastTrial
+from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.state import Answer, TrainingState
 
@@ -66,7 +66,7 @@ class LocalScorer:
         submit: Submit,
         records: Path,
         is_slicer_connected: Callable[[], bool],
-        attempts_of: Callable[[str], Sequence[PastTrial]],
+        attempts_of: Callable[[str], Sequence[TrialRow]],
     ) -> None:
         """`attempts_of` gives a trainee's scored trials and failures, oldest first.
 
@@ -112,7 +112,7 @@ class LocalScorer:
         )
         self._thread.start()
 
-    def _do(self, job: Job, scenario: Scenario, earlier: Sequence[PastTrial]) -> None:
+    def _do(self, job: Job, scenario: Scenario, earlier: Sequence[TrialRow]) -> None:
         trial_id, phase, _attempt = job
         try:
             if phase is Phase.VERIFYING:
@@ -157,7 +157,7 @@ def score_alone(
     ask: Ask,
     analysis: TrialAnalysis,
     scenario: Scenario,
-    earlier: Sequence[PastTrial],
+    earlier: Sequence[TrialRow],
     records: Path,
 ) -> None:
     """Submit a registration, which makes it final, and the score that its truth gives."""
@@ -166,7 +166,8 @@ def score_alone(
     scored = scored_with_journal(analysis, truth, scenario, records=records, pause=_rest)
     record, score = scored.record, scored.score
     if score is not None and record.task != TRIAL_RUN:
-        this = PastTrial.scored(record, score.score, score.acceptable)
+        values = {"score": score.score}
+        this = TrialRow.of(record, values=values, acceptable=score.acceptable)
         scored = with_progress_among(scored, (*earlier, this), PASS_MARK)
     arguments = score_arguments(scored)
     arguments["details"][SCORED_BY_SIMULATOR] = True

@@ -122,7 +122,7 @@ def simulate_cohort(
     engine: str = PROCESSES,
     workers: int | None = None,
     address: str | None = None,
-    on_trial: Callable[[int], None] | None = None,
+    on_trial: Callable[[int], None] = lambda _count: None,
 ) -> CohortRun:
     """Play the study of a protocol with virtual trainees and store it in a folder.
 
@@ -158,12 +158,9 @@ def simulate_cohort(
         write_text(folder / TRUTH, json.dumps(truth, indent=2) + "\n")
         if records is not None:
             records.mkdir(exist_ok=True)
-        missing = []
-        for job in trial_jobs(protocol, population, trainees, seed):
-            if store.has_played(job.trial_id):
-                counts["found"] += 1
-            else:
-                missing.append(job)
+        jobs = [*trial_jobs(protocol, population, trainees, seed)]
+        missing = [job for job in jobs if not store.has_played(job.trial_id)]
+        counts["found"] = len(jobs) - len(missing)
         trials = run_jobs(
             *(function, missing, engine, workers, address),
             name_of=lambda job: f"The trial of {job.trainee}, {job.task} ({job.mode}),",
@@ -171,13 +168,11 @@ def simulate_cohort(
         for trial in trials:
             if trial.analysis is None:
                 store.add_stuck(trial.job.trial_id)
-                counts["stuck"] += 1
             else:
                 store.add(trial.analysis)
-                counts["played"] += 1
                 simulated_s += trial.analysis.record.completion_time_s
-            if on_trial is not None:
-                on_trial(sum(counts.values()))
+            counts["stuck" if trial.analysis is None else "played"] += 1
+            on_trial(sum(counts.values()))
         store.finish()
     return CohortRun(**counts, seconds=time.perf_counter() - start, simulated_s=simulated_s)
 

@@ -125,10 +125,10 @@ def model_scores(model: OutcomeModel, times_s: np.ndarray, errors_mm: np.ndarray
     """
     scores = np.empty(times_s.shape)
     for index in np.ndindex(times_s.shape):
-        reference = ScoreReference(model.task_times_s[index[-1]], REFERENCE_TRE_MM)
         size = float(errors_mm[index] / REFERENCE_RMSE_MM)
         tre_mm, bias_mm = REFERENCE_TRE_MM * size, REFERENCE_COMMON_BIAS_MM * size
         measures = ScoreMeasures(float(times_s[index]), tre_mm, 0.0, 0.0, 0.0, bias_mm)
+        reference = ScoreReference(model.task_times_s[index[-1]], REFERENCE_TRE_MM)
         scores[index] = score_trial(measures, reference).score
     return scores
 
@@ -178,14 +178,10 @@ def _practice(model: OutcomeModel, numbers: np.ndarray) -> tuple[np.ndarray, np.
 class RejectionRates:
     """Rates for one outcome over many studies: false positives without an effect, else power.
 
-    Attributes:
-        t_test: Share with p < .05 by the t-test, with the period where the orders allow it.
-        holm: Share that holds after the correction for all outcomes.
-        ranks: Share with p < .05 by the rank test.
-        coverage: Share whose 95 % interval holds the true difference; None for the score, whose
-            true difference is not in the model.
-        true_difference: Of the means of very many trainees, second mode minus first; None for the
-            score.
+    Shares of p < .05 by the t-test (with the period where the orders allow it), by Holm's
+    correction for all outcomes, and by the rank test; the share of 95 % intervals that cover the
+    true difference, and this difference, second mode minus first, of the means of very many
+    trainees. The last two are None for the score, whose true difference is not in the model.
     """
 
     outcome: str
@@ -209,12 +205,13 @@ def rejection_rates(
     `orders` are the modes in the order of each trainee; by default all follow `modes`.
     """
     random = np.random.default_rng(seed)
+    orders = orders or [tuple(modes)] * trainees
     drawn = [draw_outcomes(model, trainees, modes, random, orders) for _ in range(studies)]
     times, errors = (np.array(values) for values in zip(*drawn, strict=True))
     outcomes = (times, errors, model_scores(model, times, errors))
     # Periods between the modes of each trainee.
-    periods = np.array([own.index(modes[1]) - own.index(modes[0]) for own in orders or [modes]])
-    delays = periods.astype(float) if is_separable(periods.astype(float)) else None
+    periods = np.array([float(own.index(modes[1]) - own.index(modes[0])) for own in orders])
+    delays = periods if is_separable(periods) else None
     differences = [np.diff(values.mean(axis=-1))[..., 0] for values in outcomes]
     fits = [fit_differences(own, delays) for own in differences]
     students = scipy.stats.t
@@ -232,15 +229,8 @@ def rejection_rates(
             coverage = float(np.mean(np.abs(fit.mean - truth) <= reach))
         tests = [rank_test(row, delays) for row in differences[index]]
         # What cannot be tested is never rejected.
-        ranks = [1.0 if test is None else test.p for test in tests]
-        found.append(
-            RejectionRates(
-                outcome=outcome,
-                t_test=float(np.mean(p_values[:, index] < ALPHA)),
-                holm=float(np.mean(adjusted[:, index] < ALPHA)),
-                ranks=float(np.mean(np.array(ranks) < ALPHA)),
-                coverage=coverage,
-                true_difference=truth,
-            )
-        )
+        ranks = np.mean([test is not None and test.p < ALPHA for test in tests])
+        t_test, corrected = (np.mean(p[:, index] < ALPHA) for p in (p_values, adjusted))
+        shares = float(t_test), float(corrected), float(ranks)
+        found.append(RejectionRates(outcome, *shares, coverage, truth))
     return tuple(found)

@@ -75,12 +75,8 @@ def play_virtual_trial(
     scenario = simulation.setup.scenario
     head_to_world = scenario.perturbed_head_to_world(seed)
     hands = ScriptedTrainee(scenario, task_name, head_to_world, skill, seed)
-    start = {
-        "task": task_name,
-        "trainee": trainee or f"virtual-{seed}",
-        "mode": mode.value,
-        "seed": seed,
-    }
+    name = trainee or f"virtual-{seed}"
+    start = {"task": task_name, "trainee": name, "mode": mode.value, "seed": seed}
 
     def step(action: Action | None, **own: Any) -> StepResult:
         before, operator_input = simulation.state, NEUTRAL_STICKS
@@ -151,28 +147,18 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
     registered: list[UnmeasuredRecord] = []
 
     def record_step(
-        simulation: Simulation,
-        before: SimulationState,
-        operator_input: OperatorInput,
-        result: StepResult,
+        _: Simulation, before: SimulationState, sticks: OperatorInput, result: StepResult
     ) -> None:
         if not started:
             started.append(TrialEntries.started(simulation, before, result, settings.step_s))
-        record = started[0].add(simulation, operator_input, result)
+        record = started[0].add(simulation, sticks, result)
         if record is not None:
             registered.append(record)
 
     try:
         play_virtual_trial(
-            simulation,
-            job.task,
-            job.seed,
-            job.skill,
-            settings.step_s,
-            record_step,
-            job.trainee,
-            Mode(job.mode),
-            job.trial_id,
+            *(simulation, job.task, job.seed, job.skill, settings.step_s, record_step),
+            *(job.trainee, Mode(job.mode), job.trial_id),
         )
     except UnfinishedTrialError:
         # The next trial needs a simulation without an open trial.
@@ -180,7 +166,15 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
         return PlayedTrial(job, None)
     lines, record = _dated(started[0].pending, registered[0].measured(), job.started)
     if settings.records is not None:
-        _write_journal(settings.records, lines, job)
+        name = f"{file_stamp(iso(job.started))}_{job.trial_id}{SUFFIX}"
+        # Complete or missing, even if this process is killed; the journal of a trial that was not
+        # stored is replaced by an equal one.
+        partial = settings.records / f".{name}.partial"
+        partial.unlink(missing_ok=True)
+        journal = Journal(partial)
+        journal.write_lines(lines, sync=False)
+        journal.close()
+        partial.replace(settings.records / name)
     scenario = simulation.setup.scenario
     head_to_world = scenario.perturbed_head_to_world(job.seed)
     analysis = analyze_trial(record, scenario)
@@ -232,18 +226,6 @@ def _dated(
     )
     dated = (Line(replace(at, utc=utc(at.sim_time_s)), entry) for at, entry in lines)
     return with_record(dated, record), record
-
-
-def _write_journal(folder: Path, lines: Sequence[Line], job: TrialJob) -> None:
-    name = f"{file_stamp(iso(job.started))}_{job.trial_id}{SUFFIX}"
-    # Complete or missing, even if this process is killed; the journal of a trial that was not
-    # stored is replaced by an equal one.
-    partial = folder / f".{name}.partial"
-    partial.unlink(missing_ok=True)
-    journal = Journal(partial)
-    journal.write_lines(lines, sync=False)
-    journal.close()
-    partial.replace(folder / name)
 
 
 _skull = functools.lru_cache(maxsize=1)(read_head_mesh)

@@ -91,7 +91,7 @@ class ScriptedTrainee:
         self._fiducials = transforms.apply(head_to_world, scenario.task(task_name).fiducials)
         self._normals = fiducial_normals(scenario, task_name) @ head_to_world[:3, :3].T
         self._center = transforms.apply(head_to_world, scenario.target.position_ras)
-        self._vertex = transforms.apply(head_to_world, computed_once(scenario, _highest))
+        self._vertex = transforms.apply(head_to_world, computed_once(scenario, _vertex))
         self._skill = skill
         self._random = np.random.default_rng(seed)
         self._slip_at = skill.slip_at and int(np.random.default_rng([seed, 1]).integers(2, 15))
@@ -174,10 +174,10 @@ class ScriptedTrainee:
         if is_aim:
             # At any height over the aim.
             beside_mm = np.linalg.norm(self._along_skin(remaining))
-            is_there = observation.is_in_contact and bool(beside_mm < self._skill.settled_mm)
+            is_there = observation.is_in_contact and beside_mm < self._skill.settled_mm
             remaining = remaining - PRESS_MM * self._outward_at_aim
         else:
-            is_there = bool(np.linalg.norm(remaining) < 8.0)
+            is_there = np.linalg.norm(remaining) < 8.0
         if is_there or gave_up:
             self._path.pop(0)
             if not is_aim:
@@ -231,6 +231,6 @@ class ScriptedTrainee:
         return list(self._center + radii[:, None] * directions / np.sin(angle))
 
 
-def _highest(head: HeadMesh) -> np.ndarray:
+def _vertex(head: HeadMesh) -> np.ndarray:
     """Return the vertex of the head, (3,) float, RAS mm."""
     return head.vertices[head.vertices[:, 2].argmax()].copy()

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -31,8 +30,7 @@ class TrialStoppedError(RASTrainerError):
     """The trial could not be played to its end."""
 
 
-@dataclass(frozen=True)
-class ScriptedTrialResult:
+class ScriptedTrial(NamedTuple):
     """A registered trial: its UUID, and the last state of the simulator that was seen in it."""
 
     trial_id: str
@@ -54,7 +52,7 @@ def play_trial(
     skill: Skill | None = None,
     on_progress: Callable[[dict[str, Any]], None] = lambda _state: None,
     procedure: str = "",
-) -> ScriptedTrialResult:
+) -> ScriptedTrial:
     """Play one task from its start to its registration, by commands alone.
 
     `StartTask` gets the same seed, by which the scripted trainee knows where the head is, as a
@@ -67,11 +65,30 @@ def play_trial(
     if procedure:
         start["procedure"] = procedure
     trial_id = send(client, CommandName.START_TASK, start)["trialId"]
-    view = _View(client, trial_id, on_progress)
-    observation = view.next_observation()
-    ends_at_s = observation.sim_time_s + LONGEST_TRIAL_S
-    while observation.sim_time_s < ends_at_s:
-        observation = view.next_observation()
+    state: dict[str, Any] = {}
+    sequence, ends_at_s = -1, np.inf
+    while True:
+
+        def is_new(message: Message, seen: int = sequence) -> bool:
+            return int(message.metadata["seq"]) > seen
+
+        tip = client.wait_for(DeviceName.TOOL_TIP_TO_WORLD, is_new, ANSWER_TIMEOUT_S)
+        assert isinstance(tip.content, Transform)
+        sequence, now_s = int(tip.metadata["seq"]), float(tip.metadata["simTimeS"])
+        ends_at_s = min(ends_at_s, now_s + LONGEST_TRIAL_S)
+        latest = _wait(client, lambda state: state["trialId"] == trial_id)
+        if latest != state:
+            state = dict(latest)
+            on_progress(state)
+        observation = Observation(
+            sim_time_s=now_s,
+            tip_mm=np.array(tip.content.matrix)[:3, 3],
+            is_in_contact=state["proximity"] == Proximity.CONTACT.value,
+            phase=Phase(state["phase"]),
+            next_point=int(state["nextPoint"] or 0),
+        )
+        if now_s >= ends_at_s:
+            break
         action = trainee.decide(observation)
         if action is None:
             continue
@@ -82,45 +99,11 @@ def play_trial(
         else:
             send(client, name, arguments)
         if name == CommandName.REGISTER:
-            return ScriptedTrialResult(trial_id, view.state)
+            return ScriptedTrial(trial_id, state)
     raise TrialStoppedError(
         f"{task_name} was not finished in {LONGEST_TRIAL_S:g} s of simulated time: the tip did not "
         f"get to point {observation.next_point}."
     )
-
-
-class _View:
-    """The scripted trainee's view of the running trial."""
-
-    def __init__(self, client: Client, trial_id: str, on_progress: Callable) -> None:
-        self._client, self._trial_id, self._on_progress = client, trial_id, on_progress
-        self._sequence = -1
-        self.state: dict[str, Any] = {}
-
-    def next_observation(self) -> Observation:
-        """Wait for the next pose of the tip and return it with the latest state."""
-        tip = self._client.wait_for(
-            DeviceName.TOOL_TIP_TO_WORLD,
-            lambda message: int(message.metadata["seq"]) > self._sequence,
-            ANSWER_TIMEOUT_S,
-        )
-        self._sequence = int(tip.metadata["seq"])
-        state = _state(
-            self._client.wait_for(
-                DeviceName.SIM_STATE, lambda message: _state(message)["trialId"] == self._trial_id
-            )
-        )
-        assert isinstance(tip.content, Transform)
-        if state != self.state:
-            self.state = state
-            self._on_progress(state)
-        return Observation(
-            sim_time_s=float(tip.metadata["simTimeS"]),
-            tip_mm=np.array(tip.content.matrix)[:3, 3],
-            is_in_contact=state["proximity"] == Proximity.CONTACT.value,
-            phase=Phase(state["phase"]),
-            next_point=int(state["nextPoint"] or 0),
-        )
 
 
 def _state(message: Message) -> dict[str, Any]:

@@ -46,12 +46,10 @@ TIME_SD = 0.15
 class ProcedureHands:
     """How exactly hands carry out a procedure; our own convention.
 
-    Attributes:
-        entry_sd_mm: Of the guide's axis at the entry, along each of two axes.
-        angle_sd_deg: Of its direction, about each of two axes.
-        plunge_mm: Mean of how far the drill goes past the inner table (exponential).
-        check_sd_mm: Of the touch of a checkpoint, along each of three axes.
-        pace: Divides the times of the score's reference.
+    Standard deviations are of the guide's axis at the entry along each of two axes, of its
+    direction about each of two axes, of the depth, and of the touch of a checkpoint along each of
+    three axes. `plunge_mm` is the mean of how far the drill goes past the inner table
+    (exponential); `pace` divides the times of the score's reference.
     """
 
     entry_sd_mm: float = 0.4

@@ -18,19 +18,15 @@ def test_text_is_read_without_its_byte_order_mark(tmp_path):
     assert read_text(path, LIMIT) == "naïve\n"
 
 
-def test_a_too_large_file_is_refused_without_being_read(tmp_path):
-    path = tmp_path / "zeros"
-    with path.open("wb") as file:
-        file.truncate(2**30)
-    with pytest.raises(InputError, match="larger than"):
-        read_text(path, LIMIT)
-
-
-def test_reading_a_pipe_that_nobody_writes_to_does_not_hang(tmp_path):
+def test_neither_a_pipe_nor_a_huge_file_is_waited_for(tmp_path):
     path = tmp_path / "pipe"
     os.mkfifo(path)
     with pytest.raises(InputError, match="not a regular file"):
         read_text(path, LIMIT)
+    with (tmp_path / "zeros").open("wb") as file:
+        file.truncate(2**30)
+    with pytest.raises(InputError, match="larger than"):
+        read_text(tmp_path / "zeros", LIMIT)
 
 
 @pytest.mark.parametrize(
@@ -57,20 +53,14 @@ def test_folders_and_devices_are_refused_in_one_sentence(name, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "text", ["{", "[NaN]", "[Infinity]", "[1e999]", "[" * 900, "9" * 900 + "x", "[" * 400 + "]"]
+    "text",
+    ["{", "[NaN]", "[1e999]", "[" * 900, "9" * 900 + "x", "[" * 400 + "]" * 400],
 )
 def test_json_must_have_finite_numbers(text, tmp_path):
     path = tmp_path / "a.json"
     path.write_text(text)
     with pytest.raises(InputError, match="not JSON"):
         read_json(path, LIMIT)
-
-
-def test_json_nested_too_deeply_is_refused(tmp_path):
-    path = tmp_path / "a.json"
-    path.write_text("[" * 200_000 + "]" * 200_000)
-    with pytest.raises(InputError, match="not JSON"):
-        read_json(path, 10**6)
 
 
 def test_writing_replaces_the_old_file_and_leaves_nothing_behind(tmp_path):
@@ -81,9 +71,6 @@ def test_writing_replaces_the_old_file_and_leaves_nothing_behind(tmp_path):
     assert read_json(path, LIMIT) == {"é": 1}
     assert path.stat().st_mode & 0o777 == 0o640
     assert [p.name for p in tmp_path.iterdir()] == ["a.json"]
-
-
-def test_a_new_file_has_the_usual_permissions(tmp_path):
     (tmp_path / "usual").write_text("x")
     write_text(tmp_path / "new", "x")
     assert (tmp_path / "new").stat().st_mode == (tmp_path / "usual").stat().st_mode

@@ -65,15 +65,6 @@ def test_invalid_lists_are_refused(labels, points, words):
         PointList(labels, points)
 
 
-def test_a_point_list_copies_its_points():
-    points = XYZ.copy()
-    point_list = PointList((), points)
-    points[:] = 0
-    np.testing.assert_array_equal(point_list.points, XYZ)
-    with pytest.raises(ValueError, match="read-only"):
-        point_list.points[0, 0] = 1
-
-
 POINTS = np.array([[1.5, -2.0, 3.25], [80.0, 0.125, -7.0], [-3.0, 40.0, 99.0]])
 
 
@@ -120,21 +111,14 @@ def test_points_that_slicer_saved_in_lps_are_read_in_ras(tmp_path):
 
 def test_slicer_opens_written_markups(tmp_path):
     path = tmp_path / "ours.mrk.json"
-    write_markups(path, PointList(("a", "ü", "3"), POINTS))
+    write_markups(path, PointList(("a", "ü", "3"), POINTS / 3.0))
+    np.testing.assert_array_equal(read_markups(path).points, POINTS / 3.0)
     scene, _logic, node = slicer_node()
     assert storage(scene, path).ReadData(node)
     assert [node.GetNthControlPointLabel(i) for i in range(3)] == ["a", "ü", "3"]
     for i, point in enumerate(POINTS):
-        np.testing.assert_allclose(node.GetNthControlPointPositionWorld(i), point)
+        np.testing.assert_allclose(node.GetNthControlPointPositionWorld(i), point / 3.0)
         assert node.GetNthControlPointPositionStatus(i) == node.PositionDefined
-
-
-def test_points_survive_writing_and_reading_to_the_last_bit(tmp_path):
-    points = np.random.default_rng(0).normal(size=(15, 3)) * 1e3
-    write_markups(tmp_path / "a.mrk.json", PointList((), points))
-    again = read_markups(tmp_path / "a.mrk.json")
-    assert again.labels == ()
-    np.testing.assert_array_equal(again.points, points)
 
 
 def test_a_point_that_is_deselected_or_not_placed_is_left_out_or_named(tmp_path):

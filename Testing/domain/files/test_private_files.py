@@ -83,6 +83,11 @@ def test_a_folder_shared_with_a_group_stays_shared(tmp_path):
     Study.open(study, make_folder=True).close()
     assert mode(study) == 0o660
     assert mode(tmp_path / "lab") == 0o2770
+    path = tmp_path / "lab" / "seats.json"
+    write_private_json(path, {})
+    path.chmod(0o660)
+    write_private_json(path, {"seats": []})
+    assert mode(path) == 0o660
 
 
 def test_private_json_is_readable_by_its_user_alone_whatever_it_replaces(tmp_path):
@@ -92,16 +97,6 @@ def test_private_json_is_readable_by_its_user_alone_whatever_it_replaces(tmp_pat
     path.chmod(0o664)
     write_private_json(path, {"pin": "1"})
     assert mode(path) == 0o600
-
-
-def test_private_json_in_a_folder_shared_with_a_group_stays_shared(tmp_path):
-    (tmp_path / "lab").mkdir()
-    (tmp_path / "lab").chmod(0o2770)
-    path = tmp_path / "lab" / "seats.json"
-    write_private_json(path, {})
-    path.chmod(0o660)
-    write_private_json(path, {"seats": []})
-    assert mode(path) == 0o660
 
 
 def test_a_file_in_place_of_the_folder_is_an_error(tmp_path):

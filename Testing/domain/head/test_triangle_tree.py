@@ -5,7 +5,6 @@ import pytest
 
 from rastrainer.head.mesh import nearest_on_mesh
 from rastrainer.head.triangle_tree import FollowedPoints, TriangleTree
-from Testing.domain.head.spheres import sphere_mesh
 from Testing.domain.registration.traces import colin27
 
 
@@ -69,11 +68,3 @@ def test_a_single_triangle_and_degenerate_triangles_have_nearest_points():
     line = TriangleTree(corners).nearest(np.array([[6.5, 0.0, 1.0]]))
     assert np.allclose(line.positions, [[6.5, 0.0, 0.0]])
     assert line.triangles[0] == 1
-
-
-def test_distances_to_a_sphere_are_correct():
-    sphere = sphere_mesh(3)
-    directions = np.random.default_rng(3).normal(size=(50, 3))
-    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    found = sphere.tree.nearest(100.0 * directions)
-    assert np.allclose(found.distances, 10.0, atol=0.5)

@@ -101,16 +101,6 @@ def test_left_handed_axes_and_big_endian_numbers_are_read(tmp_path):
     assert np.linalg.det(matrix[:3, :3]) < 0
 
 
-def test_comments_and_key_value_pairs_are_ignored(tmp_path):
-    fields, voxels = good_file()
-    fields |= {"content": "Erika Mustermann", "# by": "scanner 5", "PatientName": "=Mustermann"}
-    path = write(tmp_path / "a.nrrd", fields, voxels, "\r\n")
-    values, matrix = read_nrrd(path)
-    write_nrrd(tmp_path / "b.nrrd", values, matrix)
-    assert b"ustermann" in path.read_bytes()
-    assert b"ustermann" not in (tmp_path / "b.nrrd").read_bytes()
-
-
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [

@@ -51,17 +51,15 @@ class Peer:
 
 
 @pytest.fixture
-def peer():
-    """Makes servers and closes them."""
-    peers = []
+def connect():
+    """Makes servers with a client each, and closes them."""
+    with contextlib.ExitStack() as stack:
 
-    def make(*arguments, **options):
-        peers.append(Peer(*arguments, **options))
-        return peers[-1]
+        def make(*arguments, on_message=None, **options):
+            peer = stack.enter_context(contextlib.closing(Peer(*arguments, **options)))
+            return stack.enter_context(Client(port=peer.port, on_message=on_message))
 
-    yield make
-    for one in peers:
-        one.close()
+        yield make
 
 
 def reply_to(message: Message, body: str = "{}", metadata=SUCCESS) -> Message:
@@ -69,7 +67,7 @@ def reply_to(message: Message, body: str = "{}", metadata=SUCCESS) -> Message:
     return Message("command", CommandReply(command.command_id, command.name, body), metadata)
 
 
-def test_answers_are_matched_by_number_in_any_order(peer):
+def test_answers_are_matched_by_number_in_any_order(connect):
     held, has_first = [], threading.Event()
 
     def answer_backward(server, message):
@@ -78,90 +76,74 @@ def test_answers_are_matched_by_number_in_any_order(peer):
         if len(held) == 2:
             server.send(*(reply_to(m, f'{{"to": "{m.content.name}"}}') for m in reversed(held)))
 
-    with Client(port=peer(answer_backward).port) as client:
-        first = []
-        thread = threading.Thread(target=lambda: first.append(client.send_command("A")))
-        thread.start()
-        has_first.wait(60)
-        assert client.send_command("B").data == {"to": "B"}
-        thread.join()
-        assert first[0].data == {"to": "A"}
+    client, first = connect(answer_backward), []
+    thread = threading.Thread(target=lambda: first.append(client.send_command("A")))
+    thread.start()
+    has_first.wait(60)
+    assert client.send_command("B").data == {"to": "B"}
+    thread.join()
+    assert first[0].data == {"to": "A"}
 
 
-def test_a_refusal_is_returned_with_its_message(peer):
+def test_a_refusal_is_returned_with_its_message(connect):
     fail = {"Status": "FAIL", "ErrorMessage": "Begin with StartTask."}
-    server = peer(lambda server, message: server.send(reply_to(message, metadata=fail)))
-    with Client(port=server.port) as client:
-        reply = client.send_command("Capture")
-        assert (reply.ok, reply.error) == (False, "Begin with StartTask.")
+    client = connect(lambda server, message: server.send(reply_to(message, metadata=fail)))
+    reply = client.send_command("Capture")
+    assert (reply.ok, reply.error) == (False, "Begin with StartTask.")
 
 
-def test_other_messages_arrive_while_an_answer_is_awaited(peer):
-    server = peer(lambda server, message: server.send(TIP, reply_to(message)))
+def test_other_messages_arrive_while_an_answer_is_awaited(connect):
     seen = []
-    with Client(port=server.port, on_message=seen.append) as client:
-        client.send_command("Capture")
-        assert (seen, client.latest["Tip"]) == ([TIP], TIP)
+    client = connect(lambda server, m: server.send(TIP, reply_to(m)), on_message=seen.append)
+    client.send_command("Capture")
+    assert (seen, client.latest["Tip"]) == ([TIP], TIP)
 
 
-def test_missing_answer_raises_a_one_sentence_error(peer):
-    with (
-        Client(port=peer().port) as client,
-        pytest.raises(LinkError, match=r"No answer to Capture within 0\.05 s"),
-    ):
-        client.send_command("Capture", timeout=0.05)
-
-
-def test_lost_connection_ends_the_wait_for_an_answer(peer):
-    server = peer(lambda server, _message: server.hang_up())
-    with Client(port=server.port) as client:
+def test_a_missing_answer_and_a_lost_connection_end_the_wait(connect):
+    with pytest.raises(LinkError, match=r"No answer to Capture within 0\.05 s"):
+        connect().send_command("Capture", timeout=0.05)
+    client = connect(lambda server, _message: server.hang_up())
+    for wait in (lambda: client.send_command("Capture"), lambda: client.wait_for("Tip")):
         with pytest.raises(LinkError, match="The connection is lost"):
-            client.send_command("Capture")
-        with pytest.raises(LinkError, match="The connection is lost"):
-            client.wait_for("Tip")
-        assert not client.is_open
+            wait()
+    assert not client.is_open
 
 
-def test_received_messages_remain_available_after_the_connection_is_lost(peer):
-    server = peer(lambda server, message: (server.send(TIP, reply_to(message)), server.hang_up()))
-    with Client(port=server.port) as client:
-        client.send_command("Capture")
-        assert client.wait_for("Tip") == TIP
+def test_received_messages_remain_available_after_the_connection_is_lost(connect):
+    client = connect(lambda server, m: (server.send(TIP, reply_to(m)), server.hang_up()))
+    client.send_command("Capture")
+    assert client.wait_for("Tip") == TIP
 
 
-@pytest.mark.parametrize("body", ["[]", "no JSON", '{"x": NaN}'])
-def test_answer_that_is_not_a_json_object_is_an_error_and_the_link_survives(peer, body):
-    bodies = [body, "{}"]
-    server = peer(lambda server, message: server.send(reply_to(message, bodies.pop(0))))
-    with Client(port=server.port) as client:
+def test_answer_that_is_not_a_json_object_is_an_error_and_the_link_survives(connect):
+    bodies = ["[]", "no JSON", '{"x": NaN}', "{}"]
+    client = connect(lambda server, message: server.send(reply_to(message, bodies.pop(0))))
+    for _ in range(3):
         with pytest.raises(LinkError, match="must be a JSON object"):
             client.send_command("Capture")
-        assert client.send_command("Capture").ok
+    assert client.send_command("Capture").ok
 
 
-def test_answer_without_a_status_is_not_a_success(peer):
+def test_answer_without_a_status_is_not_a_success(connect):
     # Answers of header version 2 need a status; version 1 cannot carry it.
     def answer(server, message):
         server.send(replace(reply_to(message, metadata={}), version=1))
 
-    server = peer(answer)
-    with Client(port=server.port) as client:
-        assert not client.send_command("Capture").ok
+    assert not connect(answer).send_command("Capture").ok
 
 
-def test_server_that_does_not_speak_openigtlink_is_disconnected(peer):
-    server = peer(greeting=b"x" * 200_000)
-    with Client(port=server.port) as client, pytest.raises(LinkError):
-        client.wait_for("Tip")
+def test_server_that_does_not_speak_openigtlink_is_disconnected(connect):
+    with pytest.raises(LinkError):
+        connect(greeting=b"x" * 200_000).wait_for("Tip")
 
 
-def test_wait_for_returns_only_an_accepted_message(peer):
+def test_wait_for_returns_only_an_accepted_message(connect):
     def count_up(server, message):
         server.send(*(Message("Note", String(str(i))) for i in range(5)), reply_to(message))
 
-    with Client(port=peer(count_up).port) as client:
-        client.send(Message("command", Command(99, "Go")))
-        assert client.wait_for("Note", lambda note: note.content.text == "4").content.text == "4"
+    client = connect(count_up)
+    client.send(Message("command", Command(99, "Go")))
+    assert client.wait_for("Note", lambda note: note.content.text == "4").content.text == "4"
 
 
 def test_refused_connection_raises_a_one_sentence_error():
@@ -170,6 +152,6 @@ def test_refused_connection_raises_a_one_sentence_error():
         Client(port=port)
 
 
-def test_invalid_message_is_not_sent(peer):
-    with Client(port=peer().port) as client, pytest.raises(InputError):
-        client.send(Message("A name of more than 20", TIP.content))
+def test_invalid_message_is_not_sent(connect):
+    with pytest.raises(InputError):
+        connect().send(Message("A name of more than 20", TIP.content))

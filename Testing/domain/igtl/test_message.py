@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from dataclasses import replace
 
 import pytest
 
@@ -24,7 +25,8 @@ EVERY_CONTENT = [
     String("touch point 3"),
     String("é ± 1 mm"),
     Status(1, 7, "", "ready"),
-    Points((Point("1", (1, 2, 3)), Point("2", (4, 5, 6), (1, 2, 3, 4), "Unselected", 2.5, "Tip"))),
+    Points(()),
+    Points((Point("1", (1, 2, 3)), Point("2", (4, 5, 6), (1, 2, 3, 4)))),
     Command(2**32 - 1, "StartTask", '{"task": "task-1"}'),
     CommandReply(5, "StartTask", "{}"),
 ]
@@ -52,17 +54,12 @@ def test_transform_of_header_version_1_has_the_bytes_worked_out_by_hand():
 
 
 def test_string_of_header_version_2_with_metadata_has_the_bytes_worked_out_by_hand():
-    data = pack(Message("State", String("ok"), {"k": "vv"}, message_id=9, timestamp=0))
-    extended = "000c 000a 00000003 00000009"
+    data = pack(Message("State", String("ok"), {"k": "vv"}, timestamp=0))
+    extended = "000c 000a 00000003 00000000"
     content = "0003 0002 6f6b"
     metadata = "0001 0001 0003 00000002 6b 7676"
     assert data[58:] == bytes.fromhex(extended + content + metadata)
     assert data[:2] == b"\x00\x02"
-
-
-def test_fifteen_points_take_2098_bytes_with_header_version_1():
-    points = Points(tuple(Point(str(i + 1), (i, i, i)) for i in range(15)))
-    assert len(pack(Message("CapturedPoints", points, version=1))) == 2098
 
 
 def test_command_has_its_number_a_name_of_128_bytes_the_encoding_and_the_length():
@@ -72,29 +69,24 @@ def test_command_has_its_number_a_name_of_128_bytes_the_encoding_and_the_length(
     assert data[190:] == b"\x00\x03\x00\x00\x00\x02{}"
 
 
-@pytest.mark.parametrize("version", [1, 2])
-@pytest.mark.parametrize("content", EVERY_CONTENT, ids=lambda content: content.TYPE)
-def test_every_content_survives_packing_and_unpacking(content, version):
-    metadata = {"Status": "SUCCESS"} if version == 2 else {}
-    assert read(pack(Message("Device", content, metadata, version=version))).content == content
+def test_every_content_survives_packing_and_unpacking():
+    for content in EVERY_CONTENT:
+        sent = Message("Device", content, {"Status": "SUCCESS"})
+        assert read(pack(sent)).content == content
+        if content != Points(()):
+            assert read(pack(replace(sent, metadata={}, version=1))).content == content
 
 
-def test_metadata_number_time_and_version_survive_packing_and_unpacking():
-    sent = Message("Tip", IDENTITY, {"seq": "12", "note": "3 ± 1"}, 77, 1234.5, 2)
+def test_metadata_time_and_version_survive_packing_and_unpacking():
+    sent = Message("Tip", IDENTITY, {"seq": "12", "note": "3 ± 1"}, 1234.5, 2)
     assert read(pack(sent)) == sent
-
-
-def test_empty_list_of_points_is_sent_with_metadata():
-    message = read(pack(Message("CapturedPoints", Points(()), {"count": "0"})))
-    assert message.content == Points(())
 
 
 def test_longer_extended_header_is_skipped_by_its_size():
     content = String("ok").pack()
     body = struct.pack(">HHII", 16, 0, 0, 5) + b"new!" + content
     header = struct.pack(">H12s20sIIQQ", 2, b"STRING", b"S", 0, 0, len(body), crc64(body))
-    message = read(header + body)
-    assert (message.content, message.message_id) == (String("ok"), 5)
+    assert read(header + body).content == String("ok")
 
 
 def test_a_transform_keeps_rows_and_columns_apart():
@@ -129,7 +121,6 @@ def test_content_with_an_invented_type_cannot_be_sent():
         Message("Tip", IDENTITY, version=3),
         Message("Tip", IDENTITY, {"é": "1"}),
         Message("Tip", IDENTITY, {"cut": "at\0NUL"}),
-        Message("Tip", IDENTITY, message_id=2**32),
         Message("Tip", IDENTITY, timestamp=-1),
         Message("Tip", IDENTITY, {str(i): "" for i in range(257)}),
         Message("Text", String("x" * 65_536)),

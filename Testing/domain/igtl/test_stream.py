@@ -56,20 +56,16 @@ def test_message_with_a_wrong_checksum_is_counted_and_skipped(reader):
     assert reader.errors == {StreamError.CHECKSUM: 1}
 
 
-def test_unsupported_type_is_counted_and_skipped_without_buffering(reader):
+def test_unsupported_and_too_long_messages_are_counted_and_skipped_without_buffering(reader):
     stream = header(b"IMAGE", 10 * 2**20) + bytes(10 * 2**20) + pack(TIP)
     found = []
     for start in range(0, len(stream), 65_536):
         found += reader.feed(stream[start : start + 65_536])
         assert len(reader._buffer) <= 65_536
     assert found == [TIP]
-    assert reader.errors == {StreamError.TYPE: 1}
-
-
-def test_too_long_message_of_a_known_type_is_skipped_without_buffering(reader):
     size = MAX_KEPT_BYTES + 1
     assert reader.feed(header(b"STRING", size) + bytes(size) + pack(TIP)) == [TIP]
-    assert reader.errors == {StreamError.SIZE: 1}
+    assert reader.errors == {StreamError.TYPE: 1, StreamError.SIZE: 1}
 
 
 @pytest.mark.parametrize("size", [MAX_BODY_BYTES + 1, 2**31, 2**64 - 1])
@@ -89,8 +85,10 @@ def test_empty_body_does_not_stall(reader):
 
 def test_reader_finds_the_next_message_after_garbage(reader):
     garbage = b"GET / HTTP/1.1\r\nHost: example\r\n\r\n" + bytes(100) + b"\0\1A\0\2Z"
-    assert reader.feed(pack(STATE) + garbage + pack(TIP) + pack(STATE)) == [STATE, TIP, STATE]
-    assert reader.errors == {StreamError.GARBAGE: 1}
+    unknown = header(b"TRANSFORM", 48, version=3) + bytes(48)
+    stream = pack(STATE) + garbage + pack(TIP) + unknown + pack(STATE)
+    assert reader.feed(stream) == [STATE, TIP, STATE]
+    assert reader.errors == {StreamError.GARBAGE: 2}
 
 
 def test_reader_finds_the_next_message_after_a_truncated_body(reader):
@@ -118,17 +116,11 @@ def test_endless_garbage_ends_the_stream_and_takes_no_memory(reader):
     assert reader.refusal
 
 
-def test_header_of_an_unknown_version_is_not_mistaken_for_a_header(reader):
-    unknown = header(b"TRANSFORM", 48, version=3) + bytes(48)
-    assert reader.feed(pack(STATE) + unknown + pack(TIP)) == [STATE, TIP]
-    assert reader.errors == {StreamError.GARBAGE: 1}
-
-
-def test_reader_survives_ten_thousand_mutated_streams():
+def test_reader_survives_thousands_of_mutated_streams():
     generator = random.Random(3)
     points = Message("P", Points(tuple(Point(str(i), (i, 0, 0)) for i in range(3))), {"n": "3"})
     seeds = [pack(m) for m in [*GOOD, points, Message("S", Status(1, 2, "x", "well"))]]
-    for _ in range(10_000):
+    for _ in range(3_000):
         data = bytearray(generator.choice(seeds))
         for _ in range(generator.randint(1, 6)):
             position = generator.randrange(len(data))
@@ -142,7 +134,7 @@ def test_reader_survives_ten_thousand_mutated_streams():
 
 def test_reader_survives_mutated_bodies_whose_checksum_is_right():
     generator = random.Random(4)
-    for _ in range(5_000):
+    for _ in range(2_000):
         body = bytearray(pack(generator.choice(GOOD[:2]))[58:])
         for _ in range(generator.randint(1, 6)):
             body[generator.randrange(min(len(body), 80))] = generator.randrange(256)

@@ -6,13 +6,10 @@ import scipy.signal
 
 from rastrainer.errors import InputError
 from rastrainer.motion.trajectory import (
-    idle_time,
     log_dimensionless_jerk,
     low_pass,
     path_length,
-    resample,
     sparc,
-    speeds,
 )
 from rastrainer.motion.trial_motion import effective_throughput
 
@@ -72,28 +69,6 @@ def test_low_pass_agrees_with_scipys_zero_phase_butterworth():
     assert np.abs(difference[50:-50]).max() < 0.05
 
 
-def test_low_pass_keeps_lines_and_removes_tremor():
-    t = np.arange(0, 5, 1 / RATE_HZ)
-    line = np.column_stack([3 * t - 1, np.full_like(t, 7.0)])
-    np.testing.assert_allclose(low_pass(line, RATE_HZ), line, atol=1e-9)
-    tremor = np.sin(2 * np.pi * 25 * t)[:, None]
-    assert np.abs(low_pass(tremor, RATE_HZ)[100:-100]).max() < 0.005
-
-
-def test_resampling_gives_equal_steps_on_the_recorded_lines():
-    times = np.array([1.0, 1.1, 1.5, 2.0])
-    values = np.column_stack([10 * times, -times])
-    even = resample(times, values, 20.0)
-    np.testing.assert_allclose(even[:, 0], 10 * (1 + np.arange(21) / 20))
-    with pytest.raises(InputError, match="times rise"):
-        resample(np.array([0.0, 0.0]), np.zeros((2, 3)), 20.0)
-
-
-def test_uniform_motion_has_constant_speed():
-    t = np.arange(0, 1, 1 / RATE_HZ)
-    np.testing.assert_allclose(speeds(np.outer(t, [3.0, 0.0, 4.0]), RATE_HZ), 5.0)
-
-
 def test_path_length_and_efficiency():
     # A helix of radius r and pitch p is 2π√(r² + (p/2π)²) long a turn (do Carmo 1976, § 1-3).
     turn = np.linspace(0.0, 2.0 * np.pi, 20_001)
@@ -101,14 +76,6 @@ def test_path_length_and_efficiency():
     assert path_length(helix) == pytest.approx(2.0 * np.pi * 50.0, rel=1e-7)
     square = np.array([[0, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0]], dtype=float)
     assert path_length(square) == 30.0
-
-
-def test_idle_time_counts_rests_longer_than_the_threshold_only():
-    speed = np.full(1000, 20.0)
-    speed[100:125] = 0.0
-    speed[200:260] = 0.5
-    speed[940:] = 0.0
-    assert idle_time(speed, RATE_HZ) == pytest.approx(1.2)
 
 
 def test_throughput_follows_iso_9241_411_along_the_task_axis_about_the_targets():
@@ -145,17 +112,6 @@ def test_throughput_matches_mackenzies_own_example():
     assert difficulty / np.mean(taps[:, 1]) * 1000.0 == pytest.approx(8.044111, rel=1e-3)
     ours = np.log2(mean_distance / result.effective_width_mm + 1) / difficulty * 8.044111
     assert result.bits_per_s == pytest.approx(ours, rel=0.01)
-
-
-def test_a_constant_offset_lowers_throughput_and_never_makes_it_infinite():
-    targets = np.array([[0, 0, 0], [100, 0, 0], [100, 60, 0], [100, 60, 80]], dtype=float)
-    ahead = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
-    times = np.array([0.0, 1.0, 2.0, 3.0])
-    missed = [effective_throughput(targets, targets + mm * ahead, times) for mm in (0.5, 2.0, 8.0)]
-    rates = [result.bits_per_s for result in missed]
-    assert rates == sorted(rates, reverse=True)
-    assert missed[0].effective_width_mm == pytest.approx(4.133 * 0.5)
-    assert rates[0] < 6.0
 
 
 @pytest.mark.parametrize(

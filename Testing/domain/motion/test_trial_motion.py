@@ -59,19 +59,6 @@ def test_path_speed_and_rest_of_minimum_jerk_reaches(trajectory):
     assert motion["sparc"] == pytest.approx(-1.5, abs=0.2)
 
 
-def test_waiting_for_the_result_after_the_last_touch_is_not_idle_time(trajectory):
-    waiting = np.arange(1, 60 * 50) / 50.0
-    waited = replace(
-        trajectory,
-        times_s=np.concatenate([trajectory.times_s, trajectory.times_s[-1] + waiting]),
-        tip_mm=np.concatenate([trajectory.tip_mm, np.repeat([CORNERS[-1]], len(waiting), axis=0)]),
-        clearance_mm=np.full(len(trajectory.times_s) + len(waiting), 30.0),
-    )
-    idle_s = trial_motion(trajectory)["idle_time_s"]
-    assert trial_motion(waited)["idle_time_s"] == pytest.approx(idle_s)
-    assert idle_s < trial_motion(waited)["completion_time_s"]
-
-
 def whole(trajectory, **more):
     """A complete trial of a known task."""
     known = {str(i + 1): point + 0.1 * i**2 for i, point in enumerate(CORNERS)}
@@ -83,22 +70,6 @@ def test_detours_lower_the_path_efficiency(trajectory):
     times, tip, touches = reaches(np.insert(CORNERS, 1, [0, 120, 0], axis=0))
     around = Trajectory(times, tip, np.full(len(times), 30.0), (touches[0], *touches[2:]))
     assert trial_motion(whole(around))["path_efficiency"] < 0.7
-
-
-def test_a_part_of_a_trial_and_an_unmeasured_task_have_no_path_efficiency(trajectory):
-    part = whole(trajectory, touches=trajectory.touches[:3])
-    unmeasured = replace(whole(trajectory), shortest_path_mm=None)
-    for incomplete in (part, unmeasured):
-        assert "path_efficiency" not in trial_motion(incomplete)
-
-
-def test_tremor_lowers_smoothness(trajectory):
-    rng = np.random.default_rng(0)
-    shaken = trajectory.tip_mm + np.cumsum(rng.normal(0, 0.4, trajectory.tip_mm.shape), axis=0)
-    rough = Trajectory(trajectory.times_s, shaken, trajectory.clearance_mm, trajectory.touches)
-    smooth_motion, rough_motion = trial_motion(trajectory), trial_motion(rough)
-    assert rough_motion["sparc"] < smooth_motion["sparc"]
-    assert rough_motion["ldlj"] < smooth_motion["ldlj"] - 0.5
 
 
 def test_contacts_are_separated_into_intended_and_unintended(trajectory):
@@ -138,13 +109,6 @@ def test_throughput_and_wrong_touches_need_known_fiducials(trajectory):
     motion = trial_motion(with_refused)
     assert motion["throughput_bit_s"] > 1.0
     assert (motion["refused_touches"], motion["wrong_order_touches"]) == (3, 1)
-
-
-def test_a_trial_that_has_just_started_has_only_counts():
-    empty = Trajectory(np.zeros(0), np.zeros((0, 3)), np.zeros(0), ())
-    motion = trial_motion(empty)
-    assert motion["contacts"] == 0
-    assert "path_length_mm" not in motion
 
 
 def test_every_metric_has_a_definition_and_every_definition_a_metric(trajectory):
@@ -191,16 +155,6 @@ def test_a_recording_excludes_pauses_and_undone_touches():
     assert (trajectory.undone, trajectory.pauses, trajectory.camera_switches) == (1, 1, 1)
     assert trial_motion(trajectory)["pause_time_s"] == pytest.approx(5.0)
     assert trajectory.near[0].start_s == pytest.approx(0.3)
-
-
-def test_touches_that_could_not_be_written_do_not_count():
-    lines = [
-        at(0.004, header()),
-        at(1.0, touch("1")),
-        at(2.0, touch("2", kept=2)),
-        at(2.1, phase(Phase.PAUSED, "2")),
-    ]
-    assert [touch.label for touch in Recording.of(lines).trajectory().touches] == ["1"]
 
 
 @pytest.mark.parametrize(

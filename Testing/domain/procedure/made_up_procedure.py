@@ -17,7 +17,7 @@ from rastrainer.procedure.plan import (
 from rastrainer.scenario.writer import new_folder, write_scenario
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
 
-SKIN_MM, OUTER_MM, INNER_MM = 90.0, 83.0, 76.0
+OUTER_MM, INNER_MM = 83.0, 76.0
 VESSEL_MM = 5.0
 VESSEL_CENTER = np.array([30.0, 0.0, 0.0])
 

@@ -32,14 +32,6 @@ def test_a_good_plan_has_no_errors():
     assert wrong() == []
 
 
-def test_each_line_is_named_with_its_error():
-    assert wrong(trajectory("A", target=(0, 0, 120)), trajectory("B", entry=(0, 0, 70))) == [
-        "Two leads: A has its target 30 mm outside of the head.",
-        "Two leads: B enters 20 mm below the skin, within the head; its entry must be within "
-        "10 mm of the skin.",
-    ]
-
-
 @pytest.mark.parametrize(
     ("line", "sentence"),
     [

@@ -10,7 +10,6 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_to_json
 from rastrainer.procedure.errors import analyze_procedure
-from rastrainer.registration.registration import register
 from rastrainer.trial.procedure_outcome import ProcedureMeasures
 from Testing.domain.procedure.made_up_procedure import (
     VESSEL_MM,
@@ -18,7 +17,7 @@ from Testing.domain.procedure.made_up_procedure import (
     made_up_procedure,
     trajectory,
 )
-from Testing.domain.procedure.procedure_records import recorded, rotation, used
+from Testing.domain.procedure.procedure_records import recorded, rotation
 
 MESHES = made_up_meshes()
 DOWN = trajectory()
@@ -63,31 +62,12 @@ def only(analysis):
     return errors
 
 
-def test_steady_hands_and_an_exact_registration_make_no_error():
-    errors = only(analyzed())
-    for length in (
-        errors.entry_point_error.mm,
-        errors.target_point_error.mm,
-        errors.radial_error.mm,
-    ):
-        assert length == pytest.approx(0.0, abs=1e-9)
-    assert errors.angular_deviation_deg == pytest.approx(0.0, abs=1e-9)
-    assert errors.tip_ras == pytest.approx(DOWN.target_ras, abs=1e-9)
-
-
 def test_a_sideways_registration_error_is_attributed_to_the_registration_and_not_to_the_hand():
     errors = only(analyzed(shifted(x=2.0)))
     assert errors.target_point_error.by_registration_ras == pytest.approx([2.0, 0.0, 0.0], abs=1e-9)
     assert errors.target_point_error.by_hand_ras == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
     assert (errors.entry_point_error.mm, errors.radial_error.mm) == pytest.approx((2.0, 2.0))
     assert depths(errors) == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
-
-
-def test_a_registration_error_along_the_line_changes_the_depth_and_not_the_entry():
-    errors = only(analyzed(shifted(z=-1.5)))
-    assert depths(errors) == pytest.approx((1.5, 1.5, 0.0), abs=1e-9)
-    assert errors.entry_point_error.mm == pytest.approx(0.0, abs=1e-9)
-    assert errors.entry_point_error.by_hand_mm == pytest.approx(0.0, abs=1e-9)
 
 
 def test_an_instrument_not_inserted_far_enough_has_a_negative_depth_error():
@@ -112,7 +92,7 @@ def test_a_rotated_guide_has_an_angular_deviation_caused_by_the_hand():
     assert errors.depth_error_mm == pytest.approx(-depth * (1 - np.cos(turn)))
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", range(4))
 def test_the_shares_of_registration_and_hand_add_up_exactly(seed):
     random = np.random.default_rng(seed)
     off = transforms.rigid(rotation(random, 4.0), random.normal(0.0, 2.0, 3))
@@ -177,13 +157,6 @@ def test_a_drill_that_goes_deeper_than_the_instrument_counts_for_the_distance():
     assert plunged.hits == (("Left", "Vessel"),)
 
 
-def test_a_procedure_without_structures_has_no_intrusion():
-    procedure = made_up_procedure(DOWN, no_go=())
-    meshes = replace(MESHES, no_go={})
-    analysis = analyze_procedure(recorded(procedure, TRUTH), procedure, meshes, TRUTH)
-    assert (ProcedureMeasures.of(analysis, procedure).intrusion_mm, analysis.hits) == (0.0, ())
-
-
 def test_a_procedure_is_summarized_by_root_mean_squares():
     right = trajectory("Right", (-60.0, 0.0, 67.08), (-15.0, 10.0, 0.0))
     analysis = analyzed(shifted(x=2.0), lines=(DOWN, right))
@@ -202,42 +175,3 @@ def test_the_record_of_another_plan_is_refused():
     for procedure in (moved, made_up_procedure(), made_up_procedure(DOWN, name="other")):
         with pytest.raises(InputError, match="of another plan than the procedure"):
             analyze_procedure(record, procedure, MESHES, TRUTH)
-
-
-def registered(bias):
-    """A registration of touches with errors and a common bias, and the plan that it shows."""
-    random = np.random.default_rng(8)
-    fiducials = random.normal(0.0, 55.0, (15, 3))
-    checkpoints = random.normal(0.0, 55.0, (5, 3))
-    places = transforms.apply(TRUTH, np.concatenate([fiducials, checkpoints]))
-    touches = places + random.normal(0.0, 0.6, places.shape) + bias
-    registration = register(touches[:15], fiducials)
-    shown = transforms.apply(registration.matrix, touches[15:]) - checkpoints
-    return registration, np.linalg.norm(shown, axis=1)
-
-
-def test_a_common_bias_of_2_mm_is_in_the_error_and_in_nothing_that_the_trainee_sees():
-    procedure, bias = made_up_procedure(), np.array([0.0, 2.0, 0.0])
-    seen, true = [], []
-    for offset in (np.zeros(3), bias):
-        registration, checks = registered(offset)
-        to_world = transforms.inverse(registration.matrix)
-        record = recorded(procedure, to_world)
-        accepted = replace(used(registration.matrix), fre_mm=registration.fre_mm)
-        record = replace(record, attempts=(replace(record.attempts[-1], registration=accepted),))
-        analysis = analyze_procedure(record, procedure, MESHES, TRUTH)
-        # FRE, residuals, checkpoints, and how the guide lies to the plan as it is shown.
-        hands = [
-            (
-                each.entry_point_error.by_hand_mm,
-                each.target_point_error.by_hand_mm,
-                each.angular_deviation_by_hand_deg,
-            )
-            for each in analysis.trajectories
-        ]
-        seen.append([registration.fre_mm, *registration.residuals_mm, *checks, *np.ravel(hands)])
-        true.append([whole(each.target_point_error) for each in analysis.trajectories])
-    assert seen[1] == pytest.approx(seen[0], abs=1e-9)
-    moved = np.array(true[1]) - np.array(true[0])
-    assert np.linalg.norm(moved, axis=1) == pytest.approx([2.0, 2.0], abs=1e-9)
-    assert min(np.linalg.norm(each) for each in true[1]) > 1.5

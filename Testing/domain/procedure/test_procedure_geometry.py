@@ -11,7 +11,6 @@ from rastrainer.procedure.geometry import (
     bone_ahead,
     is_inside,
     segment_distances_mm,
-    skull_angle_deg,
 )
 from Testing.domain.procedure.made_up_procedure import shell
 from Testing.domain.scenario.made_up_scenario import ball_head
@@ -32,7 +31,7 @@ def slabs(*heights):
     return HeadMesh(np.array(whole.vertices), np.array(whole.faces))
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(4))
 def test_a_line_crosses_a_sphere_at_the_two_expected_points(seed):
     random = np.random.default_rng(seed)
     ball, start = ball_head(90.0), 150.0 * unit(random.normal(size=3))
@@ -56,15 +55,6 @@ def test_a_line_through_the_edge_of_two_triangles_crosses_once(x, y):
     assert [crossing.distance_mm for crossing in crossings] == pytest.approx([20.0, 30.0])
 
 
-def test_a_line_crosses_nothing_beyond_its_end():
-    assert len(mesh_crossings(slabs((0.0, 10.0)), np.array([1.0, 2.0, 30.0]), -Z, 25.0)) == 1
-
-
-def test_bone_lies_between_its_tables():
-    bone = bone_ahead(shell(), np.array([0.0, 0.0, 120.0]), -Z, 300.0)
-    assert bone == pytest.approx((37.0, 44.0))
-
-
 def test_marrow_between_two_tables_is_bone_and_deeper_tissue_is_not():
     skull = slabs((47.0, 50.0), (43.5, 44.5), (10.0, 20.0))
     bone = bone_ahead(skull, np.array([1.0, 2.0, 80.0]), -Z, 200.0)
@@ -75,10 +65,6 @@ def test_solid_bone_has_no_inner_table_within_reach():
     bone = bone_ahead(slabs((0.0, 50.0)), np.array([1.0, 2.0, 80.0]), -Z, 60.0)
     assert bone.outer_mm == pytest.approx(30.0)
     assert bone.inner_mm is None
-
-
-def test_a_line_that_misses_the_skull_meets_no_bone():
-    assert bone_ahead(shell(), np.array([0.0, 100.0, 120.0]), -Z, 300.0) is None
 
 
 def test_only_points_enclosed_by_the_surface_are_inside():
@@ -95,11 +81,6 @@ def test_an_angle_is_exact_even_if_small(degrees):
     assert angle_deg(3.0 * Z, turned) == pytest.approx(degrees, abs=1e-12)
 
 
-def test_the_angle_to_the_skull_is_that_to_its_normal():
-    place = np.array([0.0, 83.0 * np.sin(0.3), 83.0 * np.cos(0.3)])
-    assert skull_angle_deg(shell(), place, -Z) == pytest.approx(np.degrees(0.3), abs=1.0)
-
-
 def brute(start, end, other_start, other_end):
     """The least distance between many points of two segments."""
     shares = np.linspace(0.0, 1.0, 401)[:, None]
@@ -107,7 +88,7 @@ def brute(start, end, other_start, other_end):
     return np.linalg.norm(one[:, None] - other[None], axis=2).min()
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(8))
 def test_the_distance_of_segments_is_that_of_their_nearest_points(seed):
     random = np.random.default_rng(seed)
     start, end, other, its_end = random.uniform(-10.0, 10.0, (4, 3))
@@ -121,18 +102,13 @@ def test_the_distance_of_segments_is_that_of_their_nearest_points(seed):
     assert found == pytest.approx(sampled, abs=0.05)
 
 
-def test_crossing_segments_are_at_zero_distance():
-    x = np.array([[-5.0, 0.0, 0.0]])
-    assert segment_distances_mm(5.0 * Z, -5.0 * Z, x, -x)[0] == 0.0
-
-
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(3))
 def test_the_distance_of_an_axis_from_a_body_is_that_of_its_nearest_point(seed):
     random = np.random.default_rng(seed)
     ball = ball_head(30.0)
     start, end = random.normal(0.0, 45.0, (2, 3))
     solid = trimesh.Trimesh(ball.vertices, ball.triangles, process=False)
-    places = start + np.linspace(0.0, 1.0, 500)[:, None] * (end - start)
+    places = start + np.linspace(0.0, 1.0, 200)[:, None] * (end - start)
     signed = trimesh.proximity.signed_distance(solid, places)
     expected = 0.0 if signed.max() >= 0.0 else -signed.max()
     assert axis_distance_mm(ball, start, end) == pytest.approx(expected, abs=0.05)

@@ -1,7 +1,6 @@
 """Procedures in a scenario's files are read as they were written, and errors are reported."""
 
 import json
-import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -20,7 +19,6 @@ from rastrainer.scenario.scenario import load_scenario
 from Testing.domain.procedure.made_up_procedure import (
     made_up_procedure,
     shell,
-    trajectory,
     vessel,
     write_planned,
 )
@@ -52,18 +50,6 @@ def test_a_written_procedure_is_read_again(folder):
     meshes = read_procedure_meshes(procedure, scenario.skull.file)
     assert len(meshes.skull.triangles) == len(shell().triangles)
     assert np.allclose(meshes.no_go["Vessel"].vertices, vessel().vertices, atol=1e-4)
-
-
-def test_a_scenario_without_procedures_has_none(folder):
-    scenario = load_scenario(changed(folder, lambda values: values.pop("procedures")))
-    assert scenario.procedures == ()
-    with pytest.raises(InputError, match="has no such procedure; it has none"):
-        scenario.procedure("dbs-1")
-
-
-def test_a_missing_trajectory_is_named_with_those_that_exist():
-    with pytest.raises(InputError, match="no trajectory 'Middle'; it has Left, Right"):
-        made_up_procedure().trajectory("Middle")
 
 
 def test_a_package_keeps_the_procedures(folder, tmp_path):
@@ -134,41 +120,6 @@ def test_an_invalid_procedure_is_refused_in_one_sentence(folder, change, sentenc
     assert str(folder / "scenario.json") in str(caught.value)
 
 
-def meshes_of(folder):
-    scenario = load_scenario(folder)
-    return read_procedure_meshes(scenario.procedures[0], scenario.skull.file)
-
-
-def test_a_missing_no_go_mesh_is_named(folder):
-    (folder / "no-go/vessel.ply").unlink()
-    with pytest.raises(InputError, match=r"The mesh .*vessel.ply does not exist"):
-        meshes_of(folder)
-
-
-def test_an_open_no_go_mesh_is_refused(folder):
-    mesh = vessel()
-    write_head_mesh(folder / "no-go/vessel.ply", replace(mesh, triangles=mesh.triangles[1:]))
-    with pytest.raises(InputError, match=r"no-go structure .*vessel.ply is not closed"):
-        meshes_of(folder)
-
-
-def test_a_huge_no_go_mesh_is_refused(folder):
-    mesh = vessel()
-    copies = MAX_NO_GO_TRIANGLES // len(mesh.triangles) + 1
-    write_head_mesh(
-        folder / "no-go/vessel.ply", replace(mesh, triangles=np.tile(mesh.triangles, (copies, 1)))
-    )
-    with pytest.raises(InputError, match=rf"triangles; it may have {MAX_NO_GO_TRIANGLES}"):
-        meshes_of(folder)
-
-
-def test_an_open_skull_is_refused(folder):
-    mesh = shell()
-    write_head_mesh(folder / "skull.ply", replace(mesh, triangles=mesh.triangles[1:]))
-    with pytest.raises(InputError, match=r"The skull .*skull.ply is not closed"):
-        meshes_of(folder)
-
-
 def hash_of(folder):
     scenario = load_scenario(folder)
     return scenario.procedures[0].sha256(scenario.skull.file)
@@ -188,12 +139,29 @@ def test_the_hash_of_a_procedure_covers_what_a_trial_depends_on(folder):
     assert len({before, with_vessel, with_skull, with_target}) == 4
 
 
-def test_the_hash_of_a_procedure_is_the_same_after_moving_its_folder(folder, tmp_path):
-    before = hash_of(folder)
-    assert hash_of(shutil.move(folder, tmp_path / "elsewhere")) == before
+def tiled(mesh):
+    copies = MAX_NO_GO_TRIANGLES // len(mesh.triangles) + 1
+    return replace(mesh, triangles=np.tile(mesh.triangles, (copies, 1)))
 
 
-def test_coordinates_are_read_from_the_file_to_a_ten_thousandth(tmp_path):
-    third = trajectory(entry=(1 / 3, 0.0, 89.99))
-    folder = write_planned(tmp_path / "third", made_up_procedure(third))
-    assert load_scenario(folder).procedures[0].trajectories[0].entry_ras[0] == 0.3333
+def opened(mesh):
+    return replace(mesh, triangles=mesh.triangles[1:])
+
+
+@pytest.mark.parametrize(
+    ("name", "mesh", "sentence"),
+    [
+        ("no-go/vessel.ply", None, r"The mesh .*vessel.ply does not exist"),
+        ("no-go/vessel.ply", opened(vessel()), r"no-go structure .*vessel.ply is not closed"),
+        ("no-go/vessel.ply", tiled(vessel()), f"triangles; it may have {MAX_NO_GO_TRIANGLES}"),
+        ("skull.ply", opened(shell()), r"The skull .*skull.ply is not closed"),
+    ],
+    ids=["missing", "open", "huge", "open skull"],
+)
+def test_an_unusable_mesh_is_named(folder, name, mesh, sentence):
+    (folder / name).unlink()
+    if mesh is not None:
+        write_head_mesh(folder / name, mesh)
+    scenario = load_scenario(folder)
+    with pytest.raises(InputError, match=sentence):
+        read_procedure_meshes(scenario.procedures[0], scenario.skull.file)

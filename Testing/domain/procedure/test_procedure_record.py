@@ -32,11 +32,6 @@ def test_a_record_is_read_as_it_was_written(record):
     assert again.accepted.world_to_head.tolist() == np.eye(4).tolist()
 
 
-def test_a_point_on_the_guides_axis_is_beyond_its_tip(record):
-    left = record.instruments[0]
-    assert left.at_depth(left.instrument_depth_mm).tolist() == [0.0, 0.0, 20.0]
-
-
 def test_the_record_of_a_trial_holds_that_of_its_procedure(record):
     value = {**make_record(), "procedure": written(record)}
     trial = record_from_json(TrialRecord, value)

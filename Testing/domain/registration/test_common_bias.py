@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from rastrainer import transforms
 from rastrainer.registration.distributions import (
     ratio_quantile,
     widened_distribution,
@@ -35,19 +34,6 @@ def touched(seed, offset=0.0, count=15, sd=0.5, kind="rigid"):
     return register(fixed + rng.normal(size=fixed.shape) * sd + offset, fixed, kind)
 
 
-def true_tre(registration):
-    return float(np.linalg.norm(transforms.apply(registration.matrix, TARGET[None])[0] - TARGET))
-
-
-def test_a_common_offset_changes_no_residual_and_adds_fully_to_the_error():
-    plain, moved = touched(1), touched(1, [0.0, 0.0, 2.0])
-    np.testing.assert_allclose(plain.residuals_mm, moved.residuals_mm, atol=1e-9)
-    shift = transforms.apply(moved.matrix, TARGET[None]) - transforms.apply(
-        plain.matrix, TARGET[None]
-    )
-    assert np.linalg.norm(shift) == pytest.approx(2.0, abs=1e-9)
-
-
 def test_the_common_offset_adds_in_quadrature_to_independent_errors():
     registration = touched(2)
     error = target_error(registration, TARGET)
@@ -59,14 +45,6 @@ def test_the_common_offset_adds_in_quadrature_to_independent_errors():
     assert expected_tre(registration, TARGET[None])[0] == pytest.approx(error.expected_mm)
 
 
-def test_a_common_offset_raises_only_the_upper_limit():
-    registration = touched(3)
-    error = target_error(registration, TARGET)
-    without = target_error(registration, TARGET, common_bias_sd_mm=0.0)
-    assert error.interval_mm[0] == without.interval_mm[0]
-    assert error.interval_mm[1] > without.interval_mm[1]
-
-
 def test_a_perfect_fit_still_expects_the_common_offset():
     fixed = fiducials()
     error = target_error(register(fixed, fixed), TARGET)
@@ -74,40 +52,6 @@ def test_a_perfect_fit_still_expects_the_common_offset():
     assert error.interval_mm[0] == pytest.approx(0.0, abs=1e-9)
     largest = COMMON_BIAS_SD_MM * np.sqrt(stats.chi2(3).ppf(0.95))
     assert error.interval_mm[1] == pytest.approx(largest, rel=1e-5)
-
-
-@pytest.mark.parametrize("sets", [40, pytest.param(300, marks=pytest.mark.soak)])
-@pytest.mark.parametrize(
-    ("kind", "count", "offset_sd"),
-    [
-        ("rigid", 15, 0.0),
-        ("rigid", 4, 0.1),
-        ("rigid", 15, COMMON_BIAS_SD_MM),
-        ("affine", 8, COMMON_BIAS_SD_MM),
-    ],
-)
-def test_95_of_100_true_errors_lie_within_the_limits_for_every_offset_up_to_the_assumed_one(
-    kind, count, offset_sd, sets
-):
-    rng = np.random.default_rng(4)
-    inside = []
-    for seed in range(sets):
-        registration = touched(seed, rng.normal(0, offset_sd, 3), count, 0.4, kind)
-        low, high = target_error(registration, TARGET).interval_mm
-        inside.append(low <= true_tre(registration) <= high)
-    # Give or take two and a half standard errors of so many data sets.
-    off = 2.5 * np.sqrt(0.95 * 0.05 / sets)
-    assert np.mean(inside) >= 0.95 - off
-    if offset_sd == COMMON_BIAS_SD_MM:
-        assert np.mean(inside) <= 0.95 + off
-
-
-def test_an_offset_far_beyond_the_assumed_one_is_not_noticed():
-    seen = [
-        target_error(fit, TARGET).interval_mm[1] >= true_tre(fit)
-        for fit in (touched(seed, [0.0, 4.0, 0.0]) for seed in range(20))
-    ]
-    assert not any(seen)
 
 
 @pytest.mark.parametrize(
@@ -123,7 +67,7 @@ def test_an_offset_far_beyond_the_assumed_one_is_not_noticed():
 )
 def test_quantiles_are_those_of_simulated_lengths(weights, dof, added):
     rng = np.random.default_rng(5)
-    count = 400_000
+    count = 100_000
     scale = 1.0 if np.isinf(dof) else dof / rng.chisquare(dof, (count, 1))
     squares = ((np.array(weights) * scale + added) * rng.normal(size=(count, 3)) ** 2).sum(axis=1)
     for probability in (0.5, 0.95, 0.975):

@@ -32,7 +32,7 @@ def vtk_matrix(moving, fixed, kind):
 @pytest.mark.parametrize("kind", KINDS)
 def test_random_sets_map_as_vtk_landmark_transform_maps_them(kind, touched_head):
     worst_mm = 0.0
-    for seed in range(200):
+    for seed in range(60):
         moving, fixed, rng = touched_head(seed, count=4 + seed % 27)
         if seed % 3 == 0:
             moving = moving * rng.uniform(0.5, 2.0, 3)
@@ -58,43 +58,6 @@ def test_exact_points_give_the_exact_transform_and_no_error(kind, touched_head):
     registration = register(moving, fixed, kind)
     np.testing.assert_allclose(registration.matrix @ true, np.eye(4), atol=1e-9)
     assert registration.fre_mm < 1e-9
-
-
-def test_the_similaritys_scale_is_the_symmetric_one(touched_head):
-    moving, fixed, _ = touched_head(0)
-    forth = register(moving, fixed, "similarity").matrix
-    back = register(fixed, moving, "similarity").matrix
-    np.testing.assert_allclose(forth @ back, np.eye(4), atol=1e-9)
-
-
-def test_fre_is_the_root_mean_square_of_the_residual_vectors(touched_head):
-    moving, fixed, _ = touched_head(1)
-    registration = register(moving, fixed, "rigid")
-    vectors = transforms.apply(registration.matrix, moving) - fixed
-    np.testing.assert_allclose(registration.residual_vectors_mm, vectors, atol=1e-12)
-    np.testing.assert_allclose(registration.residuals_mm, np.linalg.norm(vectors, axis=1))
-    assert registration.fre_mm == pytest.approx(np.sqrt((vectors**2).sum() / 15))
-
-
-def test_more_freedom_never_fits_worse_than_rigid(touched_head):
-    for seed in range(10):
-        moving, fixed, _ = touched_head(seed)
-        rigid, affine = (register(moving, fixed, kind).fre_mm for kind in ("rigid", "affine"))
-        assert affine <= rigid
-
-
-def test_a_mirrored_set_still_yields_a_rotation(touched_head):
-    moving, fixed, _ = touched_head(2)
-    matrix = register(moving * [-1, 1, 1], fixed, "rigid").matrix
-    assert np.linalg.det(matrix[:3, :3]) == pytest.approx(1.0)
-
-
-def test_points_in_a_plane_are_enough_for_a_rigid_registration(touched_head):
-    moving, fixed, _ = touched_head(3)
-    true = register(moving, fixed).matrix
-    flat = fixed * [1, 1, 0]
-    registration = register(transforms.apply(transforms.inverse(true), flat), flat)
-    np.testing.assert_allclose(registration.matrix, true, atol=1e-9)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -123,12 +86,6 @@ def test_leave_one_out_returns_the_distance_predicted_by_the_other_points(kind, 
         others = vtk_matrix(np.delete(moving, i, 0), np.delete(fixed, i, 0), kind)
         expected = np.linalg.norm(transforms.apply(others, moving[i]) - fixed[i])
         assert distances[i] == pytest.approx(expected, abs=1e-6)
-
-
-def test_leave_one_out_is_refused_if_too_few_points_remain(touched_head):
-    moving, fixed, _ = touched_head(8, count=3)
-    with pytest.raises(InputError, match="at least 3 pairs"):
-        register(moving, fixed).leave_one_out_mm()
 
 
 def test_the_inputs_are_not_changed(touched_head):
@@ -187,12 +144,6 @@ def test_unusable_points_are_refused_with_a_message(moving, fixed, kind, words):
     assert "\n" not in str(caught.value)
 
 
-def test_collinear_fixed_points_are_refused_even_if_the_touches_scatter():
-    touches = line() + np.random.default_rng(0).normal(size=(5, 3))
-    with pytest.raises(InputError, match=r"fixed points .* lie on one line"):
-        register(touches, line())
-
-
 @pytest.mark.parametrize(
     ("labels", "words"),
     [(["a", "b"], "2 labels for 5"), (["a", "b", "c", "a", "d"], '"a" is given to two points')],
@@ -200,10 +151,6 @@ def test_collinear_fixed_points_are_refused_even_if_the_touches_scatter():
 def test_labels_must_be_unique(labels, words):
     with pytest.raises(InputError, match=words):
         register(GOOD, GOOD, labels=labels)
-
-
-def test_small_sets_far_from_the_origin_are_judged_by_their_own_extent():
-    assert register(GOOD / 1000 + 1000, GOOD / 1000).fre_mm < 1e-9
 
 
 def test_coplanar_points_have_a_rigid_and_a_similarity_fit():

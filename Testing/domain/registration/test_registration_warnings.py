@@ -8,7 +8,7 @@ from rastrainer.registration.fits import KINDS
 from rastrainer.registration.registration import register
 
 
-@pytest.fixture(params=[15, pytest.param(60, marks=pytest.mark.soak)], ids="{} heads".format)
+@pytest.fixture(params=[6, pytest.param(60, marks=pytest.mark.soak)], ids="{} heads".format)
 def seeds(request):
     return range(request.param)
 
@@ -29,22 +29,16 @@ def direction(rng):
     return vector / np.linalg.norm(vector)
 
 
-@pytest.mark.parametrize("heads", [60, pytest.param(500, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("heads", [30, pytest.param(500, marks=pytest.mark.soak)])
 def test_clean_heads_raise_no_alarm(touched_head, heads):
     for seed in range(heads):
         moving, fixed, _ = touched_head(seed)
         assert faults(moving, fixed, KINDS[seed % 3]) == []
 
 
-def test_exact_points_raise_no_alarm(touched_head, seeds):
-    for seed in seeds:
-        _, fixed, _ = touched_head(seed, count=3 + seed % 13)
-        assert faults(fixed, fixed) == []
-
-
 @pytest.mark.parametrize("count", [3, 4, 5, 6, 30, 100])
 def test_small_and_large_sets_raise_no_alarm(count, touched_head):
-    for seed in range(20):
+    for seed in range(5):
         moving, fixed, _ = touched_head(seed, count=count)
         found = {code for code, _ in faults(moving, fixed)}
         assert found <= {"nearly-collinear"}
@@ -61,15 +55,9 @@ def test_a_mirrored_set_is_reported_even_if_the_fit_hides_it(kind, touched_head,
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("scale", [1 / 1000, 1 / 25.4, 0.1, 0.9, 1.05, 10, 1000])
 def test_a_wrong_scale_is_reported_even_if_the_fit_hides_it(kind, scale, touched_head):
-    for seed in range(15):
+    for seed in range(3):
         moving, fixed, _ = touched_head(seed)
         assert faults(moving * scale, fixed, kind) == [("scale", ALL)]
-
-
-def test_meters_instead_of_millimeters_are_reported_for_the_right_list(touched_head):
-    moving, fixed, _ = touched_head(0)
-    assert "moving points seem to be in meters" in register(moving / 1e3, fixed).warnings[0].message
-    assert "fixed points seem to be in meters" in register(moving, fixed / 1e3).warnings[0].message
 
 
 def test_two_swapped_labels_are_reported(touched_head, seeds):
@@ -108,16 +96,6 @@ def test_two_bad_touches_do_not_hide_each_other(touched_head, seeds):
         moving[a] += 25 * direction(rng)
         moving[b] += 25 * direction(rng)
         assert faults(moving, fixed) == [("outlier", labels(a)), ("outlier", labels(b))]
-
-
-def test_touching_the_wrong_fiducial_is_reported_as_a_bad_touch(touched_head, seeds):
-    for seed in seeds:
-        moving, fixed, rng = touched_head(seed)
-        a, b = rng.choice(15, 2, replace=False)
-        if np.linalg.norm(fixed[a] - fixed[b]) < 15:
-            continue
-        moving[a] = moving[b]
-        assert faults(moving, fixed) == [("duplicate", labels(a, b)), ("outlier", labels(a))]
 
 
 def test_unrelated_lists_are_reported(touched_head, seeds):

@@ -61,26 +61,17 @@ def test_rigid_expectation_is_fitzpatricks_equation_46():
     np.testing.assert_allclose(without_offset, expected, rtol=1e-10)
 
 
-def test_the_error_is_smallest_at_the_centroid():
-    fixed = fiducials(15)
-    registration = noisy(fixed)
-    targets = np.array([[0, 0, 0], [60, 0, 0]]) + fixed.mean(axis=0)
-    center, away = expected_tre(registration, targets, common_bias_sd_mm=0.0)
-    assert center == pytest.approx(isotropic_error(registration).fle_mm / np.sqrt(15))
-    assert away > center
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_expectation_agrees_with_simulation_off_the_origin_and_tilted(kind):
     fixed = fiducials(8)
     target = np.array([70, -50, 40]) + fixed.mean(axis=0)
-    fre, tre = simulated(fixed, target, kind, deviation=0.5, trials=2000)
+    fre, tre = simulated(fixed, target, kind, deviation=0.5, trials=800)
     registration = noisy(fixed, kind)
     expected = expected_tre(registration, target[None], common_bias_sd_mm=0.0)[0]
     per_fle = expected / isotropic_error(registration).fle_mm
-    assert np.sqrt(np.mean(tre**2)) == pytest.approx(per_fle * 0.5 * np.sqrt(3), rel=0.03)
+    assert np.sqrt(np.mean(tre**2)) == pytest.approx(per_fle * 0.5 * np.sqrt(3), rel=0.05)
     fle = fre * isotropic_error(registration).fle_mm / registration.fre_mm
-    assert np.sqrt(np.mean(fle**2)) == pytest.approx(0.5 * np.sqrt(3), rel=0.03)
+    assert np.sqrt(np.mean(fle**2)) == pytest.approx(0.5 * np.sqrt(3), rel=0.05)
 
 
 @pytest.mark.parametrize(
@@ -95,28 +86,13 @@ def test_expectation_agrees_with_simulation_off_the_origin_and_tilted(kind):
 def test_the_interval_holds_the_true_error_in_95_of_100_trials(kind, count, offset):
     fixed = fiducials(count, seed=4)
     target = np.array(offset) + fixed.mean(axis=0)
-    fre, tre = simulated(fixed, target, kind, deviation=0.4, trials=2000)
+    fre, tre = simulated(fixed, target, kind, deviation=0.4, trials=800)
     registration = noisy(fixed, kind)
     error = target_error(registration, target, common_bias_sd_mm=0.0)
     low, high = np.array(error.interval_mm) / registration.fre_mm
     inside = (low * fre <= tre) & (tre <= high * fre)
-    assert 0.93 <= inside.mean() <= 0.97
-    assert 0.01 <= (tre < low * fre).mean() <= 0.04
-
-
-@pytest.mark.parametrize("trials", [40, pytest.param(200, marks=pytest.mark.soak)])
-def test_the_interval_holds_the_true_error_of_noisy_touches_on_heads(touched_head, trials):
-    inside = 0
-    for seed in range(trials):
-        _, fixed, rng = touched_head(seed)
-        target = rng.normal(size=3) * 40
-        moving = fixed + rng.normal(size=fixed.shape) * rng.uniform(0.5, 1.5)
-        registration = register(moving, fixed)
-        error = target_error(registration, target)
-        true_mm = np.linalg.norm(transforms.apply(registration.matrix, target) - target)
-        inside += error.interval_mm[0] <= true_mm <= error.interval_mm[1]
-    # Give or take two and a half standard errors of so many trials.
-    assert inside / trials == pytest.approx(0.95, abs=2.5 * np.sqrt(0.95 * 0.05 / trials))
+    assert 0.92 <= inside.mean() <= 0.98
+    assert 0.005 <= (tre < low * fre).mean() <= 0.045
 
 
 def ball_cap(count, seed):
@@ -168,45 +144,10 @@ def test_the_interval_holds_the_true_error_of_touches_that_slip_along_the_skin(k
     assert inside / sets >= 0.95 - 2.5 * np.sqrt(0.95 * 0.05 / sets)
 
 
-@pytest.mark.parametrize("sets", [100, pytest.param(300, marks=pytest.mark.soak)])
-def test_touches_on_one_side_determine_the_pose_better_than_an_isotropic_error_suggests(sets):
-    rng = np.random.default_rng(7)
-    target = np.zeros((1, 3))
-    true_mm, known_mm, ignored_mm = [], [], []
-    for seed in range(sets):
-        fixed, normals = ball_cap(15, seed)
-        registration = register(fixed + slipping(normals, 0.8, 0.1, rng), fixed)
-        true_mm.append(np.linalg.norm(transforms.apply(registration.matrix, target)))
-        slips = error_along_surface(registration, normals)
-        known_mm.append(expected_tre(registration, target, slips, 0.0)[0])
-        ignored_mm.append(expected_tre(registration, target, common_bias_sd_mm=0.0)[0])
-    true, known, ignored = (np.sqrt(np.mean(np.square(v))) for v in (true_mm, known_mm, ignored_mm))
-    assert known == pytest.approx(true, rel=0.1)
-    assert ignored > 1.3 * true
-
-
-def test_isotropic_covariances_give_the_same_result_as_the_isotropic_formula():
-    fixed, _ = ball_cap(12, 3)
-    registration = noisy(fixed)
-    error = isotropic_error(registration)
-    assert target_error(registration, [1, 2, 3], error) == target_error(registration, [1, 2, 3])
-    assert error.degrees_of_freedom == 3 * 12 - 6
-
-
 @pytest.mark.parametrize("normals", [np.eye(3), 2.0 * np.ones((8, 3)), np.full((8, 3), np.nan)])
 def test_invalid_normals_are_refused(normals):
     with pytest.raises(InputError, match="8 normals of length 1"):
         error_along_surface(noisy(fiducials(8)), normals)
-
-
-def test_the_interval_holds_the_expectation_and_grows_with_confidence():
-    registration = noisy(fiducials(6))
-    wide = target_error(registration, [400, -200, 100], confidence=0.99)
-    narrow = target_error(registration, [400, -200, 100])
-    assert narrow.confidence == 0.95
-    assert narrow.interval_mm[0] < narrow.expected_mm < narrow.interval_mm[1]
-    assert wide.interval_mm[0] < narrow.interval_mm[0]
-    assert wide.interval_mm[1] > narrow.interval_mm[1]
 
 
 def test_a_perfect_fit_without_a_common_offset_expects_no_error():
@@ -214,11 +155,6 @@ def test_a_perfect_fit_without_a_common_offset_expects_no_error():
     error = target_error(register(fixed, fixed), fixed[0], common_bias_sd_mm=0.0)
     assert error.expected_mm == pytest.approx(0.0, abs=1e-9)
     assert error.interval_mm == pytest.approx((0.0, 0.0), abs=1e-9)
-
-
-def test_three_points_give_a_wide_interval():
-    three = target_error(noisy(fiducials(3)), [400, -250, 120], common_bias_sd_mm=0.0)
-    assert three.interval_mm[1] / three.expected_mm > 3
 
 
 def test_an_exact_affine_fit_of_four_points_gives_no_estimate():

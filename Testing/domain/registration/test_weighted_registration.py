@@ -11,12 +11,11 @@ from rastrainer.errors import InputError
 from rastrainer.registration.fits import fit
 from rastrainer.registration.localization_error import (
     expected_fre,
-    isotropic_error,
     misfit_probability,
     stated_error,
 )
 from rastrainer.registration.registration import register
-from rastrainer.registration.target_error import expected_tre, target_error
+from rastrainer.registration.target_error import expected_tre
 from rastrainer_simulator.cli.main import main
 
 TARGET = np.array([20.0, -60.0, 35.0])
@@ -74,39 +73,13 @@ def test_the_fit_is_scipys_alignment_of_points_about_their_weighted_centroids():
         np.testing.assert_allclose(matrix[:3, 3], b - rotation.as_matrix() @ a, atol=1e-7)
 
 
-def test_equal_weights_change_nothing():
-    fixed = fiducials()
-    moving = posed(fixed)[0] + np.random.default_rng(6).normal(size=fixed.shape)
-    plain, weighted = register(moving, fixed), register(moving, fixed, weights=np.full(12, 7.0))
-    np.testing.assert_allclose(weighted.matrix, plain.matrix, atol=1e-12)
-    assert weighted.weighted_fre_mm == pytest.approx(plain.fre_mm)
-    assert plain.weighted_fre_mm == pytest.approx(plain.fre_mm)
-    one, other = isotropic_error(weighted), isotropic_error(plain)
-    np.testing.assert_allclose(one.covariances, other.covariances, rtol=1e-9)
-    ends = [target_error(each, TARGET).interval_mm for each in (plain, weighted)]
-    assert ends[0] == pytest.approx(ends[1], rel=1e-6)
-
-
-def test_a_point_of_negligible_weight_has_no_effect():
-    fixed = fiducials()
-    moving = posed(fixed)[0] + np.random.default_rng(7).normal(size=fixed.shape)
-    weights = np.ones(12)
-    weights[4] = 1e-11
-    weighted = register(moving, fixed, weights=weights)
-    without = register(moving, fixed).without("5")
-    np.testing.assert_allclose(weighted.matrix, without.matrix, atol=1e-7)
-    np.testing.assert_allclose(
-        weighted.without("5").matrix, without.matrix, atol=1e-12, err_msg="the weights are kept"
-    )
-
-
 def test_expected_fre_and_tre_of_known_unequal_errors_are_those_of_simulated_fits():
     registration, fle = weighted_registration()
-    fre, errors = simulated(3000)
-    assert expected_fre(registration, stated_error(fle)) == pytest.approx(fre, rel=0.03)
+    fre, errors = simulated(1500)
+    assert expected_fre(registration, stated_error(fle)) == pytest.approx(fre, rel=0.04)
     target = (TARGET + registration.fixed_mm.mean(axis=0))[None]
     expected = expected_tre(registration, target, stated_error(fle), common_bias_sd_mm=0.0)[0]
-    assert expected == pytest.approx(np.sqrt((errors**2).sum(axis=1).mean()), rel=0.03)
+    assert expected == pytest.approx(np.sqrt((errors**2).sum(axis=1).mean()), rel=0.05)
 
 
 def test_the_expected_tre_is_that_of_the_inverse_of_the_weighted_normal_equations():
@@ -131,36 +104,6 @@ def test_equal_errors_expect_the_fre_of_sibsons_formula():
     registration = register(posed(fixed)[0], fixed)
     found = expected_fre(registration, stated_error(np.full(12, 1.5)))
     assert found == pytest.approx(1.5 * np.sqrt(1 - 2 / 12), rel=1e-9)
-
-
-def test_weights_reduce_the_effect_of_unequal_errors():
-    _, weighted = simulated(500)
-    _, plain = simulated(500, weighted=False)
-    assert np.sqrt((weighted**2).sum(axis=1).mean()) < 0.7 * np.sqrt((plain**2).sum(axis=1).mean())
-
-
-@pytest.mark.parametrize("sets", [60, pytest.param(400, marks=pytest.mark.soak)])
-@pytest.mark.parametrize("is_size_known", [True, False], ids=["stated FLE", "weights alone"])
-def test_95_of_100_true_errors_lie_in_the_interval_of_unequal_errors(is_size_known, sets):
-    inside = []
-    for seed in range(sets):
-        registration, fle = weighted_registration(seed)
-        target = TARGET + registration.fixed_mm.mean(axis=0)
-        known = stated_error(fle) if is_size_known else None
-        low, high = target_error(registration, target, known, common_bias_sd_mm=0.0).interval_mm
-        _, true = posed(registration.fixed_mm)
-        exact = transforms.apply(transforms.inverse(true), target[None])
-        tre = np.linalg.norm(transforms.apply(registration.matrix, exact)[0] - target)
-        inside.append(low <= tre <= high)
-    # Give or take three standard errors of so many data sets.
-    assert np.mean(inside) == pytest.approx(0.95, abs=3 * np.sqrt(0.95 * 0.05 / sets))
-
-
-@pytest.mark.parametrize("sets", [80, pytest.param(300, marks=pytest.mark.soak)])
-def test_the_size_of_the_errors_is_recovered_from_the_weighted_residuals(sets):
-    found = [isotropic_error(weighted_registration(seed)[0]).fle_mm for seed in range(sets)]
-    stated = np.sqrt(np.mean(localization_errors() ** 2))
-    assert np.sqrt(np.mean(np.square(found))) == pytest.approx(stated, rel=0.03)
 
 
 @pytest.mark.parametrize("sets", [100, pytest.param(400, marks=pytest.mark.soak)])
@@ -270,10 +213,3 @@ def test_a_file_that_does_not_match_the_points_is_refused_with_a_message(
     status, out = run(capsys, moving, fixed, "--fle", path)
     assert status != 0
     assert message in out.err
-
-
-def test_weights_are_refused_for_nonrigid_fits(files, capsys):
-    moving, fixed, *_ = files
-    status, out = run(capsys, moving, fixed, "--fle", moving, "--type", "similarity")
-    assert status != 0
-    assert "similarity has none" in out.err

@@ -11,7 +11,6 @@ from rastrainer.errors import InputError
 from rastrainer.files.point_files import write_markups
 from rastrainer.files.point_list import PointList
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.json_checks import is_identifier
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.points import (
     LABELS,
@@ -60,18 +59,6 @@ def test_an_invalid_task_file_is_refused_with_a_message(tmp_path, labels, points
     with pytest.raises(InputError, match=sentence) as caught:
         read_fiducials(path)
     assert str(path) in str(caught.value)
-
-
-@pytest.mark.parametrize("name", ["trial-run", "task-1", "a", "task-12-b"])
-def test_valid_task_names_are_accepted(name):
-    assert is_identifier(name)
-
-
-@pytest.mark.parametrize(
-    "name", ["", "Task 1", "task_1", "../task", "-task", "task-", "t" * 41, "é"]
-)
-def test_invalid_task_names_are_refused(name):
-    assert not is_identifier(name)
 
 
 @pytest.mark.parametrize(

@@ -1,27 +1,21 @@
 """Writing and listing scenarios, and their set-ups."""
 
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.files.writing import write_json
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.head.trial_head import UNMOVED, Perturbation, SkinShift
+from rastrainer.head.trial_head import Perturbation
 from rastrainer.head.volume import read_head_volume
 from rastrainer.json_records import record_to_json
 from rastrainer.scenario.library import list_scenarios
 from rastrainer.scenario.scenario import OperatingTable, SkullKind, Stand, load_scenario
 from rastrainer.scenario.setup import HeadPlace, SetUp, read_setup
 from rastrainer.scenario.writer import (
-    HeadDraft,
     new_folder,
-    read_draft,
-    scenario_name,
-    write_draft,
     write_scenario,
 )
 from Testing.domain.scenario.made_up_scenario import ball_head, ball_volume, made_up_scenario, png
@@ -31,14 +25,6 @@ def written(folder, skull=None, volume=None):
     with new_folder(folder) as made:
         write_scenario(made, made_up_scenario(), ball_head(), skull, volume)
     return load_scenario(folder)
-
-
-def test_a_scenario_is_read_back_with_its_skin(tmp_path):
-    skin = SkinShift(2.0, 0, 0.5)
-    with new_folder(tmp_path / "ball") as made:
-        write_scenario(made, replace(made_up_scenario(), skin=skin), ball_head(), None, None)
-    assert load_scenario(tmp_path / "ball").skin == skin
-    assert written(tmp_path / "plain").skin == UNMOVED
 
 
 def test_a_scenario_is_read_back_with_targets_and_trajectory(tmp_path):
@@ -139,24 +125,6 @@ def test_an_unusable_picture_is_not_listed(tmp_path, content):
     assert (ball.preview, ball.problem) == (None, "")
 
 
-def test_a_draft_is_read_back(tmp_path):
-    write_draft(
-        tmp_path, HeadDraft(ball_head(), "by hand", ball_head(80.0), SkullKind.APPROXIMATION)
-    )
-    draft = read_draft(tmp_path)
-    assert draft.method == "by hand"
-    assert draft.skull_kind is SkullKind.APPROXIMATION
-    assert len(draft.skull.vertices) == len(draft.head.vertices)
-
-
-def test_the_default_setup_is_that_of_the_default_scenario(tmp_path):
-    (tmp_path / "setup.json").write_text("{}")
-    assert read_setup(tmp_path / "setup.json") == SetUp()
-    pose = SetUp().head_to_world(np.array([1.0, 2.0, 3.0]))
-    assert np.allclose(transforms.apply(pose, np.array([1.0, 2.0, 3.0])), [480, 0, 220])
-    assert np.allclose(pose[:3, :3], np.diag([-1, -1, 1]))
-
-
 def test_a_setup_is_written_and_read_back(tmp_path):
     limits = Perturbation(1.0, 2.0, 3.0)
     setup = SetUp(
@@ -168,13 +136,6 @@ def test_a_setup_is_written_and_read_back(tmp_path):
     )
     write_json(tmp_path / "setup.json", record_to_json(setup, with_defaults=True))
     assert read_setup(tmp_path / "setup.json") == setup
-
-
-def test_a_title_becomes_a_name_or_is_refused():
-    assert scenario_name("  Ms. X, 2nd MRI ") == "ms-x-2nd-mri"
-    assert len(scenario_name("a" * 100)) == 40
-    with pytest.raises(InputError, match="needs a Latin letter"):
-        scenario_name("頭")
 
 
 def test_moving_the_robot_base_moves_everything_else_the_opposite_way():

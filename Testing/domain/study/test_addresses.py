@@ -9,10 +9,7 @@ from pathlib import Path
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.study.database import (
-    postgres_connecting,
-    postgres_database,
-)
+from rastrainer.study.database import postgres_connecting, postgres_database
 from rastrainer.study.database.database import (
     LockWait,
     PostgresAddress,
@@ -41,11 +38,7 @@ ADDRESS = study_place("postgresql://host/study")
 def test_an_address_is_read_and_another_computer_reached_over_tls(text, host, database, sslmode):
     assert study_place(text) == PostgresAddress(text, host, database, sslmode)
     assert study_place(str(study_place(text))) == study_place(text)
-
-
-def test_anything_that_is_not_an_address_is_a_path():
     assert study_place("study.db") == Path("study.db")
-    assert study_place(Path("a", "study.db")) == Path("a", "study.db")
 
 
 @pytest.mark.parametrize(
@@ -57,17 +50,13 @@ def test_anything_that_is_not_an_address_is_a_path():
         ("postgresql://host/study?options=-csearch_path%3Devil", "may have each of"),
         ("postgresql://host/study?port=1&port=2", "may have each of"),
         ("postgresql://host", "names a host and a database"),
-        ("postgresql:///study", "names a host and a database"),
         ("postgresql://a,b/study", "names a host and a database"),
         ("postgresql://host:99999/study", "looks like"),
         ("postgresql://host/study?port=0x1", "number from 1 to 65535"),
         ("postgresql://host/study\n", "printable text"),
-        ("postgresql://host/study%00", "printable text"),
-        ("postgresql://seat%0a@host/study", "printable text"),
         ("postgresql://host/study?sslrootcert=%00", "printable text"),
         (f"postgresql://host/{'x' * 1000}", "printable text"),
         ("postgresql://host/study?sslmode=disable", "over TLS"),
-        ("postgresql://host/study?sslmode=require", "over TLS"),
         ("postgresql://localhost.evil.org/study?sslmode=prefer", "over TLS"),
     ],
 )
@@ -112,21 +101,13 @@ def test_only_the_driver_is_imported_from_the_simulators_folder(tmp_path, monkey
     del postgres_connecting.sys.modules["psycopg"]
 
 
-@pytest.fixture
-def silent_server():
-    """The port of a server that accepts connections and never sends anything."""
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        yield server
-
-
-def test_a_window_does_not_wait_for_a_silent_server_and_pauses_before_retrying(
-    silent_server, monkeypatch
-):
+def test_a_window_does_not_wait_for_a_silent_server_and_pauses_before_retrying(monkeypatch):
     monkeypatch.setattr(postgres_database, "INTERACTIVE_PATIENCE_S", 0.01)
     lock_wait = LockWait(0.05, rest_s=1.0, clock=lambda: 0.0)
-    address = f"postgresql://seat@127.0.0.1:{silent_server.getsockname()[1]}/study"
-    with pytest.raises(StudyUnreachableError, match="cannot be reached now"):
-        Study.open(address, lock_wait)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        address = f"postgresql://seat@127.0.0.1:{server.getsockname()[1]}/study"
+        with pytest.raises(StudyUnreachableError, match="cannot be reached now"):
+            Study.open(address, lock_wait)
     assert lock_wait.timeout_s == 0.0
     monkeypatch.setattr(postgres_database, "connected_within", None)
     with pytest.raises(StudyUnreachableError, match="cannot be reached now"):
@@ -163,18 +144,13 @@ class OperationalError(RefusalError):
     ("error", "words"),
     [
         (RefusalError("canceling statement", "55P03"), "Another program has locked the study"),
-        (RefusalError("disk", "53100"), "the disk of its server is full"),
-        (RefusalError("no", "42501"), "make it the owner"),
         (RefusalError("read", "25006"), "is read-only"),
         (RefusalError("x", "22P02"), "did not write"),
         (RefusalError("text fields cannot contain NUL (0x00) bytes"), "did not write"),
-        (RefusalError("relation does not exist", "42P01"), "is damaged"),
         (OperationalError('FATAL: password authentication failed for user "s"'), "refuses"),
-        (OperationalError("fe_sendauth: no password supplied"), "asks for a password"),
         (OperationalError("SSL error: certificate verify failed"), "somebody else may be"),
         (OperationalError('certificate for "b" does not match host name "a"'), "another computer"),
         (OperationalError('root certificate file "/r" does not exist'), "sslrootcert"),
-        (OperationalError("server does not support SSL, but SSL was required"), "not offer TLS"),
         (OperationalError('FATAL:  database "x" does not exist'), "no such database"),
         (OperationalError("connection refused"), "cannot be reached now"),
     ],

@@ -5,35 +5,29 @@ import random
 import uuid
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from rastrainer.commands import CommandName, check_arguments, decode_json_object
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_to_json
-from rastrainer.protocol import (
-    MAX_ASSIGNMENTS,
-    MAX_GATES,
-    AssignmentState,
-    GoalKind,
-    RegistrationMethod,
-)
+from rastrainer.protocol import MAX_ASSIGNMENTS, MAX_GATES, AssignmentState, GoalKind
 from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import standing_in
-from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.trainee_data import export_trainee
 from rastrainer.study_messages import Assignment, CurriculumMessage
-from rastrainer.trial.trial_feedback import PastTrial
+from rastrainer.trial.trial_row import TrialRow
 from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record
 
 SHIPPED = Path(__file__).parents[3] / "assets" / "studies" / "example-curriculum.json"
 LOCKED, OPEN, REACHED = AssignmentState.LOCKED, AssignmentState.OPEN, AssignmentState.REACHED
-PASSED = PastTrial("", "task-1", "desktop", 60.0, 80.0, acceptable=True)
-FAILED = replace(PASSED, score=50.0)
-ABORTED = replace(PASSED, score=0.0, acceptable=False, is_aborted=True)
+PASSED = TrialRow("T-001", "desktop", "task-1", values={"score": 80.0}, acceptable=True)
+FAILED = replace(PASSED, values={"score": 50.0})
+ABORTED = replace(PASSED, values={}, acceptable=False, is_aborted=True)
 ONE = Assignment("one", "task-1", trials=2)
 TWO = Assignment("two", "task-2", trials=1, after=("one",))
 
@@ -72,9 +66,8 @@ def file_with(**changes):
         ({"goals": []}, 'no "goals"; use name, title'),
         ({"name": "A b"}, "name must be lower-case letters"),
         ({"assignments": []}, f"a list of 1 to {MAX_ASSIGNMENTS} objects"),
-        ({"title": "x" * 81}, "title must be printable text of 1 to 80"),
     ],
-    ids=["version", "unknown key", "name", "empty", "long title"],
+    ids=["version", "unknown key", "name", "empty"],
 )
 def test_an_invalid_file_is_refused_with_the_field_and_what_would_be_right(changes, said):
     with pytest.raises(InputError, match=said):
@@ -112,12 +105,12 @@ def test_a_score_goal_is_reached_by_consecutive_trials_and_stays_reached():
     assert (one.done, one.needed, one.played) == (1, 2, 3)
     assert states([PASSED, PASSED, FAILED, FAILED]) == [REACHED, OPEN]
     assert stand([PASSED, PASSED, FAILED]).standings[0].done == 2
-
-
-def test_trials_of_a_locked_assignment_count_once_its_gate_is_open():
+    # Trials of a locked assignment count once its gate is open.
     second = replace(PASSED, task="task-2")
     assert states([second]) == [OPEN, LOCKED]
     assert states([second, PASSED, PASSED]) == [REACHED, REACHED]
+    beyond = replace(PASSED, acceptable=False)
+    assert states([beyond], replace(ONE, trials=1)) == [OPEN]
 
 
 def test_only_trials_that_match_the_assignment_count():
@@ -130,17 +123,14 @@ def test_only_trials_that_match_the_assignment_count():
     assert states([PASSED], in_headset) == [OPEN]
     assert states([replace(PASSED, mode="hmd")], in_headset) == [REACHED]
     assert states([PASSED], by_surface) == [OPEN]
-    surface = replace(PASSED, method=RegistrationMethod.SURFACE)
+    surface = replace(PASSED, method="surface")
     assert states([surface], by_surface) == [REACHED]
     assert states([surface], replace(ONE, trials=1)) == [OPEN]
     assert states([PASSED], biopsy) == [OPEN]
-    done = replace(PASSED, procedure="biopsy")
+    outcome = SimpleNamespace(analysis=SimpleNamespace(procedure="biopsy"))
+    done = replace(PASSED, procedure=outcome)
     assert states([done], biopsy) == [REACHED]
     assert states([done], replace(ONE, trials=1)) == [OPEN]
-
-
-def test_a_trial_beyond_a_limit_fails_whatever_its_score():
-    assert states([replace(PASSED, acceptable=False)], replace(ONE, trials=1)) == [OPEN]
 
 
 def test_a_bad_trial_cannot_be_undone_by_aborting_it():
@@ -188,10 +178,12 @@ def test_an_lc_cusum_goal_is_reached_at_competence_and_reports_its_progress():
 def test_the_weakest_open_assignment_comes_next_and_an_unplayed_one_before_it():
     three = [Assignment(name, f"task-{name}", trials=2) for name in ("1", "2", "3")]
     assert stand([], *three).next_best.name == "1"
-    first = stand([replace(PASSED, score=60.0)], *three)
+    first = stand([replace(PASSED, values={"score": 60.0})], *three)
     assert first.next_best.name == "2"
     scores = {"1": 60.0, "2": 40.0, "3": 90.0}
-    trials = [replace(PASSED, task=f"task-{n}", score=score) for n, score in scores.items()]
+    trials = [
+        replace(PASSED, task=f"task-{n}", values={"score": score}) for n, score in scores.items()
+    ]
     assert stand(trials, *three).next_best.name == "2"
     marked = [three[0], three[1], replace(three[2], mark=99.0)]
     assert stand(trials[::2], marked[0], marked[2]).next_best.name == "1"
@@ -209,7 +201,7 @@ def test_the_part_of_the_score_that_cost_the_most_is_named():
     assert set(parts) == {"time", "accuracy", "common bias", "safety"}
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(3))
 def test_a_further_trial_never_takes_back_what_was_reached(seed):
     chance = random.Random(seed)
     names = [f"a{number}" for number in range(8)]
@@ -240,14 +232,13 @@ def test_a_further_trial_never_takes_back_what_was_reached(seed):
 
 
 @pytest.fixture
-def study(study_place):
-    with Study.open(study_place) as opened:
-        opened.create_trainee("A")
-        opened.create_trainee("B")
-        yield opened
+def study(study):
+    study.create_trainee("A")
+    study.create_trainee("B")
+    return study
 
 
-def test_the_latest_choice_counts_whether_for_one_trainee_or_for_everybody(study):
+def test_the_latest_choice_counts_whether_for_one_trainee_or_for_everybody(study, tmp_path):
     store = CurriculumStore(study)
     first, second = (Curriculum(name, name, (ONE,)) for name in ("first", "second"))
     assert store.standing("A") is None
@@ -260,20 +251,15 @@ def test_the_latest_choice_counts_whether_for_one_trainee_or_for_everybody(study
     assert list(store.standings()) == ["A", "later"]
     store.choose(first)
     assert [store.standing(name).curriculum for name in "AB"] == [first, first]
+    export_trainee(study, "A", tmp_path / "a.json")
+    (exported,) = json.loads((tmp_path / "a.json").read_text(encoding="utf-8"))["curricula"]
+    assert exported["curriculum"]["name"] == "second"
     chosen = [(name, curriculum) for name, curriculum, _utc in store.choices()]
     assert chosen == [("", first), ("A", second), ("B", None), ("", first)]
     with pytest.raises(InputError, match="no trainee"):
         store.choose(first, "C")
-
-
-def test_a_choice_is_exported_and_deleted_with_its_trainee(study, tmp_path):
-    store = CurriculumStore(study)
-    store.choose(Curriculum("c", "C", (ONE,)), "A")
-    export_trainee(study, "A", tmp_path / "a.json")
-    (exported,) = json.loads((tmp_path / "a.json").read_text(encoding="utf-8"))["curricula"]
-    assert exported["curriculum"]["name"] == "c"
     study.delete_trainee("A")
-    assert store.choices() == ()
+    assert [name for name, _curriculum, _utc in store.choices()] == ["", "B", ""]
 
 
 def record(number, **changes):
@@ -305,18 +291,6 @@ def test_stored_trials_count_in_order_of_starting_and_aborted_ones_as_failures(s
     assert store.stamps()["A"] != chosen["A"]
     assert store.stamps()["B"] == chosen["B"]
     assert store.standing("B").reached == 0
-
-
-def test_a_failed_trial_stored_late_breaks_the_streak_in_which_it_was_played(study):
-    store = CurriculumStore(study)
-    store.choose(Curriculum("c", "C", (ONE, TWO)))
-    for number in (1, 3):
-        study.add_trial(record(number), score=gentle_score(60.0, 0.2))
-    assert store.standing("A").reached == 1
-    study.add_aborted(make_aborted(trainee="A", startedUtc="2024-05-17T10:02:00Z"))
-    assert [each.state for each in store.standing("A").standings] == [OPEN, LOCKED]
-    study.add_trial(record(4), score=gentle_score(60.0, 0.2))
-    assert store.standing("A").reached == 1
 
 
 def told_of(trials, *assignments):
@@ -358,18 +332,13 @@ def test_what_slicer_sends_to_the_simulator_arrives_unchanged_and_fits_into_a_me
 def test_a_hostile_message_is_refused(changes):
     good = record_to_json(stand([]).message("A"))
     bad = {**good, "assignments": [{**good["assignments"][0], **changes}]}
-    with pytest.raises(InputError):
-        check_arguments(CommandName.CURRICULUM, bad)
-
-
-@pytest.mark.parametrize("assignments", [{}, [1], [None] * 99], ids=str)
-def test_anything_that_is_not_a_list_of_assignments_is_refused(assignments):
-    with pytest.raises(InputError):
-        check_arguments(CommandName.CURRICULUM, {"trainee": "A", "assignments": assignments})
+    for each in (bad, {"trainee": "A", "assignments": [1]}, {"trainee": "A", "assignments": {}}):
+        with pytest.raises(InputError):
+            check_arguments(CommandName.CURRICULUM, each)
 
 
 def test_an_assignment_records_when_it_was_reached_and_never_before_its_gate_opened():
-    def on(day: int, **changes) -> PastTrial:
+    def on(day: int, **changes) -> TrialRow:
         return replace(PASSED, started_utc=f"2026-05-{day:02}T09:00:00Z", **changes)
 
     second = on(1, task="task-2")

@@ -6,8 +6,7 @@ import uuid
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.study.database.study import Study
-from rastrainer.study.ratings import FORMS, GEARS, OSATS, RatingStore
+from rastrainer.study.ratings import GEARS, OSATS, RatingStore
 from rastrainer_simulator.rating.rating_work import RatingWork
 from Testing.domain.trial.trial_records import make_record
 
@@ -15,12 +14,10 @@ TRIALS = [str(uuid.UUID(int=number)) for number in range(1, 9)]
 
 
 @pytest.fixture
-def study(study_place):
-    with Study.open(study_place) as opened:
-        for number, trial_id in enumerate(TRIALS):
-            trainee = f"T{number % 3}"
-            opened.add_trial(make_record(trialId=trial_id, trainee=trainee))
-        yield opened
+def study(study):
+    for number, trial_id in enumerate(TRIALS):
+        study.add_trial(make_record(trialId=trial_id, trainee=f"T{number % 3}"))
+    return study
 
 
 @pytest.fixture
@@ -58,14 +55,11 @@ def test_a_mark_is_stored_once_and_a_different_one_under_its_uuid_is_refused(stu
         store.give(*mark, 5)
     assert store.marks("R1", trial_id) == {"gears_depth": 4}
     assert rows(study) == 1
-
-
-def test_a_correction_is_a_new_row_and_the_latest_counts(study, store):
-    (trial_id, *_) = store.assign("R1", TRIALS, 2, random.Random(1))
-    for mark in (2, None, 5):
-        store.give(str(uuid.uuid4()), "R1", trial_id, OSATS, "osats_flow", mark)
-    assert store.marks("R1", trial_id) == {"osats_flow": 5}
-    assert rows(study) == 3
+    # A correction is a new row, and the latest counts.
+    for value in (2, None, 5):
+        store.give(str(uuid.uuid4()), "R1", trial_id, OSATS, "osats_flow", value)
+    assert store.marks("R1", trial_id) == {"gears_depth": 4, "osats_flow": 5}
+    assert rows(study) == 4
 
 
 @pytest.mark.parametrize(
@@ -82,12 +76,9 @@ def test_an_invalid_mark_is_refused_with_a_message(study, store, rater, domain, 
     (trial_id, *_) = store.assign("R1", TRIALS, 2, random.Random(1))
     with pytest.raises(InputError, match=sentence):
         store.give(str(uuid.uuid4()), rater, trial_id, GEARS, domain, mark)
-    assert rows(study) == 0
-
-
-def test_an_invalid_pseudonym_is_refused(store):
     with pytest.raises(InputError, match="The name of a rater must be"):
         store.assign("", TRIALS, 2, random.Random(1))
+    assert rows(study) == 0
 
 
 def test_rating_resumes_where_it_stopped_and_is_undone_mark_by_mark(store):
@@ -108,37 +99,19 @@ def test_rating_resumes_where_it_stopped_and_is_undone_mark_by_mark(store):
         work.give(mark)
     assert work.open_domain is None
     assert work.rated == 1
-    # A ninth mark has no place.
+    # A ninth mark has no place; only completed forms are ratings.
     work.give(5)
+    assert [rating.form for rating in store.ratings()] == ["gears", "osats"]
     again = taken_up()
     assert again.place == 1
     again.go_back()
     assert again.marks == work.marks
+    assert again.undo()
+    assert [rating.form for rating in store.ratings()] == ["gears"]
     while again.undo():
         pass
     assert again.marks == {}
     assert again.rated == 0
-
-
-def test_once_everything_is_rated_there_is_nothing_left_to_do(store):
-    trial_ids = store.assign("R1", TRIALS, 3, random.Random(1))
-    work = RatingWork(store, "R1", trial_ids, (GEARS,))
-    places = []
-    while work.go_to_next():
-        places.append(work.place)
-        for mark in (3, 3, 3, 4):
-            work.give(mark)
-    assert places == [0, 1, 2]
-    assert {rating.trial_id for rating in store.ratings()} == set(trial_ids)
-    assert {(rating.form, rating.total) for rating in store.ratings()} == {("gears", 13)}
-
-
-def test_only_completed_forms_are_ratings(store):
-    trial_ids = store.assign("R1", TRIALS, 2, random.Random(1))
-    work = RatingWork(store, "R1", trial_ids, (GEARS, OSATS))
-    for _ in range(7):
-        work.give(3)
-    assert [rating.form for rating in store.ratings()] == ["gears"]
 
 
 def test_ratings_are_deleted_with_their_trainee(study, store):
@@ -151,12 +124,3 @@ def test_ratings_are_deleted_with_their_trainee(study, store):
     left = {trial.record.trial_id for name in ("T1", "T2") for trial in study.history(name)}
     assert {rating.trial_id for rating in store.ratings()} == left
     assert rows(study, "rated_replays") == len(left)
-
-
-def test_totals_and_left_out_domains_are_stated():
-    for form in FORMS.values():
-        assert (form.lowest_total, form.highest_total) == (4, 20)
-        assert not set(form.left_out) & {domain.title for domain in form.domains}
-        assert form.source
-    assert len(GEARS.domains) + len(GEARS.left_out) == 6
-    assert len(OSATS.domains) + len(OSATS.left_out) == 7

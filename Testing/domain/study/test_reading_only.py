@@ -15,7 +15,8 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer_simulator.cli.main import main
 from Testing.domain.study.played_study import play, study_with_trials
-from Testing.domain.trial.trial_records import gentle_score, make_record
+from Testing.domain.trial.trial_records import make_record
+from Testing.simulator.report.without_charts import without_charts
 
 
 @pytest.fixture(scope="module")
@@ -23,17 +24,8 @@ def played(tmp_path_factory):
     """A study with a stored trial of B that is not counted yet."""
     path = tmp_path_factory.mktemp("played") / "study.db"
     study_with_trials(path)
-    with Study.open(path) as study, study.database.writing():
+    with Study.open(path) as study:
         play(study, "B", "desktop")
-        for number in range(10):
-            name = f"{'NE'[number // 5]}{number % 5}"
-            for each in range(3):
-                record = make_record(
-                    trialId=f"00000000-0000-0000-0001-0000000000{number}{each}", trainee=name
-                )
-                error_mm = (0.9 if name[0] == "N" else 0.3) + 0.02 * number
-                score = gentle_score(110.0, error_mm)
-                study.add_trial(record, score=score)
     return path
 
 
@@ -53,21 +45,18 @@ def seen(path):
     }
 
 
-GROUPS = ("--novices", *(f"N{i}" for i in range(5)), "--experts", *(f"E{i}" for i in range(5)))
-
-
 @pytest.mark.parametrize(
     "words",
     [
         pytest.param(("report", "STUDY", "-o", "OUT"), id="report"),
         pytest.param(("export", "STUDY", "-o", "OUT"), id="export"),
-        pytest.param(("pass-mark", "STUDY", *GROUPS), id="pass-mark"),
     ],
 )
 def test_a_study_in_mid_protocol_keeps_its_bytes_and_its_mtime(path, tmp_path, words, capsys):
     before = seen(path)
     known = {"STUDY": path, "OUT": tmp_path / "out"}
-    assert main([str(known.get(word, word)) for word in words]) == 0
+    with without_charts():
+        assert main([str(known.get(word, word)) for word in words]) == 0
     assert seen(path) == before
     assert capsys.readouterr().out
 
@@ -91,16 +80,6 @@ def test_a_study_opened_for_reading_cannot_be_changed(path):
         with pytest.raises(InputError, match="read-only"):
             study.add_trial(make_record(trialId="00000000-0000-0000-0000-000000000999"))
     assert seen(path) == before
-
-
-def test_a_write_protected_file_in_a_write_protected_folder_can_be_read(path):
-    path.chmod(0o400)
-    path.parent.chmod(0o500)
-    try:
-        with Study.open_for_reading(path) as study:
-            assert study.trainees()
-    finally:
-        path.parent.chmod(0o700)
 
 
 def test_reading_a_missing_study_creates_nothing(tmp_path):

@@ -25,11 +25,7 @@ from rastrainer.trial.procedure_outcome import (
     reference_duration_s,
     score_procedure,
 )
-from Testing.domain.procedure.made_up_procedure import (
-    made_up_meshes,
-    made_up_procedure,
-    trajectory,
-)
+from Testing.domain.procedure.made_up_procedure import made_up_meshes, made_up_procedure, trajectory
 from Testing.domain.procedure.procedure_records import recorded
 
 references = st.sampled_from([120.0, 300.0, 900.0])
@@ -72,11 +68,6 @@ def score(measures, reference):
     return score_procedure(measures, reference).score
 
 
-@given(procedures(), references)
-def test_the_score_is_between_0_and_100(measures, reference):
-    assert 0.0 < score(measures, reference) <= 100.0
-
-
 @given(st.sampled_from(SCORED), procedures(), st.floats(1e-3, 1e3), references)
 def test_faster_more_accurate_and_gentler_are_each_strictly_better(
     measure, measures, step, reference
@@ -96,19 +87,10 @@ def test_exceeding_a_limit_cannot_be_compensated(measure, measures, other, exces
     assert worse.score < best.score
 
 
-@given(procedures(), procedures())
-def test_better_in_all_measures_is_better_for_any_reference(one, other):
-    names = [field.name for field in fields(ProcedureMeasures)]
-    pairs = {name: (getattr(one, name), getattr(other, name)) for name in names}
-    better = ProcedureMeasures(**{name: min(pair) for name, pair in pairs.items()})
-    worse = ProcedureMeasures(**{name: max(pair) for name, pair in pairs.items()})
-    for reference in (120.0, 300.0, 900.0):
-        assert score(better, reference) >= score(worse, reference)
-
-
 @given(procedures(), references)
 def test_a_score_survives_json_with_its_version(measures, reference):
     first = score_procedure(measures, reference)
+    assert 0.0 < first.score <= 100.0
     again = record_from_json(ProcedureScore, json.loads(json.dumps(record_to_json(first))))
     assert again == first
     assert again.version == scoring.PROCEDURE_SCORE_VERSION
@@ -143,11 +125,6 @@ def test_a_measure_that_is_not_a_valid_number_is_refused(value):
     for field in fields(ProcedureMeasures):
         with pytest.raises(InputError, match=f"{field.name} must be a number from 0"):
             score_procedure(replace(PERFECT, **{field.name: value}), 100.0)
-
-
-def test_a_procedure_without_duration_is_refused():
-    with pytest.raises(InputError, match="duration must be above 0 s"):
-        score_procedure(replace(PERFECT, duration_s=0.0), 100.0)
 
 
 def measured(record, procedure):
@@ -194,11 +171,6 @@ def test_the_worst_of_several_instruments_decides_whether_it_is_acceptable():
     assert not score_procedure(measures, 600.0).acceptable
 
 
-def test_missing_the_skull_is_never_acceptable():
-    found = score_procedure(replace(PERFECT, missed_bone=1), 100.0)
-    assert not found.acceptable
-
-
 def test_what_a_trainee_sees_plays_no_part_in_the_score():
     """Checkpoints, FRE and the number of attempts change nothing."""
     procedure = made_up_procedure()
@@ -214,13 +186,3 @@ def test_what_a_trainee_sees_plays_no_part_in_the_score():
         for each in (record, replace(record, attempts=(seen,)))
     }
     assert len(scores) == 1
-
-
-def test_longer_and_more_trajectories_have_a_longer_reference():
-    short, long = trajectory(), trajectory(target=(0, 0, -20))
-    times = [
-        reference_duration_s(130.0, made_up_procedure(*lines))
-        for lines in ((short,), (long,), (short, replace(long, name="Right")))
-    ]
-    assert times == sorted(times)
-    assert times[0] == pytest.approx(130.0 + 15.0 + 70.0 + 100.0 / 8.0)

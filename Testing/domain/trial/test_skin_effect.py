@@ -15,14 +15,15 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import StudyData, trial_rows
 from rastrainer.study.tidy_csv import trials_csv
 from rastrainer.trial.analysis import RevealedTruth, analyze_trial, score_arguments
-from rastrainer.trial.record import TouchedPoint, TrialRecord
+from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.scoring import SAFETY_METRICS
 from rastrainer.trial.touch_registration import unshifted_tre_mm
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.report.target_errors import shifted_skin
+from Testing.domain.trial.trial_records import make_record
 from Testing.simulator.report.test_report import words_of
 
 SKIN = SkinShift(4.0, 7, 0.5)
-UTC = "2024-05-17T09:30:00Z"
 
 
 @pytest.fixture(scope="module")
@@ -33,34 +34,11 @@ def scenario():
 def touched(scenario, skin):
     """Return a trial whose fiducials were touched exactly on such skin, and its pose."""
     pose, task = scenario.perturbed_head_to_world(8), scenario.task("task-1")
-    places = skin.measured(task.fiducials, read_head_mesh(scenario.head))
-    points = tuple(
-        TouchedPoint(label, tuple(place), float(number), UTC)
-        for number, (label, place) in enumerate(
-            zip(task.labels, transforms.apply(pose, places).tolist(), strict=True)
-        )
-    )
-    motion = {
-        "unintended_contact_time_s": 0.0,
-        "unintended_contact_path_mm": 0.0,
-        "pressing_depth_mm": 0.0,
-    }
-    record = TrialRecord(
-        trial_id="a3bb189e-8bf9-4888-9912-ace4e6543002",
-        trainee="P01",
-        task="task-1",
-        mode="desktop",
-        scenario=scenario.name,
-        started_utc=UTC,
-        completed_utc=UTC,
-        completion_time_s=60.0,
-        points=points,
-        rejected_touches=0,
-        undone_touches=0,
-        versions={},
-        motion=motion,
-        skin=skin,
-    )
+    places = transforms.apply(pose, skin.measured(task.fiducials, read_head_mesh(scenario.head)))
+    value = make_record(trainee="P01", motion=dict.fromkeys(SAFETY_METRICS, 0.0))
+    for point, place in zip(value["points"], places.tolist(), strict=True):
+        point["positionMm"] = place
+    record = replace(record_from_json(TrialRecord, value), skin=skin)
     assert record.skin.seed == 0
     return record, pose
 

@@ -11,14 +11,10 @@ from rastrainer.files.point_list import PointList
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.study.study_data import StudyData, TrialRow
-from rastrainer.study.tidy_csv import trials_csv
 from rastrainer.trial.score_reference import score_reference
 from rastrainer.trial.scoring import ScoreMeasures, score_trial
 from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.report.conclusions import left_out_methods
-from rastrainer_simulator.report.report import with_one_method
 from Testing.simulator.landmarked import LANDMARKS, OVER_THE_FACE, on_skin, with_landmarks
 
 SURFACE = RegistrationMethod.SURFACE
@@ -53,11 +49,8 @@ def off_target(scenario, registered, pose):
 def test_a_trace_corrects_what_the_landmarks_missed(scenario, traced):
     given, pose = traced
     registered = register_trial(given, scenario)
-    by_three = with_landmarks(replace(scenario))
-    coarse = register_trial(
-        replace(given, method=RegistrationMethod.LANDMARKS),
-        replace(by_three, landmarks=LANDMARKS[:3]),
-    )
+    by_landmarks = replace(given, method=RegistrationMethod.LANDMARKS)
+    coarse = register_trial(by_landmarks, replace(scenario, landmarks=LANDMARKS[:3]))
     assert off_target(scenario, registered, pose) < 0.2
     assert off_target(scenario, coarse, pose) > 1.0
     assert registered.rigid.fre_mm < 0.05
@@ -116,10 +109,7 @@ def test_the_reference_of_a_method_has_its_own_time_and_the_same_error(scenario)
 
 def test_a_trial_without_fiducials_is_scored_without_a_common_bias(scenario):
     reference = score_reference(scenario, "task-1", method=SURFACE)
-    motion = dict.fromkeys(
-        ("unintended_contact_time_s", "unintended_contact_path_mm", "pressing_depth_mm"), 0.0
-    )
-    measures = ScoreMeasures.of(40.0, 0.5, None, motion)
+    measures = ScoreMeasures(40.0, 0.5, 0.0, 0.0, 0.0)
     score = score_trial(measures, reference, SURFACE)
     unbiased = score_trial(replace(measures, common_bias_mm=0.0), reference)
     assert score.score == unbiased.score
@@ -127,16 +117,3 @@ def test_a_trial_without_fiducials_is_scored_without_a_common_bias(scenario):
     assert score.acceptable
     with pytest.raises(InputError, match="common bias"):
         score_trial(measures, reference)
-
-
-def test_a_report_compares_trials_of_one_method_and_names_the_others():
-    rows = [
-        TrialRow("P01", "desktop", "task-1", number, {}, method=method)
-        for number, method in enumerate(("fiducials", "surface", "surface", "landmarks"), start=1)
-    ]
-    data = StudyData("A study", tuple(rows))
-    assert [row.number for row in with_one_method(data).trials] == [1]
-    assert left_out_methods(data) == {"landmarks": 1, "surface": 2}
-    assert left_out_methods(with_one_method(data)) == {}
-    assert [row.number for row in with_one_method(replace(data, trials=rows[1:])).trials] == [2, 3]
-    assert trials_csv(rows).splitlines()[2].split(",")[8] == "surface"

@@ -5,12 +5,7 @@ from __future__ import annotations
 import uuid
 
 from rastrainer.protocol import COARSE_LANDMARKS, MIN_TRACE_POINTS
-from rastrainer.trial.scoring import (
-    ScoreMeasures,
-    ScoreReference,
-    TrialScore,
-    score_trial,
-)
+from rastrainer.trial.scoring import ScoreMeasures, ScoreReference, TrialScore, score_trial
 
 
 def make_record(**changes):
@@ -71,10 +66,7 @@ REFERENCE = ScoreReference(time_s=105.0, tre_mm=0.4)
 
 
 def gentle_score(
-    time_s: float,
-    tre_mm: float,
-    reference: ScoreReference = REFERENCE,
-    common_bias_mm: float = 0.0,
+    time_s: float, tre_mm: float, reference: ScoreReference = REFERENCE, common_bias_mm: float = 0.0
 ) -> TrialScore:
     """Return the score of a trial without unintended contact or pressing."""
     measures = ScoreMeasures(time_s, tre_mm, 0.0, 0.0, 0.0, common_bias_mm)

@@ -89,11 +89,7 @@ def keep_seat(folder: Path, message: CurriculumMessage) -> None:
         slicer.send_command("Curriculum", record_to_json(message), timeout=60)
         browser = launch(playwright)
         page = open_page(browser, simulator.url, simulator.code, size=SIZE)
-        for item, menu in (
-            ("train", "introduction"),
-            ("skip", "controls"),
-            ("next", "experiment"),
-        ):
+        for item, menu in (("train", "introduction"), ("skip", "controls"), ("next", "experiment")):
             page.click(f"[data-name='{item}']")
             page.wait_for_selector(f"body[data-menu='{menu}']")
         page.fill("[data-name='trainee'] input", message.trainee)

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import sys
-import tempfile
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from rastrainer import transforms
-from rastrainer.procedure.errors import TrueLine, analyze_procedure, true_lines
+from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.procedure.plan import read_procedure_meshes
-from rastrainer.procedure.record import UsedRegistration
+from rastrainer.procedure.record import ProcedureRecord, UsedRegistration
 from rastrainer.registration.registration import register
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.sections.views import AlongInstrument
+from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.procedure_outcome import (
     ProcedureMeasures,
     ProcedureOutcome,
@@ -23,18 +23,14 @@ from rastrainer.trial.procedure_outcome import (
     score_procedure,
 )
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.virtual.virtual_procedure import (
-    ProcedureHands,
-    VirtualProcedure,
-)
-from Testing.pictures import keep_picture
-from Testing.slicer.host.host import Host
+from rastrainer_simulator.virtual.virtual_procedure import ProcedureHands, VirtualProcedure
+from Testing.end_to_end.module.screenshots import take, temporary_host
 
 PROCEDURE, TASK, TOUCHING_S, FLE_MM = "seeg", "task-3", 90.0, 2.0
 SECTION = "procedureCollapsibleButton"
 
 
-def carried_out() -> tuple[ProcedureOutcome, list[TrueLine]]:
+def carried_out() -> tuple[ProcedureOutcome, ProcedureRecord, RevealedTruth]:
     """Return what virtual hands made of stereo-EEG after a careless registration."""
     scenario = load_scenario(asset_path("scenarios", "colin27"))
     procedure, skull = scenario.procedure(PROCEDURE), scenario.skull.file
@@ -54,19 +50,23 @@ def carried_out() -> tuple[ProcedureOutcome, list[TrueLine]]:
     analysis = analyze_procedure(done, procedure, meshes, truth)
     reference = reference_duration_s(TOUCHING_S, procedure)
     score = score_procedure(ProcedureMeasures.of(analysis, procedure), reference)
-    return ProcedureOutcome(analysis, score), true_lines(done, truth)
+    return (
+        ProcedureOutcome(analysis, score),
+        done,
+        RevealedTruth(tuple(truth.ravel().tolist()), 0.0),
+    )
 
 
 def save(picture: Path) -> None:
     """Show the outcome in the module, with the slices along the first instrument."""
-    outcome, lines = carried_out()
-    with tempfile.TemporaryDirectory() as temporary:
-        host = Host(Path(temporary))
+    carried = carried_out()
+    with temporary_host() as (host, _folder):
         host.open()
         host.press("showScenarioButton")
         host.finish_work()
-        host.widget.logic.session.procedure.showOutcome(outcome, lines)
-        guide, tip = lines[0].placed
+        procedure = host.widget.logic.session.procedure
+        procedure.showOutcome(*carried)
+        guide, tip = procedure.lines[0].placed
         AlongInstrument(host.scene).show(tip, (tip - guide) / np.linalg.norm(tip - guide))
         host.scene.GetFirstNodeByName("Head").SetDisplayVisibility(False)
         for name in ("scenario", "simulator", "setup"):
@@ -74,9 +74,7 @@ def save(picture: Path) -> None:
         host.find(SECTION).collapsed = False
         host.look_from(120.0, 20.0, 1.2)
         host.idle_for(1.0)
-        host.window_screenshot(picture)
-        host.close()
-    keep_picture(picture, picture.with_suffix(".webp"))
+        take(host, picture)
 
 
 if __name__ == "__main__":

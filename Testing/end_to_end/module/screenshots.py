@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 from Testing.end_to_end.module.story import Story
@@ -22,44 +24,48 @@ HEAD, DISTANCE_MM = (0.0, -10.0, 30.0), 620.0
 WIDTH = 520
 
 
-def save_all(folder: Path) -> None:
-    """Play the session and save the pictures."""
+@contextlib.contextmanager
+def temporary_host() -> Iterator[tuple[Host, Path]]:
+    """Run Slicer on a computer of its own; yield it with a folder beside that."""
     with tempfile.TemporaryDirectory() as temporary:
         host = Host(Path(temporary, "computer of the instructor"))
         try:
-            story = Story(host, Path(temporary), OPTIONS)
-            for step in Story.STEPS:
-                step(story)
-                host.wait_until(lambda: host.text("nextStepButton") != "Scoring…", "it is scored")
-                section = SHOWN_AFTER.get(step.__name__)
-                if section is None:
-                    continue
-                show_only(host, section)
-                if section == "registration":
-                    host.look_at(HEAD, AZIMUTH, ELEVATION, DISTANCE_MM)
-                else:
-                    host.look_from(AZIMUTH, ELEVATION, ZOOM)
-                picture = folder / f"module-{section}.png"
-                host.window_screenshot(picture, WIDTH)
-                keep_picture(picture, picture.with_suffix(".webp"))
-                show_all(host)
+            yield host, Path(temporary)
         finally:
             host.close()
 
 
-def show_only(host: Host, shown: str) -> None:
-    """Fold every section except one."""
+def take(host: Host, path: Path, width: int | None = None) -> None:
+    """Save a picture of the window as WebP, under the name of the PNG file."""
+    host.window_screenshot(path, *filter(None, [width]))
+    keep_picture(path, path.with_suffix(".webp"))
+
+
+def save_all(folder: Path) -> None:
+    """Play the session and save the pictures."""
+    with temporary_host() as (host, temporary):
+        story = Story(host, temporary, OPTIONS)
+        for step in Story.STEPS:
+            step(story)
+            host.wait_until(lambda: host.text("nextStepButton") != "Scoring…", "it is scored")
+            section = SHOWN_AFTER.get(step.__name__)
+            if section is None:
+                continue
+            show_only(host, section)
+            if section == "registration":
+                host.look_at(HEAD, AZIMUTH, ELEVATION, DISTANCE_MM)
+            else:
+                host.look_from(AZIMUTH, ELEVATION, ZOOM)
+            take(host, folder / f"module-{section}.png", WIDTH)
+            show_only(host, *SECTIONS)
+
+
+def show_only(host: Host, *shown: str) -> None:
+    """Fold every section except some."""
     for section in SECTIONS:
-        host.find(f"{section}CollapsibleButton").collapsed = section != shown
+        host.find(f"{section}CollapsibleButton").collapsed = section not in shown
     for group in FOLDED:
         host.find(group).collapsed = True
-    host.process_events()
-
-
-def show_all(host: Host) -> None:
-    """Unfold every section."""
-    for section in SECTIONS:
-        host.find(f"{section}CollapsibleButton").collapsed = False
     host.process_events()
 
 

@@ -92,7 +92,7 @@ class Story:
         host.choose("modeComboBox", "Headset")
         host.choose("modeComboBox", "Desktop")
         host.press("startTrialRunButton")
-        host.wait_until(lambda: "running" in host.text("phaseText"), "the trial run runs")
+        self._wait_for_phase("running")
         host.answer("Abort the trial", "No")
         host.press("abortButton")
         assert "running" in host.text("phaseText")
@@ -101,31 +101,27 @@ class Story:
         host.wait_until(lambda: host.find("startTaskButton").enabled, "no trial is open")
 
     def start_task(self) -> None:
-        host = self.host
-        host.press("startTaskButton")
-        host.wait_until(lambda: "running" in host.text("phaseText"), "the trial runs")
+        self.host.press("startTaskButton")
+        self._wait_for_phase("running")
         self.player = Player(self.port, self.records)
 
     def resume_task(self) -> None:
         """Resume the trial that the simulator has reloaded after its crash."""
-        host = self.host
-        host.wait_until(lambda: "paused" in host.text("phaseText"), "the trial waits")
-        host.press("pauseButton")
-        host.wait_until(lambda: "running" in host.text("phaseText"), "the trial continues")
+        self._wait_for_phase("paused")
+        self.host.press("pauseButton")
+        self._wait_for_phase("running")
         self.player = Player(self.port, self.records)
 
     def touch_some(self) -> None:
-        self._touch(1, 6)
+        self.touch(1, 6)
 
     def pause_and_resume(self) -> None:
-        host = self.host
-        host.press("pauseButton")
-        host.wait_until(lambda: "paused" in host.text("phaseText"), "the trial is paused")
-        host.press("pauseButton")
-        host.wait_until(lambda: "running" in host.text("phaseText"), "the trial continues")
+        for phase in ("paused", "running"):
+            self.host.press("pauseButton")
+            self._wait_for_phase(phase)
 
     def touch_the_others(self) -> None:
-        self._touch(7, 15)
+        self.touch(7, 15)
 
     def register(self) -> None:
         host = self.host
@@ -256,7 +252,10 @@ class Story:
             lambda: not host.text("stateText").startswith("Connected"), "the link is closed, too"
         )
 
-    def _touch(self, first: int, last: int) -> None:
+    def _wait_for_phase(self, words: str) -> None:
+        self.host.wait_until(lambda: words in self.host.text("phaseText"), f"the trial: {words}")
+
+    def touch(self, first: int, last: int) -> None:
         host = self.host
         self.player.touch(first, last)
         host.wait_until(lambda: self.player.is_done, f"points {first} to {last} are touched")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -17,9 +16,16 @@ from rastrainer.sections.views import jumpTo
 from rastrainer.slicer.settings import PROGRAM
 from rastrainer_simulator.assets import asset_path
 from Testing.end_to_end.module.installed_simulator import write_program
-from Testing.end_to_end.module.screenshots import DISTANCE_MM, HEAD
+from Testing.end_to_end.module.screenshots import (
+    AZIMUTH,
+    DISTANCE_MM,
+    ELEVATION,
+    HEAD,
+    ZOOM,
+    take,
+    temporary_host,
+)
 from Testing.end_to_end.module.story import PLAN_MM
-from Testing.pictures import keep_picture
 from Testing.slicer.host.host import Host
 
 OPTIONS = ("--no-views", "--no-gamepad")
@@ -27,7 +33,6 @@ OPTIONS = ("--no-views", "--no-gamepad")
 SLIP_AT = 9
 PATIENCE_S = 1200.0
 PROCEDURE = "Biopsy of a frontal lesion"
-AZIMUTH, ELEVATION, ZOOM = 35.0, 20.0, 1.3
 FROM_THE_RIGHT = -60.0
 SECTIONS = ("scenario", "trainees", "training", "registration", "plan", "score")
 SECTIONS += ("procedurePlan", "procedure")
@@ -200,19 +205,13 @@ class Tutorial:
     def _take(self, name: str) -> None:
         """Save a picture."""
         self._host.idle_for(0.5)
-        path = self._pictures / f"tutorial-{name}.png"
-        self._host.window_screenshot(path)
-        keep_picture(path, path.with_suffix(".webp"))
+        take(self._host, self._pictures / f"tutorial-{name}.png")
 
 
 def save_all(pictures: Path) -> None:
     """Play the tutorial and save its pictures."""
-    with tempfile.TemporaryDirectory() as temporary:
-        host = Host(Path(temporary, "computer of the instructor"))
-        try:
-            Tutorial(host, Path(temporary), pictures).play()
-        finally:
-            host.close()
+    with temporary_host() as (host, temporary):
+        Tutorial(host, temporary, pictures).play()
 
 
 if __name__ == "__main__":

@@ -7,9 +7,13 @@ from Testing.domain.scenario.made_up_scenario import png
 
 @pytest.fixture
 def unrendered(monkeypatch):
-    """Write some picture in place of the rendered one, where that proves nothing."""
+    """Write some picture in place of the rendered one; return the heads that it would show."""
+    shown = []
+
+    def draw(path, _scenario, head):
+        shown.append(head)
+        path.write_bytes(png())
+
     for module in ("export", "make"):
-        monkeypatch.setattr(
-            f"rastrainer_simulator.authoring.{module}.draw_preview",
-            lambda path, _scenario, _head: path.write_bytes(png()),
-        )
+        monkeypatch.setattr(f"rastrainer_simulator.authoring.{module}.draw_preview", draw)
+    return shown

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.head.mesh import nearest_on_mesh, outward_normals, read_head_mesh
+from rastrainer.head.mesh import outward_normals, read_head_mesh
 from rastrainer.registration.localization_error import LocalizationError
 from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import expected_tre
@@ -16,7 +16,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.planning_setup import touchable
 from rastrainer_simulator.authoring.task_proposal import target_spread
-from rastrainer_simulator.authoring.touch_order import SurfaceGraph, complexity, shortest_path_mm
+from rastrainer_simulator.authoring.touch_order import SurfaceGraph, complexity
 from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.robot_shape import robot_shape
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
@@ -42,41 +42,6 @@ def test_the_head_is_one_closed_body_without_tunnels():
     assert MESH.is_closed
     assert MESH.euler_characteristic == 2
     assert 40_000 <= len(MESH.triangles) <= 60_000
-    assert _body_count() == 1
-
-
-def test_the_head_has_a_flat_base():
-    heights = MESH.vertices[:, 2]
-    base = heights == heights.min()
-    assert base.sum() > 300
-    assert np.ptp(MESH.vertices[base, :2], axis=0).min() > 150
-    flat = base[MESH.triangles].all(axis=1)
-    area = (
-        0.5
-        * np.linalg.norm(
-            np.cross(
-                MESH.vertices[MESH.triangles[flat, 1]] - MESH.vertices[MESH.triangles[flat, 0]],
-                MESH.vertices[MESH.triangles[flat, 2]] - MESH.vertices[MESH.triangles[flat, 0]],
-            ),
-            axis=1,
-        ).sum()
-    )
-    assert area > 20_000
-    assert (heights[~base] > heights.min() + 0.01).all()
-
-
-def test_the_head_is_smooth_without_voxel_steps():
-    """Nine of ten edges bend by less than 10 degrees; marching cubes alone would leave 20 to 45."""
-    corners = MESH.vertices[MESH.triangles]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    sides = np.sort(MESH.sides, axis=1)
-    order = np.lexsort((sides[:, 1], sides[:, 0]))
-    pairs = (order % len(MESH.triangles)).reshape(-1, 2)
-    bending = np.degrees(
-        np.arccos(np.clip(np.einsum("ij,ij->i", *normals[pairs].transpose(1, 0, 2)), -1, 1))
-    )
-    assert np.percentile(bending, 90) < 10
 
 
 def test_the_head_is_upright_with_its_face_to_the_camera_and_its_right_to_the_robot():
@@ -89,30 +54,10 @@ def test_the_head_is_upright_with_its_face_to_the_camera_and_its_right_to_the_ro
     assert np.allclose(SCENARIO.target.position_ras, MESH.centroid, atol=1e-3)
 
 
-def test_there_are_a_trial_run_and_five_tasks():
-    assert [task.name for task in SCENARIO.tasks] == TASK_NAMES
-
-
-@pytest.mark.parametrize("name", TASK_NAMES)
-def test_every_fiducial_is_on_the_skin_away_from_base_and_neighbors(name):
-    fiducials = SCENARIO.task(name).fiducials
-    assert max(nearest_on_mesh(MESH, point).distance for point in fiducials) <= 0.05
-    away = np.linalg.norm(fiducials[:, None] - fiducials[None], axis=2) + np.eye(15) * 1e3
-    assert away.min() >= 20
-    assert fiducials[:, 2].min() - MESH.vertices[:, 2].min() > 25
-
-
 def test_complexity_rises_from_task_to_task_and_matches_the_files(computed):
     indices = [parts.index for parts in computed]
     assert all(harder > 1.05 * easier for easier, harder in pairwise(indices))
     assert [task.complexity for task in SCENARIO.tasks] == pytest.approx(indices, abs=0.01)
-
-
-@pytest.mark.parametrize("name", ["trial-run", "task-5"])
-def test_the_shortest_path_matches_the_files(name):
-    task = SCENARIO.task(name)
-    shortest = shortest_path_mm(task.fiducials, MESH, GRAPH)
-    assert task.shortest_path_mm == pytest.approx(shortest, abs=0.051)
 
 
 def test_the_readme_has_the_same_numbers(computed):
@@ -161,16 +106,3 @@ def test_the_robot_can_touch_every_fiducial_in_other_poses_of_the_head(count):
 def test_the_notice_of_the_mri_travels_with_the_scenario():
     content = json.loads((FOLDER / "scenario.json").read_text(encoding="utf-8"))
     assert "Louis Collins, McConnell Brain Imaging Centre" in content["provenance"]["license"]
-
-
-def _body_count():
-    parent = np.arange(len(MESH.vertices))
-    while True:
-        low = np.minimum(parent[MESH.edges[:, 0]], parent[MESH.edges[:, 1]])
-        new = parent.copy()
-        np.minimum.at(new, MESH.edges[:, 0], low)
-        np.minimum.at(new, MESH.edges[:, 1], low)
-        new = new[new]
-        if np.array_equal(new, parent):
-            return len(np.unique(parent))
-        parent = new

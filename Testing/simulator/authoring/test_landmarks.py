@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.files.point_files import read_markups, write_markups
+from rastrainer.files.point_files import write_markups
 from rastrainer.files.point_list import PointList
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.scenario.scenario import load_scenario
@@ -16,7 +14,6 @@ from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.landmarks import REFERENCE, landmarks_on, read_placed_landmarks
 from rastrainer_simulator.cli.main import main
 from Testing.simulator.authoring.heads import colin27
-from Testing.simulator.landmarked import write_landmarked
 
 COLIN27 = asset_path("scenarios", "colin27")
 LARGEST_MM, USUAL_MM = 4.0, 2.0
@@ -86,19 +83,6 @@ def placed_file(path, **moved):
     places |= {name.replace("_", " "): np.array(place) for name, place in moved.items()}
     write_markups(path, PointList(tuple(places), np.array([*places.values()])))
     return path
-
-
-@pytest.mark.soak
-def test_a_copy_of_a_scenario_has_the_placed_landmarks_on_its_skin(tmp_path):
-    nasion = load_scenario(COLIN27).landmarks[0].position_ras
-    path = placed_file(tmp_path / "own.mrk.json", Nasion=nasion + np.array([0.0, 3.0, 0.0]))
-    source = write_landmarked(tmp_path / "source")
-    words = ["scenario", "plan", str(source), "--title", "Own landmarks"]
-    folder = tmp_path / "own"
-    assert main([*words, "-o", str(folder), "--landmarks", str(path)]) == 0
-    written = json.loads((folder / "scenario.json").read_text())["landmarks"]
-    assert [each["name"] for each in written] == [*read_markups(path).labels]
-    assert np.linalg.norm(np.array(written[0]["positionRas"]) - nasion) < 2.0
 
 
 def test_landmarks_out_of_reach_or_off_the_skin_are_refused_and_nothing_is_written(

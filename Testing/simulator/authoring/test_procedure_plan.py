@@ -9,13 +9,10 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh, write_head_mesh
-from rastrainer.procedure.checks import distances_to_no_go
 from rastrainer.procedure.plan import ProcedureKind, read_procedure, read_procedure_meshes
 from rastrainer.scenario.library import checked_scenario
-from rastrainer.scenario.points import PlannedTarget
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.authoring.make import copy_with_plan
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.procedure_plan import (
     check_procedures,
@@ -74,15 +71,6 @@ def test_the_targets_of_the_default_head_are_the_cited_ones():
         assert "doi:10." in SCENARIO.procedure(name).source
 
 
-def test_every_structure_of_the_default_head_is_called_schematic_and_kept_clear_of():
-    for procedure in SCENARIO.procedures:
-        assert all(each.name.endswith("(schematic)") for each in procedure.no_go)
-        meshes = read_procedure_meshes(procedure, SCENARIO.skull.file)
-        for trajectory in procedure.trajectories:
-            distances = distances_to_no_go(trajectory, meshes)
-            assert min(distances.values()) >= trajectory.safety_mm
-
-
 def test_a_line_on_which_the_robot_cannot_hold_the_guide_is_named(copy):
     """The arm has no room on the right, between the robot's base and the head."""
     head = read_head_mesh(SCENARIO.head)
@@ -113,15 +101,6 @@ def test_the_command_reports_what_is_wrong_with_a_procedure(copy, capsys):
     write_head_mesh(path, replace(mesh, triangles=mesh.triangles[1:]))
     assert main(["scenario", "check", str(copy)]) == 2
     assert "right-ventricle.ply is not closed: it has a hole." in capsys.readouterr().err
-
-
-@pytest.mark.soak
-def test_a_copy_with_another_plan_keeps_the_procedures(copy, tmp_path):
-    target = (PlannedTarget("Cyst", np.array([5.0, -10.0, 30.0])),)
-    made = copy_with_plan(copy, "Another plan", tmp_path / "made", target, None, print)
-    (procedure,) = made.procedures
-    (before,) = load_scenario(copy).procedures
-    assert procedure.sha256(made.skull.file) == before.sha256(copy / "skull.ply")
 
 
 @pytest.fixture

@@ -12,9 +12,7 @@ from rastrainer.scenario.setup import USUAL_TABLE, HeadPlace, SetUp
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
-from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.scenario_check import (
-    check_plan,
     check_standing,
     lowest_in_trials_mm,
 )
@@ -69,13 +67,6 @@ def test_the_default_setup_and_the_bundled_scenario_stand_on_the_table():
     assert standing(SetUp()) == []
     scenario = load_scenario(asset_path("scenarios", "colin27"))
     assert check_standing(scenario, colin27()) == []
-
-
-def test_the_plan_check_reports_the_table():
-    planning = PlanningSetup(
-        scenario_of(SetUp(table=replace(USUAL_TABLE, center_mm=(800.0, 0.0)))), egg()
-    )
-    assert "robot's foot" in check_plan(planning)[0]
 
 
 def test_no_trial_places_the_head_lower_than_reported():

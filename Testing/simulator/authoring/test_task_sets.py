@@ -14,13 +14,13 @@ from rastrainer.scenario.points import LABELS, PlannedTarget, PlannedTrajectory,
 from rastrainer.scenario.scenario import SkullKind
 from rastrainer.scenario.setup import HeadPlace, SetUp
 from rastrainer.scenario.writer import HeadDraft
+from rastrainer_simulator.authoring import scenario_check, task_set
 from rastrainer_simulator.authoring.face_removal import face_vertices
 from rastrainer_simulator.authoring.make import ScenarioOptions, make_scenario, without_tasks
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.scenario_check import check_plan, check_tasks
 from rastrainer_simulator.authoring.task_set import TaskSetProposer
-from Testing.simulator.authoring.heads import egg
-from Testing.simulator.authoring.test_many_task_sets import broken_promises
+from Testing.simulator.authoring.heads import HEADS, egg
 
 SEED = 5
 NAMES = ["trial-run", "task-1", "task-2", "task-3", "task-4", "task-5"]
@@ -43,7 +43,11 @@ def planning():
 
 @pytest.fixture(scope="module")
 def tasks(planning):
-    return TaskSetProposer(planning).propose(SEED)
+    """A set that is touchable in a few poses."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(task_set, "WIDE_SEEDS", range(1000, 1002))
+        patch.setattr(task_set, "TRIAL_SEEDS", range(2000, 2001))
+        return TaskSetProposer(planning).propose(SEED)
 
 
 def test_there_are_six_tasks_of_rising_complexity_on_the_skin_off_the_face(planning, tasks):
@@ -56,26 +60,25 @@ def test_there_are_six_tasks_of_rising_complexity_on_the_skin_off_the_face(plann
     assert np.linalg.norm(fiducials[:, None] - face[None], axis=2).min() > 5.0
 
 
-def test_the_check_of_manually_placed_fiducials_accepts_them(planning, tasks):
+def test_the_check_of_manually_placed_fiducials_accepts_them(planning, tasks, monkeypatch):
+    monkeypatch.setattr(scenario_check, "POSES_TRIED", 2)
     assert check_tasks(planning, tasks[::3], first_seed=70_000) == []
 
 
 @pytest.mark.soak
-def test_every_promise_about_a_task_set_is_kept(planning, tasks):
-    assert broken_promises(planning, tasks) == []
+@pytest.mark.parametrize("name", HEADS)
+def test_dozens_of_task_sets_pass_the_check_in_poses_that_the_proposal_has_not_tried(name):
+    head = HEADS[name]()
+    draft, options = HeadDraft(head, "test"), ScenarioOptions(name, "test", "none")
+    planning = PlanningSetup(without_tasks(draft, options), head)
+    proposer = TaskSetProposer(planning)
+    for seed in range(100, 133):
+        assert check_tasks(planning, proposer.propose(seed), first_seed=60_000) == [], seed
 
 
 def test_the_first_planned_target_is_the_one_whose_error_is_reported(planning):
     assert planning.scenario.target.name == "Tumor"
     assert check_plan(planning) == []
-
-
-def test_a_target_outside_the_head_is_reported(planning):
-    outside = replace(
-        planning.scenario, target=PlannedTarget("Tumor", np.array([0.0, -100.0, 95.0]))
-    )
-    found = check_plan(PlanningSetup(outside, planning.mesh))
-    assert any("Tumor is" in sentence and "outside of the head" in sentence for sentence in found)
 
 
 def moved(task, index, point):
@@ -85,7 +88,7 @@ def moved(task, index, point):
 
 
 def test_each_problem_of_a_task_is_reported_in_its_own_sentence(planning, tasks, monkeypatch):
-    monkeypatch.setattr("rastrainer_simulator.authoring.scenario_check.POSES_TRIED", 1)
+    monkeypatch.setattr(scenario_check, "POSES_TRIED", 1)
     run, first = tasks[:2]
     lifted = moved(run, 2, run.fiducials[2] * 1.1)
     assert "Trial run: fiducial 3 is" in check_tasks(planning, [lifted])[0]
@@ -174,15 +177,3 @@ def test_hand_placed_fiducials_become_tasks_and_a_skull_made_meanwhile_is_includ
     assert scenario.preview is not None
     again = read_fiducials(placed.task_files[0])
     assert np.array_equal(scenario.tasks[0].fiducials, again)
-
-
-@pytest.mark.usefixtures("unrendered")
-def test_a_skull_that_cannot_be_made_leaves_nothing_of_the_scenario(tmp_path, placed):
-    def fails():
-        raise InputError("The CT shows no bone.")
-
-    with pytest.raises(InputError, match="no bone"):
-        make_scenario(
-            HeadDraft(egg(), "made up"), placed, tmp_path / "made" / "egg", wait_for_skull=fails
-        )
-    assert not list((tmp_path / "made").iterdir())

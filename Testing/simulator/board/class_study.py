@@ -51,12 +51,7 @@ def _practice(
 
 
 def _play(
-    study: Study,
-    name: str,
-    assignment: Assignment,
-    seconds: float,
-    number: int,
-    rng: random.Random,
+    study: Study, name: str, assignment: Assignment, seconds: float, number: int, rng: random.Random
 ) -> None:
     """Store a scored trial, the trainee's `number`-th; three are played on each second day."""
     started = (FIRST_DAY + timedelta(days=2 * (number // 3), minutes=4 * (number % 3))).isoformat()

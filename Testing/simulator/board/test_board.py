@@ -13,7 +13,6 @@ from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer_simulator.board.seats import SEATS_FILE, checked_address, read_seats
 from rastrainer_simulator.net.views.access_control import BOARDS_FILE
 from rastrainer_simulator.presentation.messages import Seat, SeatNews
-from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from Testing.simulator.board.conftest import PIN, WatchedSimulator
 from Testing.simulator.net.views.served import HELLO, request
 
@@ -197,9 +196,7 @@ def live(board, seat, first):
         async with (
             aiohttp.ClientSession() as session,
             session.ws_connect(
-                f"{board.url}/seat/{seat}/stream",
-                protocols=["rastrainer.views.1"],
-                headers=headers,
+                f"{board.url}/seat/{seat}/stream", protocols=["rastrainer.views.1"], headers=headers
             ) as socket,
         ):
             await socket.send_str(json.dumps(first))
@@ -280,20 +277,6 @@ def test_a_seat_that_sends_invalid_values_is_not_shown(name, value):
         checked_seat({**good_seat(), name: value})
 
 
-@pytest.mark.parametrize("language", LANGUAGES)
-def test_a_seat_is_shown_in_every_language(language):
-    texts = Texts(LANGUAGES[language])
-    said = {
-        "task": texts.say("task.task-1"),
-        "instruction": texts.say("start", trainee="P07", point="3"),
-        "warnings": [texts.say("warning.pressing", depth=1.5), texts.say("warning.slicer")],
-        "assignments": texts.say("assignments.next in brief", assignment="1", progress="5 %"),
-        "language": language,
-    }
-    seat = {**good_seat(), **said}
-    assert checked_seat(seat) == seat
-
-
 def test_a_seat_with_too_many_warnings_shows_the_first_and_an_incomplete_one_is_refused():
     shown = checked_seat({**good_seat(), "warnings": [str(n) for n in range(1000)], "new": 1})
     assert (len(shown["warnings"]), "new" in shown) == (8, False)
@@ -302,8 +285,7 @@ def test_a_seat_with_too_many_warnings_shows_the_first_and_an_incomplete_one_is_
 
 
 @pytest.mark.parametrize(
-    "content",
-    ["[]", '{"seats": [{}]}', '{"seats": 7}', "{", '{"seats": [{"id": "../../x"}]}', ""],
+    "content", ["[]", '{"seats": [{}]}', '{"seats": 7}', "{", '{"seats": [{"id": "../../x"}]}', ""]
 )
 def test_a_damaged_list_of_seats_is_named(tmp_path, content):
     (tmp_path / SEATS_FILE).write_text(content, encoding="utf-8")

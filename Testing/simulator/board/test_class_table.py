@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import re
 import shutil
-import sqlite3
 import time
 from pathlib import Path
 
 import pytest
 
-from rastrainer.errors import InputError
 from rastrainer.json_records import record_to_json
 from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
-from rastrainer.study.database.database import LockWait, StudyBusyError
+from rastrainer.study.database.database import LockWait
 from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.board.class_table import ClassReader, class_table
@@ -74,17 +72,6 @@ def test_the_table_is_that_of_the_report(study):
     assert shown == [[name, reached, *cells] for name, _n, reached, *cells in report]
 
 
-def test_a_reached_cell_shows_when_and_an_open_one_its_progress(reader):
-    (table,) = tables(reader)
-    for row in table["trainees"]:
-        assert row["reached"] == sum(cell["state"] == "reached" for cell in row["cells"])
-        for cell in row["cells"]:
-            assert (cell["state"] == "reached") == bool(cell["reachedUtc"])
-            assert 0 <= cell["done"] <= cell["needed"]
-    days = {cell["reachedUtc"][:8] for row in table["trainees"] for cell in row["cells"]}
-    assert days == {"", "2026-11-"}
-
-
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_the_table_uses_the_words_that_trainees_read(reader, language):
     say = Texts(LANGUAGES[language]).say
@@ -95,10 +82,7 @@ def test_the_table_uses_the_words_that_trainees_read(reader, language):
         for cell in row["cells"]
         if cell["state"] != "open"
     }
-    assert words == {
-        "reached": say("assignments.reached"),
-        "locked": say("assignments.locked"),
-    }
+    assert words == {"reached": say("assignments.reached"), "locked": say("assignments.locked")}
     labels = [column["label"] for column in table["assignments"]]
     assert labels[0] == say("task.task-1")
     assert labels[3] == f"{say('task.task-3')} · {say('method.surface')}"
@@ -134,23 +118,6 @@ def test_reading_blocks_no_seat_and_no_seat_blocks_reading(reader, study):
             assert "T100" in reader.read()
     reader.read()
     assert study.read_bytes() != before
-
-
-def test_a_locked_study_is_reported_and_read_once_it_is_free(study, monkeypatch):
-    monkeypatch.setattr("rastrainer_simulator.board.class_table.LOCK_WAIT_S", 0.01)
-    reader, other = ClassReader(study), sqlite3.connect(study, isolation_level=None)
-    other.execute("BEGIN EXCLUSIVE")
-    with pytest.raises(StudyBusyError, match="has locked the study"):
-        reader.read()
-    other.close()
-    assert list(reader.read()) == NAMES
-    reader.close()
-
-
-def test_more_trainees_than_a_table_can_show_are_reported(reader, monkeypatch):
-    monkeypatch.setattr("rastrainer_simulator.board.class_table.MOST_TRAINEES", 3)
-    with pytest.raises(InputError, match="4 active trainees, and a table shows at most 3: archive"):
-        reader.read()
 
 
 def until(board, is_wanted):

@@ -7,9 +7,9 @@ import re
 import shutil
 import subprocess
 import sys
+import tracemalloc
 import uuid
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -29,7 +29,6 @@ from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.ratings import FORMS
 from rastrainer_simulator.cli.export import FORMATS
 from rastrainer_simulator.cli.main import command_parser, main, read_commands, run_command
-from rastrainer_simulator.cli.replays import _summary
 from rastrainer_simulator.export.xapi import HOME_PAGE
 from rastrainer_simulator.ops.instructor_pin import PIN_WORDS
 from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record, make_traced
@@ -88,13 +87,6 @@ def test_register_pairs_by_label_and_prints_the_registration_as_json(kind, files
     assert low < result["expected_tre"]["expected_mm"] < high
 
 
-def test_register_pairs_by_order_where_labels_are_left_out(files, tmp_path, run_json):
-    moving, fixed, _, fixed_file = files
-    unlabeled = write_csv(tmp_path / "unlabeled.csv", moving)
-    result = run_json("register", unlabeled, fixed_file)
-    assert result["fre_mm"] == pytest.approx(register(moving, fixed).fre_mm)
-
-
 def test_register_leaves_out_what_is_deselected_in_slicer_and_says_so(files, run_json, capsys):
     moving, fixed, moving_file, fixed_file = files
     content = json.loads(fixed_file.read_bytes())
@@ -121,27 +113,10 @@ def test_register_reports_warnings_in_json_and_as_text(files, tmp_path, run_json
     assert f"Warning: {warning['message']}" in capsys.readouterr().out
 
 
-def test_register_expects_more_error_far_from_the_fiducials(files, run_json):
-    _, fixed, moving_file, fixed_file = files
-    center = run_json("register", moving_file, fixed_file)["expected_tre"]
-    np.testing.assert_allclose(center["target_mm"], fixed.mean(axis=0))
-    far = run_json("register", moving_file, fixed_file, "--target", "-200", "0", "0")
-    assert far["expected_tre"]["target_mm"] == [-200, 0, 0]
-    assert far["expected_tre"]["expected_mm"] > 2 * center["expected_mm"]
-
-
 def test_register_of_four_points_by_affine_says_nothing_about_targets(files, tmp_path, run_json):
     moving, fixed, *_ = files
     few = [write_csv(tmp_path / f"{i}.csv", points[:4]) for i, points in enumerate((moving, fixed))]
     assert run_json("register", *few, "--type", "affine")["expected_tre"] is None
-
-
-def test_register_prints_a_table_with_units(files, capsys):
-    run("register", *files[2:])
-    text = capsys.readouterr().out
-    assert "Rigid registration of 15 pairs of points" in text
-    assert "Residual (mm)" in text
-    assert "it does not predict the error at a target" in text
 
 
 def test_score_reproduces_the_published_tables(run_json):
@@ -165,15 +140,6 @@ def test_score_and_report_print_the_same_score_of_every_task(tmp_path, capsys):
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert len(scores) == 10
     assert [score for score in scores if f">{score}</td>" not in page] == []
-
-
-def test_a_mean_time_without_a_mode_counts_for_all(tmp_path, run_json):
-    result = run_json("score", STUDY, "--mean-ct", "120")
-    assert (result["hmd"]["mean_ct"], result["desktop"]["mean_ct"]) == (120, 120)
-    noted = run_json("score", STUDY)
-    assert noted["desktop"]["mean_ct"] == 129.42
-    own = run_json("score", shutil.copy(STUDY, tmp_path))
-    assert own["desktop"]["mean_ct"] == pytest.approx(129.435)
 
 
 def options_of(parser, name="rastrainer"):
@@ -232,31 +198,6 @@ def test_values_in_the_list_of_commands_are_those_of_the_product():
     assert f"Asks for a PIN of {PIN_WORDS}" in read_commands()["instructor-pin"].description
 
 
-def test_what_is_measured_of_a_replayed_trial_stands_apart_from_its_name():
-    measured = {"unintended_contact_time_s": 0.0, "path_mm": 1234.5}
-    report = SimpleNamespace(
-        trial_id="", ticks=1, compared={}, difference="", changed_versions={}, motion=measured
-    )
-    lines = _summary("intact", report).splitlines()
-    assert lines[-2].split() == ["unintended_contact_time_s", "0"]
-    assert lines[-1].split() == ["path_mm", "1234.5"]
-
-
-def test_statistics_undefined_for_a_single_trial_are_null(tmp_path, run_json):
-    path = tmp_path / "one.csv"
-    path.write_text("mode,subject,task,ct,rmse\ndesktop,a,task-1,100,1\n")
-    result = run_json("score", path)["desktop"]
-    assert (result["overall"], result["sd_sample"], result["pearson_r"]) == (100, None, None)
-
-
-def test_score_prints_tables_and_the_warning(capsys):
-    assert run("score", STUDY) == 0
-    text = capsys.readouterr().out
-    assert "hmd: 20 trials, mean CT 126.175 s, best RMSE 1.10 mm" in text
-    assert "CTPS rises with a slower completion" in text
-    text.encode("ascii")
-
-
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
@@ -276,13 +217,6 @@ def test_bad_input_is_reported_in_one_sentence(words, sentence):
     assert "\n" not in str(caught.value)
 
 
-def test_lists_that_do_not_pair_are_refused(files, tmp_path):
-    moving, _, _, fixed_file = files
-    other = write_csv(tmp_path / "other.csv", moving, [f"F-{i}" for i in range(15)])
-    with pytest.raises(InputError, match=r"paired by their labels, but F-0, .* and 1, 2"):
-        run("register", other, fixed_file)
-
-
 @pytest.mark.parametrize("name", ["bad.csv", "bad.mrk.json"])
 @pytest.mark.parametrize(
     "content", [b"", b"\0" * 100, b"{", b"\xff\xfe", b"label,x,y,z\n1,nan,2,3\n"]
@@ -299,15 +233,17 @@ def test_bad_files_give_status_2_and_one_line(content, name, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("name", ["zeros.csv", "zeros.mrk.json"])
-def test_the_program_refuses_a_gigabyte_of_zeros_unread(name, tmp_path):
+def test_a_gigabyte_of_zeros_is_refused_unread(name, tmp_path, capsys):
     path = tmp_path / name
     with path.open("wb") as file:
         file.truncate(2**30)
-    program = [sys.executable, "-m", "rastrainer_simulator.cli.main", "register", path, path]
-    ended = subprocess.run(program, capture_output=True, text=True, check=False)
-    assert ended.returncode == 2
-    assert ended.stderr.count("\n") == 1
-    assert "larger than 4 MiB" in ended.stderr
+    tracemalloc.start()
+    try:
+        assert main(["register", str(path), str(path)]) == 2
+        assert tracemalloc.get_traced_memory()[1] < 2**24
+    finally:
+        tracemalloc.stop()
+    assert "larger than 4 MiB" in capsys.readouterr().err
 
 
 SHIPPED = Path(__file__).parents[3] / "assets" / "studies" / "published-protocol.json"

@@ -10,13 +10,11 @@ from rastrainer import transforms
 from rastrainer.files.ply import write_point_cloud
 from rastrainer.files.point_files import read_points, write_markups
 from rastrainer.files.point_list import PointList
-from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
-from rastrainer.protocol import RegistrationMethod
+from rastrainer.head.mesh import read_head_mesh
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.database.study import Study
 from rastrainer.trial.analysis import RevealedTruth
 from rastrainer_simulator.cli.main import main
-from rastrainer_simulator.virtual.method_trials import MethodStudy
 from Testing.domain.trial.trial_records import make_record
 from Testing.simulator.landmarked import LANDMARKS, OVER_THE_FACE, on_skin, write_landmarked
 
@@ -79,16 +77,6 @@ def test_a_scenario_is_compared_by_every_method_with_text_csv_json_and_a_picture
     assert "they do not show which is better" in text
 
 
-def test_the_same_seed_gives_the_same_trial_and_screws_do_not_move_with_the_skin(landmarked):
-    scenario = load_scenario(landmarked)
-    still, moved = (MethodStudy(scenario, "task-1", shift) for shift in (0.0, 2.0))
-    screws, markers = RegistrationMethod.BONE_SCREWS, RegistrationMethod.FIDUCIALS
-    again = MethodStudy(scenario, "task-1", 2.0).trial(markers, 5)
-    assert np.array_equal(again.matrix, moved.trial(markers, 5).matrix)
-    assert not np.allclose(again.matrix, still.trial(markers, 5).matrix)
-    assert np.array_equal(still.trial(screws, 5).matrix, moved.trial(screws, 5).matrix)
-
-
 def test_a_study_is_registered_by_every_method_that_its_trials_allow(
     landmarked, traced, tmp_path, capsys
 ):
@@ -143,54 +131,6 @@ def test_a_traced_surface_is_registered_from_any_file(files, landmarked, traced,
     assert content["rms_mm"] < 0.05
     low, high = content["expected_tre"]["interval_mm"]
     assert low < content["expected_tre"]["expected_mm"] < high
-
-
-def test_a_match_is_reported_with_units_and_a_note_that_its_residual_is_not_its_error(
-    files, landmarked, capsys
-):
-    assert matched(files, landmarked) == 0
-    printed = capsys.readouterr().out
-    assert "mm expected at" in printed
-    assert "does not mean a small error" in printed
-
-
-def few(trace):
-    return trace[:10]
-
-
-def far(trace):
-    return trace + np.array([300.0, 0.0, 0.0])
-
-
-def in_one_place(trace):
-    return trace[0] + np.random.default_rng(0).normal(0.0, 1.0, trace.shape)
-
-
-@pytest.mark.parametrize(
-    ("spoil", "said"),
-    [
-        (few, "needs 30 to"),
-        (far, "mm off the head"),
-        (in_one_place, "stays in one place"),
-    ],
-)
-def test_a_trace_that_cannot_be_matched_is_reported_in_one_sentence(
-    files, landmarked, traced, capsys, spoil, said
-):
-    write_point_cloud(files / "trace.ply", spoil(traced[2]), "World")
-    assert matched(files, landmarked) == 2
-    printed = capsys.readouterr().err
-    assert said in printed
-    assert printed.count("\n") == 1
-
-
-def test_an_open_or_foreign_mesh_is_reported_in_one_sentence(files, landmarked, capsys):
-    head = read_head_mesh(landmarked / "head.ply")
-    write_head_mesh(files / "open.ply", HeadMesh(head.vertices, head.triangles[1:]))
-    assert matched(files, landmarked, head=files / "open.ply") == 2
-    assert "holes" in capsys.readouterr().err
-    assert matched(files, landmarked, head=files / "trace.ply") == 2
-    assert "whether it is in RAS or LPS" in capsys.readouterr().err
 
 
 def test_a_surface_match_takes_no_weights_and_needs_a_head(files, landmarked, capsys):

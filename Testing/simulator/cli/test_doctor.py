@@ -121,16 +121,6 @@ def test_slicer_and_its_extension_are_found_or_missed(no_slicer):
     assert verdicts(answers(doctor.check_slicer)) == [OK, OK]
 
 
-def test_a_slicer_older_than_5_10_is_reported(no_slicer):
-    for name in ("Slicer-5.8.1-linux-amd64", "Slicer-5.10.0-linux-amd64", "Slicer"):
-        (no_slicer / name).mkdir()
-        (no_slicer / name / "Slicer").touch()
-    found = [each for each in answers(doctor.check_slicer) if "is older than" in each[1]]
-    ((verdict, sentence),) = found
-    assert verdict == WARNING
-    assert "Slicer-5.8.1" in sentence
-
-
 def test_a_folder_is_checked_for_write_permission_and_free_space(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("notes")
     folders = {"records": tmp_path / "a" / "b", "config": tmp_path / "file" / "c"}

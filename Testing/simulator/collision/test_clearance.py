@@ -37,15 +37,6 @@ def test_anything_far_away_is_hardly_ever_checked():
     assert far < 0.05 * COUNT * TICKS
 
 
-def test_all_distances_are_due_once_something_else_has_moved():
-    bounds = DistanceBounds(3)
-    for row in bounds.due(0.0):
-        bounds.put_off(row, 9.0, 0.0)
-    assert bounds.due(1.0) == []
-    bounds.forget()
-    assert bounds.due(1.0) == [0, 1, 2]
-
-
 def test_a_distance_that_two_moving_parts_close_is_due_after_half_of_it():
     bounds = DistanceBounds(1, closing=2.0)
     bounds.due(0.0)

@@ -150,35 +150,6 @@ def test_the_arms_distance_to_itself_matches_brute_force(collision):
     assert overlapping > 0
 
 
-def test_a_folded_arm_runs_into_its_own_base(collision):
-    q = np.radians([0.0, 120.0, 0.0, 120.0, 0.0, -30.0, 0.0])
-    folded = [
-        collision.check(KINEMATICS.links(q * share)).self_m for share in np.linspace(0.0, 1.0, 50)
-    ]
-    assert folded[0] == FAR
-    assert min(folded) < FAR
-
-
-def test_the_distance_to_the_table_is_the_height_of_the_tip_above_it(head, head_to_world):
-    far_away = head_to_world.copy()
-    far_away[:3, 3] = (-0.5, 0.5, 0.3)
-    for table_height in (0.0, -0.05):
-        collision = placed(head, far_away, table_height=table_height)
-        for above in (0.09, 0.02, 0.0, -0.01):
-            q = posture((0.55, 0.1, table_height + above), (0.0, 0.0, -1.0))
-            found = collision.check(KINEMATICS.links(q))
-            assert found.table_m == pytest.approx(above, abs=1e-9)
-
-
-def test_a_link_can_be_nearest_to_the_table(collision):
-    links = KINEMATICS.links(np.radians([165.0, 118.0, 0.0, 30.0, 0.0, 0.0, 0.0]))
-    found, posed = collision.check(links), ARM.pose(links)
-    heights = posed.ends[:, :, 2].min(axis=1) - ARM.radii
-    nearest = np.where(ARM.joints > 0, heights, np.inf).argmin()
-    assert found.table_m == pytest.approx(heights[nearest], abs=1e-9)
-    assert ARM.names[nearest] == "iiwa_link_3"
-
-
 def test_the_heads_stand_is_an_upright_column_under_its_base(head):
     raised = at(head[0], (0.5, 0.0, 0.45))
     collision = placed(head, raised, stand_radius=0.03)
@@ -191,30 +162,6 @@ def test_the_heads_stand_is_an_upright_column_under_its_base(head):
         q = posture((x, y - 0.03 - gap, 0.2), (0.0, 1.0, 0.0))
         found = collision.check(KINEMATICS.links(q))
         assert found.table_m == pytest.approx(gap + behind, abs=0.002)
-
-
-def test_a_stand_of_zero_height_is_no_obstacle(head):
-    sunk = at(head[0], (0.5, 0.0, 0.05))
-    collision = placed(head, sunk)
-    q = posture((0.5, 0.2, 0.3), (0.0, 0.0, -1.0))
-    assert collision.check(KINEMATICS.links(q)).table_m == FAR
-
-
-def test_head_and_arm_moved_together_keep_their_clearance(head):
-    turn = np.radians(40.0)
-    about_base = np.eye(4)
-    about_base[:2, :2] = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]
-    pose = at(head[0], CENTER)
-    q = np.array(posture((0.5, 0.0, 0.4), (0.0, 0.0, -1.0)))
-    before = placed(head, pose).check(KINEMATICS.links(q))
-    after = placed(head, about_base @ pose).check(KINEMATICS.links(q + np.eye(7)[0] * turn))
-    assert after.tip_m == pytest.approx(before.tip_m, abs=1e-9)
-    assert after.shaft_m == pytest.approx(before.shaft_m, abs=1e-9)
-    assert after.links_m == pytest.approx(before.links_m, abs=1e-9)
-    turned = about_base[:3, :3] @ before.tip.point
-    np.testing.assert_allclose(after.tip.point, turned, rtol=0, atol=1e-9)
-    turned = about_base[:3, :3] @ before.tip.normal
-    np.testing.assert_allclose(after.tip.normal, turned, rtol=0, atol=1e-6)
 
 
 def test_earlier_queries_do_not_change_an_answer_by_a_single_bit(head, head_to_world, collision):
@@ -242,25 +189,6 @@ def test_the_quick_clearance_check_agrees_with_the_computed_clearances(
             assert quick.is_clear(links, clearance) == is_clear
             said.append(is_clear)
     assert 0.1 < np.mean(said) < 0.9
-
-
-def test_a_head_that_has_moved_is_measured_again(head, head_to_world, collision):
-    links = KINEMATICS.links(ROBOT.home)
-    before = collision.check(links)
-    collision.set_head_pose(at(head[0], (0.5, 0.3, 0.2)))
-    assert collision.check(links) != before
-    collision.set_head_pose(head_to_world)
-    assert collision.check(links) == before
-
-
-def test_above_the_head_the_tip_is_the_nearest_part(head, collision):
-    x, y, z = CENTER
-    over = (x, y, z + np.ptp(head[0][:, 2]) / 2.0 + 0.03)
-    above = collision.check(KINEMATICS.links(posture(over, (0.0, 0.0, -1.0))))
-    assert above.tool_m == above.tip_m
-    assert above.shaft is None
-    assert above.shaft_m == above.tip_m
-    assert above.tip_m < min(above.links_m, above.self_m, above.table_m)
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from Testing.simulator.collision.brute_force import (
     segment_to_triangles,
     vtk_distance,
 )
-from Testing.simulator.collision.heads_and_arms import ball, box, bumpy_head, together
+from Testing.simulator.collision.heads_and_arms import ball, bumpy_head
 
 MICROMETER = 1e-6
 
@@ -53,24 +53,6 @@ def test_the_distance_of_a_point_matches_brute_force(bumpy):
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
 
 
-def test_the_distance_to_a_ball_follows_from_its_radius():
-    surface = HeadSurface(*ball(0.1, 5))
-    for distance in (-0.09, -0.05, -1e-3, 1e-3, 0.2):
-        direction = np.array([0.48, -0.6, 0.64])
-        found = surface.nearest_to_point(tuple((0.1 + distance) * direction))
-        assert found.distance_m == pytest.approx(distance, abs=4e-5)
-        np.testing.assert_allclose(found.normal, direction, atol=0.04)
-        np.testing.assert_allclose(found.point, 0.1 * direction, atol=4e-3)
-
-
-def test_the_sign_is_right_inside_outside_and_at_every_feature(bumpy):
-    points = np.concatenate([around(bumpy[0], 800, 4), near(*bumpy, 1600, 5)])
-    truth = np.array(list(map(vtk_distance(*bumpy), points)))
-    np.testing.assert_allclose(
-        distances(HeadSurface(*bumpy), points), truth, rtol=0, atol=MICROMETER
-    )
-
-
 def test_the_sign_is_right_on_the_default_head(scenario):
     mesh = read_head_mesh(scenario.head)
     head = mesh.vertices / MM_PER_M, mesh.triangles
@@ -88,13 +70,6 @@ def test_the_normal_points_where_the_clearance_grows(bumpy):
         farther = surface.nearest_to_point(tuple(point + 1e-7 * np.array(here.normal)))
         assert farther.distance_m - here.distance_m == pytest.approx(1e-7, abs=1e-12)
         assert np.linalg.norm(here.normal) == pytest.approx(1.0)
-
-
-def test_a_point_on_the_surface_has_the_outward_normal():
-    surface = HeadSurface(*box((0.2, 0.2, 0.2), (0.0, 0.0, 0.0)))
-    on_top = surface.nearest_to_point((0.03, 0.01, 0.1))
-    assert on_top.distance_m == 0.0
-    np.testing.assert_allclose(on_top.normal, (0.0, 0.0, 1.0), atol=1e-12)
 
 
 def test_the_distance_of_a_capsule_matches_brute_force_along_its_axis():
@@ -140,13 +115,6 @@ def test_an_inside_out_surface_is_turned_outward():
     surface = HeadSurface(vertices, triangles[:, ::-1])
     assert surface.nearest_to_point((0.0, 0.0, 0.05)).distance_m < 0.0
     assert surface.nearest_to_point((0.0, 0.0, 0.2)).distance_m > 0.0
-
-
-def test_several_bodies_can_be_one_surface():
-    bodies = together(ball(0.05, 3), box((0.02, 0.02, 0.02), (0.2, 0.0, 0.0)))
-    surface = HeadSurface(*bodies)
-    assert surface.nearest_to_point((0.2, 0.0, 0.0)).distance_m == pytest.approx(-0.01)
-    assert surface.nearest_to_point((0.2, 0.03, 0.0)).distance_m == pytest.approx(0.02)
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from rastrainer.commands import CommandName, check_arguments
-from rastrainer.errors import InputError
-from rastrainer.journal.entries import ProximityChange, Rejected
+from rastrainer.journal.entries import ProximityChange
 from rastrainer.journal.journal_file import read_journal, revealed_seed
 from rastrainer.protocol import Proximity
 from rastrainer.transforms import MM_PER_M
@@ -66,14 +65,6 @@ def tip_mm(simulation):
     return MM_PER_M * simulation.state.tool_tip_to_world[:3, 3]
 
 
-def test_without_contact_there_is_no_depth(simulation):
-    move(simulation, tip_mm(simulation) - (0.0, 0.0, -30.0))
-    assert simulation.state.proximity is not Proximity.CONTACT
-    assert simulation.state.depth == 0.0
-    do(simulation, CommandName.JOG, velocityMmS=[0, 0, -20], durationS=0.1)
-    assert all(result.state.depth == 0.0 for result in rest(simulation, 50))
-
-
 def test_a_move_beyond_the_skin_presses_as_deep_as_its_target_and_stops_there(simulation):
     move(simulation, tip_mm(simulation) - (0.0, 0.0, 2.0))
     assert simulation.state.clearance > -1e-4
@@ -81,13 +72,6 @@ def test_a_move_beyond_the_skin_presses_as_deep_as_its_target_and_stops_there(si
     assert MM_PER_M * simulation.state.depth == pytest.approx(2.0, abs=0.1)
     depth = simulation.state.depth
     assert {result.state.depth for result in rest(simulation, 50)} == {depth}
-
-
-def test_a_jog_presses_by_its_velocity_times_its_duration(simulation):
-    before = simulation.state.depth
-    do(simulation, CommandName.JOG, velocityMmS=[0, 0, -5], durationS=0.4)
-    rest(simulation, 120)
-    assert MM_PER_M * (simulation.state.depth - before) == pytest.approx(2.0, abs=0.15)
 
 
 def test_a_stick_held_down_presses_to_the_limit_and_no_farther(simulation):
@@ -115,22 +99,6 @@ def test_lifting_reduces_the_depth_and_the_end_of_contact_reports_the_maximum(si
     (left,) = (event for event in events if isinstance(event.entry, ProximityChange))
     assert left.entry.from_ is Proximity.CONTACT
     assert left.entry.depth_mm == MM_PER_M * deepest
-
-
-def test_accepted_and_refused_touches_report_their_depth(simulation):
-    move(simulation, tip_mm(simulation) - (0.0, 0.0, 1.5))
-    depth_mm = MM_PER_M * simulation.state.depth
-    (event,) = do(simulation, CommandName.CAPTURE).events
-    assert isinstance(event.entry, Rejected)
-    assert event.entry.depth_mm == depth_mm > 1.0
-
-
-def test_a_new_trial_starts_with_zero_depth(simulation):
-    for _ in range(10):
-        simulation.step(DT, DOWN)
-    assert simulation.state.depth > 0.0
-    do(simulation, CommandName.ABORT)
-    assert simulation.state.depth == 0.0
 
 
 def test_the_motion_does_not_depend_on_the_depth(shared, monkeypatch):
@@ -195,9 +163,3 @@ def test_a_forged_depth_is_detected_by_the_replay(setup, begun, seed, tmp_path, 
     found[-1]["depthMm"] += 0.5
     report = replay(written(begun, tmp_path / "forged.journal", seed), setup)
     assert "depthMm was" in report.difference
-
-
-def test_a_single_missing_depth_is_detected_by_the_replay(setup, begun, seed, tmp_path):
-    del next(entry for entry in begun if entry["kind"] == "touch")["depthMm"]
-    with pytest.raises(InputError, match="depthMm"):
-        replay(written(begun, tmp_path / "forged.journal", seed), setup)

@@ -9,7 +9,6 @@ from rastrainer_simulator.collision.clearance import FAR, SHAFT_NEAR, Clearance
 from rastrainer_simulator.collision.contact import REST
 from rastrainer_simulator.collision.head_surface import Nearest
 from rastrainer_simulator.collision.proximity import (
-    DEEPEST,
     Pressing,
     ProximitySettings,
     next_proximity,
@@ -54,33 +53,6 @@ def test_no_state_flickers_while_the_hand_trembles_at_its_threshold(edge_mm, shi
     assert changes <= 1
 
 
-def test_a_fast_tool_goes_from_free_to_contact_and_back_in_one_tick():
-    assert states([100.0, 0.0, 100.0]) == [FREE, CONTACT, FREE]
-
-
-def test_the_shaft_makes_contact_too():
-    assert next_proximity(FREE, clearance(40.0, 0.01), ProximitySettings()) is CONTACT
-    assert next_proximity(CONTACT, clearance(40.0, 0.2), ProximitySettings()) is CONTACT
-    assert next_proximity(CONTACT, clearance(40.0, 0.4), ProximitySettings()) is FREE
-
-
-def test_inside_the_head_is_contact():
-    assert states([-30.0]) == [CONTACT]
-
-
-def test_the_thresholds_are_settings():
-    settings = ProximitySettings(near=0.01, far=0.012, touching=0.0002, released=0.001)
-    assert states([15.0, 9.0, 0.5, 0.1, 0.9, 11.0, 13.0], settings) == [
-        FREE,
-        PROXIMITY,
-        PROXIMITY,
-        CONTACT,
-        CONTACT,
-        PROXIMITY,
-        FREE,
-    ]
-
-
 UP = (0.0, 0.0, 1.0)
 
 
@@ -103,12 +75,6 @@ def test_commanded_motion_into_the_skin_that_is_not_carried_out_adds_up(pressing
     assert pressing.depth == pytest.approx(0.002)
     pressing.move((0.0, 0.0, -0.0005), (0.0, 0.0, -0.0002), skin())
     assert pressing.depth == pytest.approx(0.0023)
-
-
-def test_motion_along_the_skin_is_not_pressing(pressing):
-    pressing.move((0.003, 0.001, 0.0), (0.003, 0.001, 0.0), skin())
-    pressing.move((0.003, 0.001, 0.0), ZERO, skin())
-    assert pressing.depth == 0.0
 
 
 def test_an_oblique_push_counts_by_its_component_into_the_skin(pressing):
@@ -138,12 +104,6 @@ def test_the_end_of_contact_resets_the_depth_and_the_maximum_is_kept_until_the_n
     assert (pressing.depth, pressing.deepest) == (0.0, pytest.approx(0.002))
     pressing.move((0.0, 0.0, -0.001), ZERO, skin())
     assert (pressing.depth, pressing.deepest) == (pytest.approx(0.001), pytest.approx(0.001))
-
-
-def test_the_depth_is_limited_to_ten_millimeters(pressing):
-    for _ in range(30):
-        pressing.move((0.0, 0.0, -0.0005), ZERO, skin())
-    assert pressing.depth == pressing.deepest == DEEPEST == 0.01
 
 
 def test_a_move_presses_no_farther_than_its_target(pressing):

@@ -26,24 +26,6 @@ def random_half_spaces(random, count):
     return [half_space(n, n @ inside - random.uniform(0.0, 0.5)) for n in normals]
 
 
-def test_a_goal_inside_all_planes_stays_where_it_is():
-    assert nearest_inside((1.0, 2.0, 3.0), [half_space((0, 0, 1), 3.0)]) == (1.0, 2.0, 3.0)
-    assert nearest_inside((1.0, 2.0, 3.0), []) == (1.0, 2.0, 3.0)
-
-
-def test_one_two_and_three_planes_constrain_a_goal():
-    floor, wall, front = (half_space(np.eye(3)[axis], 0.0) for axis in (2, 0, 1))
-    goal = (-1.0, -2.0, -3.0)
-    assert nearest_inside(goal, [floor]) == pytest.approx((-1.0, -2.0, 0.0))
-    assert nearest_inside(goal, [floor, wall]) == pytest.approx((0.0, -2.0, 0.0))
-    assert nearest_inside(goal, [floor, wall, front]) == pytest.approx((0.0, 0.0, 0.0))
-
-
-def test_a_duplicate_plane_constrains_like_one():
-    floor = half_space((0, 0, 1), 0.5)
-    assert nearest_inside((1.0, 1.0, -1.0), [floor, floor]) == pytest.approx((1.0, 1.0, 0.5))
-
-
 def test_planes_that_leave_no_room_have_no_point():
     gap = [half_space((0, 0, 1), 1.0), half_space((0, 0, -1), 0.0)]
     assert nearest_inside((0.0, 0.0, 0.0), gap) is None

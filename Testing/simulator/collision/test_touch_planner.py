@@ -87,16 +87,3 @@ def test_a_place_is_touchable_only_if_it_is_touchable_in_every_pose(planner, col
     in_both = touchable(planner, collision, positions, normals, [near, far])
     assert everywhere.tolist() == [True, True]
     assert in_both.tolist() == [True, False]
-
-
-def test_tool_directions_lean_from_none_to_far_on_all_sides():
-    normal = np.array([0.6, 0.0, 0.8])
-    directions = list(tool_directions(normal))
-    assert np.allclose(directions[0][1], -normal)
-    leanings = [leaning for leaning, _ in directions]
-    assert leanings == sorted(leanings)
-    vectors = np.array([direction for _, direction in directions])
-    assert np.allclose(
-        np.degrees(np.arccos(np.minimum(-vectors @ normal, 1.0))), leanings, atol=1e-5
-    )
-    assert np.allclose(vectors[-8:].mean(axis=0), -np.cos(np.radians(leanings[-1])) * normal)

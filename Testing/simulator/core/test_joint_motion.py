@@ -39,15 +39,6 @@ def go(motion, kinematics, q, target, direction=None):
     return q
 
 
-def test_the_tip_goes_exactly_to_its_target(motion, kinematics, rest):
-    q, is_within_reach = motion.toward(
-        rest, tip(kinematics, rest), (0.0003, -0.0002, 0.0001), None, DT
-    )
-    moved = np.array(tip(kinematics, q)) - tip(kinematics, rest)
-    assert is_within_reach
-    assert moved == pytest.approx((0.0003, -0.0002, 0.0001), abs=1e-9)
-
-
 def test_a_stationary_tip_moves_no_joint(motion, kinematics, rest):
     away = go(motion, kinematics, rest, np.add(tip(kinematics, rest), (0.1, 0.1, 0)))
     q, _ = motion.toward(away, tip(kinematics, away), (0.0, 0.0, 0.0), None, DT)

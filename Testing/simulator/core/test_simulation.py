@@ -16,7 +16,6 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.score_reference import fiducial_normals
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.robot.goal import FabrikSettings
 from rastrainer_simulator.state import (
     NEUTRAL_STICKS,
     Motion,
@@ -24,7 +23,6 @@ from rastrainer_simulator.state import (
     OperatorInput,
 )
 from rastrainer_simulator.teleoperation.steering import (
-    AxesChoice,
     SteeringSettings,
     ToolDirection,
     camera_axes,
@@ -140,17 +138,8 @@ def test_a_trial_does_not_depend_on_what_was_done_before_it(trial):
     assert trajectory(trial, random_inputs(2, 300)) == first
 
 
-def test_ticks_and_time_count_every_step(trial):
-    before = trial.state
-    for _ in range(10):
-        trial.step()
-    assert trial.state.tick == before.tick + 10
-    assert trial.state.sim_time == pytest.approx(before.sim_time + 10 * DT)
-    assert trial.state.elapsed == pytest.approx(11 * DT)
-
-
 def test_the_start_pose_is_clear_of_the_head_for_every_seed(idle):
-    for seed in range(25):
+    for seed in range(8):
         idle.start(seed=seed)
         assert idle.state.clearance > 0.05
         assert idle.state.proximity is Proximity.FREE
@@ -236,11 +225,6 @@ def test_a_move_into_the_head_stops_at_the_surface_and_reports_that_it_was_block
     assert trial.state.proximity is Proximity.CONTACT
 
 
-def test_a_move_out_of_reach_comes_as_near_as_the_arm_can_and_reports_it(trial):
-    trial.move_to((1200.0, 0.0, 700.0))
-    assert entries.Reach in {type(event.entry) for event in trial.events}
-
-
 @pytest.mark.parametrize("frame", ["world", "camera", "tool"])
 def test_a_jog_moves_along_the_axes_of_its_frame(trial, scenario, frame):
     camera = axes_of_the_camera(scenario)
@@ -268,11 +252,6 @@ def test_while_the_trial_is_paused_the_arm_does_not_move_and_motions_are_refused
     assert trial.state.elapsed == elapsed
     assert "resume it first" in trial.do(CommandName.JOG, velocityMmS=[1, 0, 0]).message
     assert trial.outcomes() == ["stopped"]
-
-
-def test_tasks_are_listed_with_their_titles(idle, scenario):
-    tasks = idle.do(CommandName.LIST_TASKS).data["tasks"]
-    assert [task["name"] for task in tasks] == [task.name for task in scenario.tasks]
 
 
 def test_the_camera_is_switched_and_an_event_reports_it(trial):
@@ -344,16 +323,6 @@ def test_a_simulation_continues_from_anothers_tick_time_revision_and_camera(setu
     assert state.training.revision == 7
 
 
-def test_the_sticks_follow_the_robots_axes_if_so_configured(setup):
-    settings = replace(setup.settings, axes=AxesChoice.ROBOT)
-    driver = Driver(Simulation(replace(setup, settings=settings), 1))
-    start = driver.tip
-    for _ in range(50):
-        driver.step(OperatorInput(translation=(0.0, -1.0, 0.0)))
-    assert (driver.tip - start)[0] < -0.005
-    assert (driver.tip - start)[1:] == pytest.approx([0.0, 0.0], abs=1e-6)
-
-
 def driver_with(setup, choice):
     steering = SteeringSettings(choice=choice)
     settings = SimulationSettings(teleoperation=TeleoperationSettings(steering=steering))
@@ -371,52 +340,3 @@ def test_in_direction_mode_the_tool_comes_down_along_the_surface_normal(setup):
     outward = driver.simulation.truth.head_to_world[:3, :3] @ mesh.vertex_normals[nearest]
     tool = driver.state.tool_tip_to_world[:3, 2]
     assert math.degrees(math.acos(-outward @ tool)) < 8.0
-
-
-def test_a_steered_tool_turns_about_its_tip(setup):
-    driver = driver_with(setup, ToolDirection.HELD)
-    tip, direction = driver.tip, driver.state.tool_tip_to_world[:3, 2].copy()
-    for _ in range(100):
-        driver.step(OperatorInput(rotation=(1.0, 0.0)))
-    turned = math.acos(direction @ driver.state.tool_tip_to_world[:3, 2])
-    assert turned == pytest.approx(100 * DT * SteeringSettings().coarse_turn, rel=0.01)
-    assert driver.tip == pytest.approx(tip, abs=1e-6)
-
-
-def test_in_pose_mode_the_tool_keeps_its_full_orientation_wherever_it_is_driven(setup):
-    driver = driver_with(setup, ToolDirection.POSE)
-    rotation, tip = driver.state.tool_tip_to_world[:3, :3].copy(), driver.tip
-    for stick in ((1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0), (-1.0, 1.0, -1.0)):
-        for _ in range(100):
-            driver.step(OperatorInput(translation=stick))
-    assert np.linalg.norm(driver.tip - tip) > 0.02
-    assert driver.state.tool_tip_to_world[:3, :3] == pytest.approx(rotation, abs=1e-7)
-
-
-def test_the_tolerances_of_the_inverse_kinematics_are_settings_of_the_simulation(setup):
-    impossible = SimulationSettings(fabrik=FabrikSettings(tolerance_m=1e-300))
-    driver = Driver(Simulation(replace(setup, settings=impossible), 1))
-    driver.start()
-    step = driver.step(DOWN)
-    assert [event.entry.is_within_reach for event in step.events] == [False]
-
-
-def hover(truth, label):
-    """Return a point 70 mm outside of a fiducial, as seen from the head's target."""
-    fiducial = truth.in_world(truth.fiducials_ras[label])
-    away = fiducial - truth.in_world(truth.target_ras)
-    return fiducial, fiducial + 70.0 * away / np.linalg.norm(away)
-
-
-def test_a_touch_by_moves_is_at_its_fiducial(trial):
-    truth = trial.simulation.truth
-    above = truth.in_world(truth.target_ras) + np.array([0.0, 0.0, 240.0])
-    for number in range(1, 5):
-        fiducial, outside = hover(truth, str(number))
-        trial.move_to(outside)
-        assert trial.move_to(fiducial) == "reached"
-        assert trial.do(CommandName.CAPTURE).ok
-        trial.move_to(outside)
-        trial.move_to(above)
-        touched = MM_PER_M * np.array(trial.state.training.touches[-1].position)
-        assert touched == pytest.approx(fiducial, abs=0.1)

@@ -4,7 +4,7 @@ import pytest
 
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.study.database.study import Study
-from rastrainer.trial.trial_feedback import PastTrial
+from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.export.grades import grade
 from Testing.domain.study.played_study import study_with_trials
@@ -14,7 +14,9 @@ FIDUCIALS, SURFACE = RegistrationMethod.FIDUCIALS, RegistrationMethod.SURFACE
 
 
 def past(score, acceptable=True, task="task-1", mode="desktop", method=FIDUCIALS):
-    return PastTrial("id", task, mode, 100.0, score, acceptable, method=method)
+    return TrialRow(
+        *("T-001", mode, task), values={"score": score}, acceptable=acceptable, method=method
+    )
 
 
 TRIALS = [

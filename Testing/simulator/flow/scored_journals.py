@@ -7,8 +7,7 @@ from pathlib import Path
 
 from rastrainer.journal.journal_file import NO_LINE, encode_line
 from rastrainer.json_records import record_from_json, record_to_json
-from rastrainer.trial.aborted_trial import AbortedTrial
-from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.record import AbortedTrial, TrialRecord
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.session.preferences import Preferences

@@ -9,7 +9,6 @@ import pytest
 from rastrainer.protocol import FREE, TRIAL_RUN, AssignmentState, GoalKind
 from rastrainer.study_messages import AssignmentStanding, CurriculumMessage, StudyStep
 from rastrainer_simulator.flow.pages.result import waiting_page
-from rastrainer_simulator.flow.session.assigned_training import MAX_TRAINEES, AssignedTraining
 from rastrainer_simulator.flow.session.session import REACHED_S
 from rastrainer_simulator.presentation.screen import Tone
 from Testing.simulator.flow.trainee import STEP_S
@@ -153,21 +152,6 @@ def test_the_page_closes_when_the_curriculum_ends(page, outside):
     page.until_menu("experiment")
 
 
-def test_later_updates_from_slicer_are_shown_at_once(page, outside):
-    reached = replace(TOLD.assignments[1], state=REACHED, done=3)
-    three = replace(TOLD.assignments[2], state=OPEN, missing=(), done=40)
-    assignments = (TOLD.assignments[0], reached, three)
-    outside.services.assigned.take_curriculum(replace(TOLD, next="three", assignments=assignments))
-    page.step(20)
-    assert [item.value for item in page.menu.items[:3]] == ["reached", "reached", "40 %"]
-    assert "Next: Task 3, which you have not played yet." in page.menu.paragraphs
-    assert "show competence (LC-CUSUM)" in page.item("assignment three").help
-    outside.services.assigned.take_curriculum(replace(TOLD, next="", assignments=assignments[:2]))
-    page.step(20)
-    assert page.presenter.seat().assignments == "2 of 2 reached"
-    assert "All assignments are reached." in page.menu.paragraphs
-
-
 def said(menu):
     return [(each.text, each.tone) for each in menu.presenter.screen.warnings]
 
@@ -189,13 +173,3 @@ def test_a_reached_assignment_is_announced_once_and_only_to_its_own_trainee(menu
     outside.services.assigned.take_curriculum(replace(reached, title="The same"))
     menu.step(20)
     assert said(menu) == []
-
-
-def test_of_too_many_trainees_the_oldest_is_forgotten():
-    assigned = AssignedTraining()
-    for number in range(MAX_TRAINEES + 1):
-        assigned.take_curriculum(replace(TOLD, trainee=f"P{number}"))
-    assert assigned.curricula.get("P0") is None
-    assert assigned.curricula.get("P1") is not None
-    assigned.take_curriculum(CurriculumMessage("P1"))
-    assert assigned.curricula.get("P1") is None

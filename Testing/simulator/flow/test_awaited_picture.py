@@ -6,7 +6,6 @@ import pytest
 
 from rastrainer.protocol import Phase
 from rastrainer_simulator.flow import operated_views
-from Testing.simulator.flow.trainee import Keys
 
 VIEW = 1
 """The view of the trainee's keyboard."""
@@ -66,22 +65,6 @@ def test_a_trial_whose_view_leaves_while_it_waits_stays_paused(waiting):
     waiting.step(100)
     assert waiting.state.training.phase is Phase.PAUSED
     assert "closed or lost" in waiting.presenter.screen.warnings[0].text
-
-
-def test_a_picture_that_comes_at_once_pauses_nothing(trainee):
-    trainee.presenter.on_picture(VIEW, "", 1.0)
-    assert trainee.submit("StartTask", task="task-1", trainee="P07", mode="desktop").ok
-    trainee.presenter.on_picture(VIEW, "task-1", 1.0)
-    trainee.until_menu(None)
-    trainee.step(100)
-    assert trainee.state.training.phase is Phase.RUNNING
-
-
-def test_a_view_that_says_nothing_of_its_picture_is_ready(trainee):
-    Keys(trainee, view=2, kind="page")
-    trainee.start("task-1")
-    trainee.step(100)
-    assert trainee.state.training.phase is Phase.RUNNING
 
 
 def test_the_tutorial_asks_for_nothing_before_its_picture_is_there(trainee):

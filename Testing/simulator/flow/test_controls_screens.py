@@ -7,14 +7,11 @@ import json
 import numpy as np
 import pytest
 
-from rastrainer_simulator.flow.pages.controls import controls_page
 from rastrainer_simulator.flow.running_presenter import RunningPresenter
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, DEFAULT_BINDINGS, read_bindings
-from rastrainer_simulator.input.controls import IDLE_S
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.messages import Hello
 from rastrainer_simulator.texts.texts import Texts, input_label
-from Testing.simulator.flow.trainee import STEP_S, Keys
 
 
 def tip(trainee):
@@ -64,65 +61,6 @@ def test_a_stick_held_while_a_menu_closes_does_not_move_the_arm_until_released(p
     pilot.hands.push(0.8, 0.0, 0.0, False)
     pilot.step(20)
     assert not np.array_equal(tip(pilot), still)
-
-
-def test_another_operator_takes_control_only_after_a_rest_and_through_the_menu(trainee):
-    trainee.start("task-1")
-    other = Keys(trainee, view=2, kind="page")
-    trainee.hands.push(1.0, 0.0, 0.0, False)
-    trainee.step(2)
-    other.tap("touch")
-    other.tap("menu")
-    assert trainee.presenter.control.view == 1
-    assert trainee.state.training.rejected == 0
-    assert trainee.state.training.phase == "running"
-    assert "The keyboard is in control" in trainee.presenter.screen.warnings[0].text
-    trainee.hands.push(0.0, 0.0, 0.0, False)
-    trainee.step(int(0.9 * IDLE_S / STEP_S))
-    other.tap("menu")
-    assert trainee.presenter.control.view == 1
-    trainee.step(int(0.2 * IDLE_S / STEP_S))
-    other.tap("touch")
-    assert trainee.presenter.control.view == 1
-    other.tap("menu")
-    assert trainee.presenter.control.view == 2
-    trainee.until_menu("trial")
-    trainee.hands.tap("accept")
-    trainee.step(5)
-    assert trainee.state.training.phase == "paused"
-
-
-def test_the_keyboard_and_the_gamepad_of_one_seat_share_control(pilot):
-    keys = Keys(pilot, view=1)
-    pilot.tap("down")
-    assert pilot.presenter.control.holder == "gamepad"
-    keys.tap("down")
-    assert pilot.presenter.control.holder == "keyboard"
-    pilot.tap("down")
-    assert pilot.presenter.control.holder == "gamepad"
-
-
-def test_a_view_that_leaves_stops_the_arm_and_releases_control(trainee):
-    trainee.start("task-1")
-    trainee.hands.push(1.0, 0.0, 0.0, False)
-    trainee.step(20)
-    trainee.presenter.view_left(1)
-    trainee.step()
-    still = tip(trainee)
-    trainee.step(20)
-    assert np.array_equal(tip(trainee), still)
-    assert trainee.presenter.control.holder == ""
-
-
-def test_a_view_that_no_longer_sees_the_trial_releases_control(trainee):
-    trainee.start("task-1")
-    trainee.presenter.on_visibility(1, False)
-    trainee.until_menu("trial")
-    assert trainee.presenter.control.holder == ""
-    trainee.until(lambda: trainee.menu.focus)
-    Keys(trainee, view=2, kind="page").tap("accept")
-    assert trainee.presenter.control.view == 2
-    trainee.until_menu(None)
 
 
 @pytest.mark.parametrize(
@@ -201,26 +139,6 @@ def test_a_key_already_in_use_is_exchanged_only_on_request(trainee, answer):
     assert labels == (("C", "Space") if answer == "exchange" else ("Space, Enter", "C"))
 
 
-def test_pressing_nothing_leaves_the_bindings_unchanged(trainee):
-    open_the_bindings(trainee)
-    trainee.choose("undo", "listen")
-    trainee.until_menu("bindings")
-    assert trainee.presenter.controls.bindings == DEFAULT_BINDINGS
-
-
-def test_without_a_gamepad_the_keyboard_is_explained_with_the_direction_of_each_key(presenter):
-    presenter._session.pages.open(controls_page(presenter._session))
-    menu = presenter._session.pages.menu()
-    assert menu.picture == "keyboard"
-    assert [(fact.label, fact.value) for fact in menu.facts[:3]] == [
-        ("Move forward, back", "W / S"),
-        ("Move left, right", "A / D"),
-        ("Move up, down", "R / F"),
-    ]
-    hints = presenter._flow.screen().hints
-    assert hints[1].control == "Enter"
-
-
 def test_a_plugged_in_gamepad_is_explained_before_anybody_has_acted(pilot):
     assert pilot.presenter.control.holder == ""
     pilot.step(20)
@@ -274,10 +192,6 @@ def test_a_key_has_the_name_that_is_written_on_it(code, name):
     assert input_label(Texts(), "keyboard", code, written) == name
 
 
-def test_the_hints_begin_with_the_sticks_that_move_the_tool(pilot):
-    assert first_hints(pilot) == [("Left stick", "Move"), ("Right stick up / down", "Up, down")]
-
-
 @pytest.mark.parametrize(("is_slow", "steps"), [(False, 0), (False, 5), (True, 1)])
 def test_a_tap_of_a_key_is_one_small_step_of_the_tip(trainee, is_slow, steps):
     trainee.start("task-1")
@@ -290,20 +204,6 @@ def test_a_tap_of_a_key_is_one_small_step_of_the_tip(trainee, is_slow, steps):
     presenter.on_key(1, "KeyF", False, "")
     trainee.step(20)
     assert np.linalg.norm(tip(trainee) - before) == pytest.approx(0.0002, abs=0.00005)
-
-
-def test_arrow_keys_move_the_tool_as_the_letters_do(trainee):
-    trainee.start("task-1")
-    moves = []
-    for code in ("KeyD", "ArrowRight"):
-        before = tip(trainee)
-        trainee.presenter.on_key(1, code, True, "")
-        trainee.step(30)
-        trainee.presenter.on_key(1, code, False, "")
-        trainee.step(5)
-        moves.append(tip(trainee) - before)
-    assert np.linalg.norm(moves[0]) > 0.002
-    np.testing.assert_allclose(moves[1], moves[0], atol=0.002)
 
 
 def test_the_test_screen_shows_every_stick_and_button_as_it_moves(pilot):

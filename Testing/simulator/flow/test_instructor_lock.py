@@ -89,15 +89,8 @@ def test_after_the_pin_is_typed_the_order_can_be_chosen_and_locked_again(trainee
     trainee.until(lambda: "order" not in enabled(trainee), "the items are locked")
 
 
-def test_the_pin_is_entered_by_a_gamepad(pilot):
-    open_pin(pilot)
-    enter(pilot)
-    until_unlocked(pilot)
-
-
-@pytest.mark.parametrize("kind", ["desktop", "page"])
-def test_the_pin_is_entered_by_clicks(loop, presenter, kind):
-    clicking = Trainee(loop, presenter, lambda it: Mouse(it, kind))
+def test_the_pin_is_entered_by_clicks(loop, presenter):
+    clicking = Trainee(loop, presenter, lambda it: Mouse(it, "page"))
     for menu, item in (("start", "settings"), ("settings", "unlock")):
         clicking.until_menu(menu)
         clicking.hands.click(item)
@@ -105,20 +98,6 @@ def test_the_pin_is_entered_by_clicks(loop, presenter, kind):
         clicking.hands.click(item)
     until_unlocked(clicking)
     clicking.close()
-
-
-def test_the_pin_is_entered_in_a_headset(loop, presenter):
-    class Controllers:
-        def tap(self, control):
-            presenter.on_press(PAGE, {"accept": "touch"}.get(control, control))
-            worn.step(2)
-
-    worn = Trainee(loop, presenter, lambda _it: Controllers())
-    presenter.view_joined(PAGE, Hello("headset"))
-    open_pin(worn)
-    enter(worn)
-    until_unlocked(worn)
-    worn.close()
 
 
 def test_a_wrong_pin_unlocks_nothing_and_after_five_no_pin_is_checked(trainee, outside):

@@ -15,7 +15,6 @@ from rastrainer_simulator.flow.session.preferences import (
     read_preferences,
     write_preferences,
 )
-from rastrainer_simulator.teleoperation.steering import ToolDirection
 
 
 @pytest.mark.parametrize("name", OPTIONS)
@@ -45,10 +44,6 @@ def test_only_preferences_that_affect_the_simulation_change_it(name):
     other = next(each for each in OPTIONS[name] if each != getattr(Preferences(), name))
     changed = replace(Preferences(), **{name: other}).applied_to(SimulationSettings())
     assert (changed != SimulationSettings()) is (name in OF_THE_SIMULATION)
-
-
-def test_every_way_to_steer_the_tool_can_be_chosen():
-    assert {ToolDirection(option) for option in OPTIONS["direction"]} == set(ToolDirection)
 
 
 @pytest.mark.parametrize(

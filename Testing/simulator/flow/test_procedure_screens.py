@@ -146,15 +146,7 @@ def begin(operation: Operation) -> None:
         operation.seen["procedures"].append(trainee.item("procedure").value)
     trainee.tap("left", "left")
     trainee.choose("task-1", None)
-    for kept in range(1, 16):
-        # Touches at one point could not be registered again by a replay.
-        trainee.hands.push(*np.roll((1.0, 0.0, 0.0), kept).tolist(), False)
-        trainee.step(15)
-        trainee.hands.push(0.0, 0.0, 0.0, False)
-        trainee.tap("touch")
-        trainee.until(lambda k=kept: trainee.touched == k, f"touch {kept}")
-    trainee.until(lambda: trainee.state.training.phase is Phase.COMPLETE, "the last touch")
-    trainee.step(2)
+    trainee.touch_anywhere()
     trainee.tap_until("touch", "complete")
     trainee.choose("register")
     trainee.until(lambda: trainee.state.training.phase is Phase.VERIFYING, "the verification")

@@ -12,7 +12,6 @@ from rastrainer.protocol import FREE
 from rastrainer.study_messages import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.input import controls
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.presentation.messages import Hello, InstructorOrder
 from rastrainer_simulator.replay import recorded_trial
@@ -141,14 +140,6 @@ def test_the_view_of_the_errors_is_turned_by_keys_and_gamepad_and_closed_by_a_cl
     control.reset()
 
 
-def test_a_replay_is_closed_by_a_click(result):
-    result.show_again()
-    items = [hint.item for hint in result.presenter.screen.hints]
-    assert items == ["press accept", "", "press up", "press camera", "back"]
-    result.presenter.on_item(1, "back")
-    result.until_menu("result")
-
-
 def test_the_worst_touch_is_shown_from_where_it_is_seen_best(result):
     view = result.presenter._session.view
     view.control.reset()
@@ -219,40 +210,6 @@ def test_a_teacher_starts_and_pauses_a_replay(result):
     stands = result.replay.tick
     result.step(50)
     assert result.replay.tick == stands
-
-
-def test_sticks_and_touches_do_not_affect_the_arm_during_a_replay(result):
-    result.show_again()
-    arm = result.state.q
-    result.hands.push(1, 1, -1, False)
-    result.step(50)
-    result.hands.push(0, 0, 0, False)
-    result.tap("touch")
-    result.step(50)
-    assert result.state.q == arm
-
-
-def test_only_the_holder_of_control_steers_the_replay_until_another_takes_over(result, monkeypatch):
-    # The trial would be over after the usual rest.
-    monkeypatch.setattr(controls, "IDLE_S", 2.0)
-    presenter = result.presenter
-    presenter.view_joined(PAGE, Hello("page"))
-    result.show_again()
-    result.pad(A)
-    result.step(20)
-    assert "Paused" not in presenter.screen.status
-    assert "is in control" in presenter.screen.warnings[-1].text
-    result.step(300)
-    result.pad(START)
-    result.pad(A)
-    result.step(20)
-    assert "Paused" in presenter.screen.status
-    result.pad(X)
-    result.step(20)
-    assert "the worst touch" in presenter.screen.instruction.text
-    result.pad(B)
-    result.until_menu("result")
-    presenter.view_left(PAGE)
 
 
 def test_a_headset_steps_through_a_replay_by_stick_and_leaves_with_the_back_button(result):

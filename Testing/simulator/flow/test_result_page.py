@@ -6,7 +6,7 @@ import pytest
 
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.presentation.screen import Tone
-from Testing.simulator.flow.conftest import Outside, put_back
+from Testing.simulator.flow.conftest import Outside
 from Testing.simulator.flow.trainee import RATE_HZ, Keys, Trainee
 
 REGISTRATION = {
@@ -17,17 +17,16 @@ REGISTRATION = {
 
 
 @pytest.fixture(scope="module")
-def registered(shared, tmp_path_factory):
+def registered(simulation, tmp_path_factory):
     """Return a trainee who waits for the score of a trial that was played."""
     folder = tmp_path_factory.mktemp("played")
-    put_back(shared)
-    with ControlLoop(shared, folder / "records", rate_hz=RATE_HZ, speed=None) as loop:
+    with ControlLoop(simulation, folder / "records", rate_hz=RATE_HZ, speed=None) as loop:
         presenter = Outside(folder).presenter(loop)
         trainee = Trainee(loop, presenter, Keys)
         trainee.records = folder / "records"
         trainee.until_menu("start")
         trainee.start("task-1")
-        trainee.play("task-1")
+        trainee.touch_anywhere()
         trial = trainee.register()
         assert trainee.submit("SubmitRegistration", trialId=trial, **REGISTRATION).ok
         yield trainee
@@ -92,10 +91,6 @@ def test_the_headline_says_whether_the_mark_is_reached(result_of, mark, title, t
     assert (menu.title, facts_of(menu)["Score"].tone) == (title, tone)
 
 
-def test_a_score_without_the_error_in_the_brain_has_no_line_for_it(result_of):
-    assert "True error in the brain (TRE)" not in facts_of(result_of())
-
-
 BEYOND = {
     "inaccurate": (
         {"isAccurate": False, "regionTreMm": 1.6},
@@ -143,12 +138,6 @@ def test_a_procedure_beyond_its_limits_is_not_passed(result_of):
     menu = result_of(**WITHIN, procedure={"score": 31.0, "acceptable": False}, passMark=70.0)
     assert menu.title == "P07, Task 1: not passed"
     assert not any(fact.tone is Tone.GOOD for fact in menu.facts)
-
-
-def test_trainees_read_no_terms_of_statistics(result_of):
-    menu = result_of(**WITHIN, ctps=-54.5, passMark=70.0)
-    said = " ".join((menu.title, *menu.paragraphs, *(fact.label for fact in menu.facts)))
-    assert not any(term in said for term in ("CTPS", "CUSUM", "independent, unbiased"))
 
 
 def test_the_worst_point_is_practiced_again_and_nothing_is_recorded(registered, result_of):

@@ -5,7 +5,6 @@ from pathlib import Path
 import pytest
 
 from rastrainer.scenario.library import ListedScenario
-from rastrainer_simulator.flow.session.chosen_trial import start_task
 from rastrainer_simulator.server.scenario_loader import FAILED
 from rastrainer_simulator.state import Answer
 from rastrainer_simulator.texts.texts import ENGLISH, LANGUAGES
@@ -102,17 +101,3 @@ def test_nothing_begins_in_the_menus_while_a_client_loads_a_head(at_heads):
     assert [warning.text for warning in at_heads.presenter._flow.screen().warnings] == [LOADING]
     at_heads.loop.end_replacement()
     at_heads.until(lambda: at_heads.item("tutorial").is_enabled, "the tutorial may begin")
-
-
-def test_a_trial_refused_while_a_head_is_being_loaded_says_so_in_the_trainees_language(
-    at_heads,
-):
-    session = at_heads.presenter._session
-    session.prefer(language="de")
-    begun = at_heads.loop.begin_replacement()
-    at_heads.until(begun.done)
-    start_task(session, "trial-run")
-    at_heads.until(lambda: at_heads.presenter.screen.warnings, "the reason")
-    (warning,) = at_heads.presenter.screen.warnings
-    assert warning.text == LANGUAGES["de"]["being set up"]
-    at_heads.loop.end_replacement()

@@ -82,8 +82,3 @@ def test_the_task_menu_shows_the_trend_and_describes_it_in_words(loop, outside, 
     assert (menu.trend.scores, menu.trend.mark) == (SCORES, 70.0)
     assert menu.paragraphs[0].endswith(sentence)
     assert "38, 52, 47, 67, 71, 69, 88" in menu.trend.text
-
-
-def test_a_trainee_without_scores_is_shown_no_plot(loop, outside):
-    menu = task_menu(loop, outside.services, scores=()).menu
-    assert (menu.trend, menu.paragraphs) == (None, ())

@@ -79,14 +79,6 @@ def test_settings_are_not_lost_if_a_client_was_faster(process, reason):
     assert not process.reload.is_under_way
 
 
-def test_the_newest_settings_apply_if_a_client_was_faster(process):
-    process.reload.request(PRESENT, NEW)
-    process.advance()
-    process.reload.request(PRESENT, NEWER)
-    process.answer(TRIAL_IS_OPEN)
-    assert process.names == [NEW, NEWER]
-
-
 def test_settings_that_cannot_be_used_are_not_tried_again(process):
     process.reload.request(PRESENT, NEW)
     process.advance()

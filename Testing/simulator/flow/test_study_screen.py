@@ -158,23 +158,6 @@ def test_a_questionnaire_is_answered_line_by_line_and_submitted_only_when_comple
     )
 
 
-@pytest.mark.parametrize(
-    ("language", "performance", "effort"),
-    [
-        ("en", "4. Performance: 0 is perfect, 100 is failure", "5. Effort"),
-        ("de", "4. Leistung: 0 = perfekt, 100 = Misserfolg", "5. Anstrengung"),
-    ],
-)
-def test_the_performance_line_says_that_its_ends_differ_from_the_others(
-    menu, guide, language, performance, effort
-):
-    session = menu.presenter._session
-    session.prefer(language=language)
-    tell(menu, guide, replace(SUS, questionnaire="nasa-tlx"))
-    menu.choose("answer", "questionnaire")
-    assert [item.label for item in menu.menu.items[3:5]] == [performance, effort]
-
-
 def test_answers_wait_until_slicer_moves_on_and_are_then_forgotten(guide):
     guide.take_step(SUS)
     guide.answer("P07", [3] * 10)
@@ -189,13 +172,6 @@ def test_a_form_closes_when_the_study_moves_on_without_it(form, guide):
     guide.take_step(TASK_2)
     form.until_menu("experiment")
     assert enabled(form) == ["task-2"]
-
-
-def test_a_questionnaire_unknown_to_this_version_is_reported(menu, guide):
-    tell(menu, guide, replace(SUS, questionnaire="dance"))
-    menu.choose("answer")
-    menu.step(20)
-    assert any("There is no questionnaire" in w.text for w in menu.presenter.screen.warnings)
 
 
 def test_a_break_counts_down_from_the_elapsed_time_slicer_sent():

@@ -122,15 +122,6 @@ def test_without_guidance_only_the_trace_is_shown(trainee):
     assert not trainee.presenter.screen.has_arrow
 
 
-def test_guidance_fades_from_task_to_task_as_for_fiducials(trainee):
-    prefer(trainee, "fading")
-    landmarks_touched(trainee, "task-2")
-    trainee.until(lambda: guidance(trainee).next_place is not None, "the next place")
-    assert trainee.submit("Abort").ok
-    landmarks_touched(trainee, "task-3")
-    assert guidance(trainee) == TraceGuidance()
-
-
 def test_landmarks_strokes_and_the_registration_are_made_with_the_trainees_controls(trainee):
     start = {"task": "task-1", "trainee": "P07", "method": "surface"}
     assert trainee.submit("StartTask", **start).ok

@@ -21,7 +21,6 @@ from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.state import TOUCH_ERRORS
 from rastrainer_simulator.training.rules import PRESSED_MM
-from rastrainer_simulator.training.training import REFUSAL_S
 from Testing.simulator.flow.learner import FlowLearner
 from Testing.tutorial_player import TutorialPlayer
 
@@ -159,15 +158,6 @@ def test_controls_not_yet_taught_do_nothing(learner):
     assert "error" not in learner.watcher.kinds
 
 
-def test_a_touch_that_does_not_count_says_why(learner):
-    go_to_step(learner, TutorialStep.LOWER)
-    learner.tap("touch")
-    learner.until(lambda: "Too far from point 1" in instruction(learner), "the message")
-    assert learner.watcher.kinds[-1] == "error"
-    assert status(learner)[1] == "Step 10 of 14"
-    assert "Point 1: " in status(learner)[-1]
-
-
 def move_over_skin(learner, aside_m, lift_m=0.0):
     """Bring the tip onto the skin so far from the next point, or so far above it."""
     point, center = FlowLearner(learner)._next()
@@ -198,29 +188,6 @@ def test_a_tip_beside_the_center_is_not_praised_but_led_there(learner):
     assert instruction(learner).endswith("mm; a touch counts within 3 mm.")
     move_over_skin(learner, 0.0)
     learner.until(lambda: status(learner)[1] == "Step 11 of 14", "the praise")
-
-
-def test_a_refusal_gives_the_tutorials_task_back(learner):
-    go_to_step(learner, TutorialStep.LOWER)
-    asked = instruction(learner)
-    assert asked.startswith("Lower the tip onto the center of point 1")
-    learner.tap("touch")
-    learner.until(lambda: "Too far from point 1" in instruction(learner), "the refusal")
-    learner.step(round(REFUSAL_S / learner.step_s))
-    learner.until(lambda: instruction(learner) == asked, "the task")
-
-
-def test_a_tip_that_is_lifted_before_the_touch_is_to_be_lowered_again(learner):
-    go_to_step(learner, TutorialStep.LOWER)
-    asked, hints = instruction(learner), learner.presenter.screen.hints
-    move_over_skin(learner, 0.0)
-    go_to_step(learner, TutorialStep.TOUCH)
-    move_over_skin(learner, 0.0, lift_m=0.02)
-    assert status(learner)[1] == "Step 11 of 14"
-    assert instruction(learner) == asked
-    moving = [hint for hint in hints if hint.action in ("Move", "Up, down", "Slow")]
-    assert len(moving) == 3
-    assert set(moving) <= set(learner.presenter.screen.hints)
 
 
 def test_the_way_to_a_point_is_said_down_to_two_millimeters(learner):

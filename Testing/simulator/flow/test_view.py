@@ -54,7 +54,7 @@ def moved(trainee, steps=40):
     return frame @ (trainee.tip - before)
 
 
-@pytest.mark.parametrize("around", [0.0, 37.0, 90.0, 180.0, -120.0])
+@pytest.mark.parametrize("around", [37.0, -120.0])
 def test_stick_left_is_left_in_the_picture_however_the_view_is_turned(by_hand, around):
     by_hand.start("task-1")
     by_hand.presenter.on_orbit(1, around, 0.0, 1.0)
@@ -163,18 +163,6 @@ def test_held_keys_turn_the_view(by_hand):
         by_hand.presenter.on_key(1, key, True, "")
         by_hand.until(is_so, key)
         by_hand.presenter.on_key(1, key, False, "")
-
-
-def test_only_the_operators_view_can_turn_the_view(by_hand):
-    presenter = by_hand.presenter
-    presenter.view_joined(7, Hello("page", "Firefox", 0.0))
-    by_hand.start("task-1")
-    by_hand.tap("undo")
-    presenter.on_orbit(7, 40.0, 0.0, 1.0)
-    by_hand.step()
-    assert orbit(by_hand) == FRONT
-    presenter.on_orbit(1, 40.0, 0.0, 1.0)
-    assert orbit(by_hand).azimuth_deg == pytest.approx(40.0)
 
 
 def test_in_a_study_the_view_follows_only_where_that_is_configured(trainee):

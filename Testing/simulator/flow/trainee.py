@@ -317,6 +317,17 @@ class Trainee:
         right, forward, up = (dot(wanted, a) for a in (axes.right, axes.forward, axes.up))
         self.hands.push(right, forward, up, fine)
 
+    def touch_anywhere(self) -> None:
+        """Touch all points of a trial in which every touch counts: no two at one place."""
+        for kept in range(1, 16):
+            self.hands.push(*np.roll((1.0, 0.0, 0.0), kept).tolist(), False)
+            self.step(15)
+            self.hands.push(0.0, 0.0, 0.0, False)
+            self.tap("touch")
+            self.until(lambda k=kept: self.touched == k, f"touch {kept}")
+        self.until(lambda: self.state.training.phase is Phase.COMPLETE, "the last touch")
+        self.step(2)
+
     def play(self, task: str) -> None:
         """Touch all points of the running trial, as the head stands in it."""
         for number in range(1, 16):

@@ -16,7 +16,6 @@ from rastrainer_simulator.input.bindings import (
     LAYOUTS,
     LEFT_ALONE,
     RIGHT_ALONE,
-    TWO_HANDS,
     Bindings,
     preset_name,
     read_bindings,
@@ -29,7 +28,6 @@ from rastrainer_simulator.input.gamepads import (
 from rastrainer_simulator.input.inputs import (
     OF_VIEW,
     ROTATION,
-    ControlContext,
     ControlName,
     InputDevice,
 )
@@ -58,24 +56,6 @@ def test_saved_bindings_are_read_back_unchanged(tmp_path_factory, control, name)
     path = tmp_path_factory.mktemp("settings") / "deep" / "controls.json"
     write_bindings(path, bindings)
     assert read_bindings(path) == bindings
-
-
-def test_an_input_may_have_different_functions_at_work_and_in_menus():
-    assert (
-        DEFAULT_BINDINGS.control(InputDevice.GAMEPAD, "a", ControlContext.WORK) is ControlName.TOUCH
-    )
-    assert (
-        DEFAULT_BINDINGS.control(InputDevice.GAMEPAD, "a", ControlContext.MENU)
-        is ControlName.ACCEPT
-    )
-    assert DEFAULT_BINDINGS.others(InputDevice.GAMEPAD, ControlName.TOUCH, "a") == ()
-    assert DEFAULT_BINDINGS.others(InputDevice.GAMEPAD, ControlName.UNDO, "a") == (
-        ControlName.TOUCH,
-    )
-    assert set(DEFAULT_BINDINGS.others(InputDevice.GAMEPAD, ControlName.MENU, "a")) == {
-        ControlName.TOUCH,
-        ControlName.ACCEPT,
-    }
 
 
 def test_a_control_that_loses_its_only_input_gets_the_others():
@@ -169,10 +149,3 @@ def test_one_hand_alone_reaches_everything_a_trial_needs(device, name):
     ways_up = {ControlName.UP} if (device, name) == (InputDevice.KEYBOARD, LEFT_ALONE) else set()
     out_of_reach = {each for each in NEEDED - ways_up if not reach & set(table[each])}
     assert out_of_reach == set()
-
-
-def test_the_default_layout_is_a_preset_and_a_modified_one_is_not():
-    device = InputDevice.GAMEPAD
-    assert preset_name(device, DEFAULT_BINDINGS.gamepad) == TWO_HANDS
-    changed = DEFAULT_BINDINGS.rebound(device, ControlName.TOUCH, "x")
-    assert preset_name(device, changed.gamepad) is None

@@ -72,20 +72,6 @@ def test_nobody_has_control_until_somebody_acts(controls):
     assert controls.sticks.operator == "gamepad"
 
 
-def test_an_unassigned_key_does_not_take_control(controls, ear):
-    tap(controls, PAGE, "F12")
-    assert controls.holder is None
-    assert ear.refusals == []
-
-
-def test_another_seats_sticks_do_not_move_the_arm(controls):
-    controls.set_inputs(GAMEPAD, {"+leftx": 0.4})
-    controls.set_key(PAGE, "KeyW", True)
-    controls.advance(1.0)
-    assert controls.holder == GAMEPAD
-    assert controls.sticks.translation == (0.4, 0.0, 0.0)
-
-
 def test_even_a_long_rest_does_not_pass_on_control_unasked(controls, ear):
     controls.set_inputs(GAMEPAD, {"a": 1.0})
     controls.set_inputs(GAMEPAD, {"a": 0.0})
@@ -133,12 +119,6 @@ def test_a_holder_that_has_left_no_longer_has_control(controls):
     assert controls.sticks == NEUTRAL_STICKS
     controls.set_key(PAGE, "KeyD", True)
     assert controls.holder == PAGE
-
-
-def test_sticks_do_nothing_in_a_menu(controls):
-    controls.enter(ControlContext.MENU)
-    controls.set_inputs(GAMEPAD, {"+rightx": 0.9})
-    assert controls.sticks == NEUTRAL_STICKS
 
 
 def test_a_key_repeats_in_a_menu_only_while_its_keyboard_repeats_it(controls, ear):
@@ -215,16 +195,6 @@ def test_a_tap_is_not_carried_through_a_change_of_the_situation():
     assert pushed() == 0.0
 
 
-def test_keys_once_released_are_forgotten():
-    hand = InputState(InputDevice.KEYBOARD)
-    for number in range(1000):
-        hand.set_key(f"Made{number}", True)
-        hand.set_key(f"Made{number}", False)
-    hand.advance(STEP_S)
-    assert not hand._inputs
-    assert not hand._pressed_s
-
-
 @pytest.mark.parametrize("device", InputDevice)
 def test_a_key_or_button_pushes_harder_over_time_and_stops_at_once(device):
     hand, press, pushed_now = hand_with(device)
@@ -239,20 +209,6 @@ def test_a_key_or_button_pushes_harder_over_time_and_stops_at_once(device):
     assert pushed[-1] == 1.0
     press(False)
     assert pushed_now() == 0.0
-
-
-def test_opposite_keys_cancel():
-    hand = InputState(InputDevice.KEYBOARD)
-    hand.set_key("KeyD", True)
-    hand.set_key("KeyA", True)
-    assert right(hand) == 0.0
-
-
-def test_a_key_repeated_by_the_keyboard_is_pressed_once():
-    hand = InputState(InputDevice.KEYBOARD)
-    assert [hand.set_key("Space", True) for _ in range(3)] == [["Space"], [], []]
-    hand.set_key("Space", False)
-    assert hand.set_key("Space", True) == ["Space"]
 
 
 def test_a_trembling_trigger_is_pressed_once():
@@ -284,21 +240,6 @@ def test_a_headsets_sticks_wait_likewise():
     hand.set_sticks(pushed)
     assert right(hand) == 0.5
     assert hand.sticks(DEFAULT_BINDINGS).fine
-
-
-def test_sticks_at_rest_through_a_change_count_at_their_first_push():
-    hand = InputState(InputDevice.GAMEPAD)
-    hand.set_sticks(OperatorInput())
-    hand.block()
-    hand.set_sticks(OperatorInput((0.5, 0.0, 0.0)))
-    assert right(hand) == 0.5
-
-
-@pytest.mark.parametrize(("value", "is_at_rest"), [(0.05, True), (0.5, False), (0.9, False)])
-def test_a_stick_near_its_middle_is_at_rest(value, is_at_rest):
-    hand = InputState(InputDevice.GAMEPAD)
-    hand.set_inputs({"+leftx": value})
-    assert hand.is_at_rest is is_at_rest
 
 
 DRIFT = {"+leftx": 0.11, "-lefty": 0.12, "-rightx": 0.14}
@@ -335,11 +276,6 @@ def test_a_stick_that_was_pushed_through_a_change_stays_blocked_however_far_it_i
     hand.block()
     hand.set_inputs({"+leftx": 1.0})
     assert right(hand) == 0.0
-
-
-def test_a_diagonal_push_keeps_its_direction_though_one_axis_is_hardly_pushed(controls):
-    controls.set_inputs(GAMEPAD, {"+leftx": 0.6, "-lefty": 0.05})
-    assert controls.sticks.translation[:2] == (0.6, 0.05)
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), -float("inf")])

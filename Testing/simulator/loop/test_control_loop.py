@@ -28,7 +28,6 @@ from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.record.trial_recorder import FLUSH_TICKS
 from rastrainer_simulator.replay.resimulation import replay
 from rastrainer_simulator.state import OperatorCommand, OperatorInput, StepResult
-from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 
 TIMEOUT_S = 120.0
 
@@ -148,27 +147,6 @@ def test_a_whole_trial_is_recorded_delivered_scored_and_replayed_bit_for_bit(
     assert report.motion == trial["record"]["motion"]
     record = record_from_json(TrialRecord, trial["record"])
     assert record.undone_touches == 1
-
-
-def test_a_replay_detects_a_number_that_does_not_follow_from_inputs(running, tmp_path, anywhere):
-    running.loop.hold_sticks(OperatorInput(translation=(0.0, -0.8, 0.4)))
-    running.start()
-    running.ticks(30)
-    running.do(CommandName.ABORT)
-    running.loop.stop()
-    reading = read_journal(journals(tmp_path)[0])
-    entry = reading.of_kind("sample")[3]
-    entry["q"][2] += 1e-15
-    report = replay(reading, anywhere)
-    assert report.difference is not None
-    assert f"line {entry['n']}: q was" in report.difference
-
-
-def test_an_answered_touch_is_on_disk(running, tmp_path):
-    running.start()
-    for number in range(1, 6):
-        assert running.do(CommandName.CAPTURE).ok
-        assert labels(read_journal(journals(tmp_path)[0])) == [str(i + 1) for i in range(number)]
 
 
 def test_nobody_sees_a_touch_before_it_is_on_disk_and_the_arm_continues_meanwhile(
@@ -326,11 +304,6 @@ def test_a_request_about_an_older_trial_is_answered_even_if_it_fails_unexpectedl
     assert running.do(CommandName.GET_TRIAL, trialId=trial_id).ok
 
 
-def test_a_trial_that_is_not_here_is_refused_with_its_code_also_from_the_archive(running):
-    refused = running.do(CommandName.GET_TRIAL, trialId="6f1e1b9e-6c3f-4a53-8a55-0d0f5a3b7c11")
-    assert (refused.ok, refused.message.key) == (False, "no such trial")
-
-
 def test_the_same_seed_in_a_second_session_gives_a_different_trial(anywhere, tmp_path, running):
     first = running.start()
     running.do(CommandName.ABORT)
@@ -380,28 +353,6 @@ def test_a_trial_requested_before_the_replacement_starts_and_none_requested_afte
     running.start()
 
 
-def test_a_start_refused_while_the_simulation_is_being_replaced_leaves_no_trace(
-    running, anywhere, successor, tmp_path
-):
-    assert running.loop.begin_replacement().result(TIMEOUT_S).ok
-    for _ in range(10):  # More than may be started at once: refused starts do not count.
-        refused = running.do(CommandName.START_TASK, task="task-1", trainee="P01")
-        assert (refused.ok, refused.message) == (False, control_loop.BEING_SET_UP)
-    assert running.loop.latest.training.phase is Phase.IDLE
-    assert running.loop.replace_simulation(successor).result(TIMEOUT_S).ok
-    assert not running.do(CommandName.START_TASK, task="task-1", trainee="P01").ok
-    running.loop.end_replacement()
-    running.loop.hold_sticks(OperatorInput(translation=(0.2, 0.1, -0.6), operator="gamepad"))
-    running.start()
-    running.ticks(30)
-    running.finish()
-    running.loop.stop()
-    (path,) = journals(tmp_path)
-    report = replay(read_journal(path), anywhere)
-    assert report.difference is None
-    assert report.compared["sample"] > 5
-
-
 def test_the_simulation_is_replaced_only_once_the_last_trials_score_is_on_disk(
     running, successor, monkeypatch
 ):
@@ -440,8 +391,7 @@ def test_trials_started_too_often_are_refused_and_create_no_journal(successor, t
             client.do(CommandName.ABORT)
         refused = client.do(CommandName.START_TASK, task="task-1", trainee="P01")
         assert not refused.ok
-        assert "too often" in refused.message
-        assert Texts(LANGUAGES["de"]).again(refused.message) == LANGUAGES["de"]["too many starts"]
+        assert refused.message.key == "too many starts"
         assert loop.latest.training.phase is Phase.IDLE
     assert len(journals(tmp_path)) == 2
 
@@ -457,20 +407,6 @@ def test_a_trial_may_be_started_again_after_some_time(successor, tmp_path):
             client.ticks(251)
 
 
-def test_a_late_tick_is_counted_and_lost_ticks_are_not_hidden(successor, tmp_path):
-    holds_up_s = [0.0]
-    with ControlLoop(successor, tmp_path, speed=1.0) as loop:
-        loop.subscribe(lambda _result: time.sleep(holds_up_s[0]))
-        holds_up_s[0] = 0.03
-        wait_for(lambda: loop.statistics.late > 0)
-        holds_up_s[0] = 0.5
-        wait_for(lambda: loop.statistics.skipped > 0)
-        holds_up_s[0] = 0.0
-        statistics = loop.statistics
-    assert statistics.worst_delay_s > 0.02
-    assert min(statistics.late, statistics.skipped) > 0
-
-
 class SteppedClock:
     """Time that passes only while the loop sleeps or is held up: no machine stalls in it."""
 
@@ -484,7 +420,10 @@ class SteppedClock:
         self.now = max(self.now, moment)
 
 
-def test_after_a_delay_the_loop_catches_up_tick_by_tick(successor, tmp_path, monkeypatch):
+@pytest.mark.parametrize(("held_up_s", "late", "skipped"), [(0.06, 14, 0), (0.5, 1, 123)])
+def test_after_a_delay_the_loop_catches_up_tick_by_tick_or_counts_the_lost_ticks(
+    successor, tmp_path, monkeypatch, held_up_s, late, skipped
+):
     clock = SteppedClock()
     monkeypatch.setattr(control_loop, "time", clock)
     monkeypatch.setattr(control_loop, "sleep_until", clock.sleep_until)
@@ -494,14 +433,13 @@ def test_after_a_delay_the_loop_catches_up_tick_by_tick(successor, tmp_path, mon
         def hold_up_once(_result):
             if not held_up.is_set():
                 held_up.set()
-                clock.now += 0.06
+                clock.now += held_up_s
 
         loop.subscribe(hold_up_once)
         wait_for(held_up.is_set)
         Client(loop).ticks(100)
-        # 56 ms behind, then 52, …, 4.
-        assert loop.statistics.late == 14
-        assert loop.statistics.skipped == 0
+        # 56 ms behind, then 52, …, 4; or 496 ms, of which less than a tick is caught up.
+        assert (loop.statistics.late, loop.statistics.skipped) == (late, skipped)
 
 
 def test_a_faulty_subscriber_stops_the_loop_and_every_request_is_still_answered(

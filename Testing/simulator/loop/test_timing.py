@@ -43,24 +43,6 @@ def may_be_first() -> bool:
 
 
 @linux_only
-def test_the_loop_has_priority_over_ordinary_threads_where_the_system_permits_it():
-    def inside() -> int:
-        with precise_timing(is_first_in_line=True):
-            return policy()
-
-    assert in_a_thread(inside) == (os.SCHED_FIFO if may_be_first() else os.SCHED_OTHER)
-
-
-@linux_only
-def test_threads_that_the_loop_starts_stay_ordinary():
-    def inside() -> int:
-        with precise_timing(is_first_in_line=True):
-            return in_a_thread(policy)
-
-    assert in_a_thread(inside) == os.SCHED_OTHER
-
-
-@linux_only
 def test_threads_sharing_the_loops_interpreter_rank_between_it_and_ordinary_threads():
     def priority() -> tuple[int, int]:
         return policy(), os.sched_getparam(0).sched_priority

@@ -1,14 +1,12 @@
 """A site's own limits: what the file may set, and that the simulator keeps to it."""
 
 import json
-import subprocess
 
 import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Client, LinkError
 from rastrainer.protocol import PROTOCOL_VERSION
-from rastrainer_simulator.loop.timing import TrialLimits
 from rastrainer_simulator.net.limits import (
     LIMITS_FILE,
     LinkLimits,
@@ -16,7 +14,7 @@ from rastrainer_simulator.net.limits import (
     ViewLimits,
     read_limits,
 )
-from Testing.end_to_end.simulator_process import COMMAND, SimulatorProcess
+from Testing.end_to_end.simulator_process import SimulatorProcess
 
 HELLO = {"protocolVersion": PROTOCOL_VERSION, "client": "a site"}
 
@@ -24,10 +22,6 @@ HELLO = {"protocolVersion": PROTOCOL_VERSION, "client": "a site"}
 def write(folder, content):
     folder.mkdir(exist_ok=True)
     (folder / LIMITS_FILE).write_text(content if isinstance(content, str) else json.dumps(content))
-
-
-def test_without_a_file_the_limits_are_the_defaults(tmp_path):
-    assert read_limits(tmp_path) == ServerLimits(LinkLimits(), ViewLimits(), TrialLimits())
 
 
 def test_limits_missing_from_the_file_keep_their_defaults(tmp_path):
@@ -79,13 +73,3 @@ def test_the_simulator_accepts_no_more_clients_and_trials_than_the_file_allows(t
             assert client.send_command("Abort", timeout=60).ok
             assert "too often" in client.send_command("StartTask", task, timeout=60).error
         assert simulator.stop()[0] == 0
-
-
-def test_an_invalid_file_ends_the_start_with_a_one_sentence_error_and_status_2(tmp_path):
-    write(tmp_path, {"clients": {"clients": 0}})
-    places = ["--records", str(tmp_path / "records"), "--config", str(tmp_path)]
-    command = [*COMMAND, *places, "--port", "0", "--no-views"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
-    assert done.returncode == 2
-    assert "clients.clients must be a whole number above 0" in done.stderr
-    assert len(done.stderr.splitlines()) == 1

@@ -5,7 +5,6 @@ import io
 import json
 import logging
 import threading
-import time
 
 import pytest
 
@@ -35,15 +34,6 @@ def test_each_record_is_one_line_of_json_with_time_level_and_data(tmp_path):
     assert line["message"] == "The trial is über.\nReally."
     assert (line["level"], line["logger"], line["data"]) == ("info", OURS.name, {"points": 3})
     assert line["utc"].endswith("Z")
-
-
-def test_only_warnings_are_printed_to_the_terminal(tmp_path, capsys):
-    with keep_logs(tmp_path, "simulator"):
-        OURS.info("quiet")
-        OURS.warning("loud")
-    error = capsys.readouterr().err
-    assert "loud" in error
-    assert "quiet" not in error
 
 
 def test_the_files_rotate_and_the_oldest_is_deleted(tmp_path, monkeypatch):
@@ -113,13 +103,6 @@ def test_a_message_from_outside_can_create_neither_a_second_line_nor_a_huge_one(
     assert len(line["message"]) == 8000
 
 
-def test_logging_is_restored_when_the_program_ends(tmp_path):
-    before = list(logging.getLogger().handlers)
-    with keep_logs(tmp_path, "simulator"):
-        assert logging.getLogger().handlers != before
-    assert logging.getLogger().handlers == before
-
-
 class Blocked(logging.Handler):
     """Accepts nothing until it is released."""
 
@@ -154,29 +137,3 @@ def test_a_stalled_log_blocks_nobody_keeps_the_first_lines_and_counts_the_rest()
     assert (
         gap == f"{2 * MAX_WAITING - 1} lines are missing here: they could not be written in time."
     )
-
-
-def test_lost_lines_are_reported_where_they_would_have_stood():
-    blocked = Blocked()
-    aside = BackgroundHandler(blocked)
-    aside.handle(record("kept or lost"))
-    blocked.reached.wait()
-    for _ in range(2 * MAX_WAITING):
-        aside.handle(record("kept or lost"))
-    blocked.go.set()
-    while len(blocked.taken) < MAX_WAITING + 1:
-        time.sleep(0.001)
-    aside.handle(record("later"))
-    aside.close()
-    assert "lines are missing here" in blocked.taken[-2]
-    assert blocked.taken[-1] == "later"
-    assert set(blocked.taken[:-2]) == {"kept or lost"}
-
-
-def test_the_last_messages_are_written_when_the_log_ends():
-    blocked = Blocked()
-    blocked.go.set()
-    aside = BackgroundHandler(blocked)
-    aside.handle(record("the end"))
-    aside.close()
-    assert blocked.taken == ["the end"]

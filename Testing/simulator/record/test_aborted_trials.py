@@ -13,12 +13,10 @@ from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, read_journal
 from rastrainer.journal.recording import Recording
-from rastrainer.protocol import MIN_ABORTED_S, TRIAL_RUN, Phase
+from rastrainer.protocol import Phase
 from rastrainer.study.database.study import Study
-from rastrainer.trial.aborted_trial import AbortedTrial
-from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.record import AbortedTrial, TrialRecord
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
-from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.record.trial_archive import (
     TrialArchive,
@@ -84,44 +82,6 @@ def test_an_aborted_trial_is_offered_with_its_touches_until_acknowledged_even_af
     assert replay(read_journal(server.path), anywhere).difference is None
 
 
-def test_after_all_touches_the_record_says_so_with_the_time_of_the_last_one(simulation, tmp_path):
-    with Server(simulation, tmp_path) as server:
-        server.start()
-        server.move(ticks=50)
-        touch(server, 15)
-        elapsed = server.training.touches[-1].elapsed
-        server.move(ticks=50)
-        assert server.do(CommandName.ABORT).ok
-        (record,) = wait_for_offer(server)
-    assert (record.phase, len(record.points)) == ("complete", 15)
-    assert record.is_after_all_touches
-    assert record.elapsed_s == elapsed
-    assert record.reason == "client"
-
-
-def test_a_trial_aborted_during_a_pause_is_recorded_as_such(simulation, tmp_path):
-    with Server(simulation, tmp_path) as server:
-        server.start()
-        touch(server, 1)
-        assert server.do(CommandName.PAUSE).ok
-        elapsed = server.loop.latest.elapsed
-        server.move(ticks=200)
-        assert server.do(CommandName.ABORT).ok
-        (record,) = wait_for_offer(server)
-    assert (record.phase, record.elapsed_s) == ("paused", elapsed)
-
-
-def test_a_trial_run_is_stored_too_and_marked(simulation, tmp_path):
-    with Server(simulation, tmp_path) as server:
-        server.do(CommandName.START_TASK, task="trial-run", trainee="P01")
-        touch(server, 1)
-        assert server.do(CommandName.ABORT, reason="practice over").ok
-        (record,) = wait_for_offer(server)
-    assert record.task == TRIAL_RUN
-    assert not record.counts_as_failed
-    assert record.reason == "practice over"
-
-
 def test_a_trial_that_was_only_viewed_is_delivered_for_its_number_alone(simulation, tmp_path):
     # So slow that its ten seconds are not over while the start is written to disk.
     with Server(simulation, tmp_path, speed=0.1) as server:
@@ -137,40 +97,6 @@ def test_a_trial_that_was_only_viewed_is_delivered_for_its_number_alone(simulati
         later = replace(record, trial_id=str(uuid.UUID(int=9)), number=4, elapsed_s=20.0)
         assert study.add_aborted(later)
         assert study.undelivered() == {record.series: ((2, 3),)}
-
-
-def test_a_trial_without_a_touch_is_stored_after_ten_seconds(simulation, tmp_path):
-    with Server(simulation, tmp_path) as server:
-        server.start()
-        while server.loop.latest.elapsed <= MIN_ABORTED_S:
-            server.do(CommandName.LIST_TASKS)
-        assert server.do(CommandName.ABORT).ok
-        (record,) = wait_for_offer(server)
-    assert record.points == ()
-    assert record.elapsed_s > MIN_ABORTED_S
-
-
-def test_a_refused_touch_is_enough_for_a_trial_to_be_stored(setup, tmp_path):
-    with Server(Simulation(setup, 3), tmp_path) as server:
-        server.start()
-        assert not server.do(CommandName.CAPTURE).ok
-        assert server.do(CommandName.ABORT).ok
-        (record,) = wait_for_offer(server)
-    assert (record.points, record.rejected_touches) == ((), 1)
-
-
-def test_a_later_finished_trial_is_offered_beside_it(simulation, tmp_path):
-    with Server(simulation, tmp_path) as server:
-        server.start()
-        touch(server, 2)
-        aborted = server.do(CommandName.ABORT).data["trialId"]
-        finished = server.start()
-        server.finish()
-        records = wait_for_offer(server)
-    assert [(type(record), record.trial_id) for record in records] == [
-        (AbortedTrial, aborted),
-        (TrialRecord, finished),
-    ]
 
 
 def disk_full_from_the_abort():
@@ -327,17 +253,6 @@ def test_a_journal_cut_at_any_byte_keeps_every_complete_touch(simulation, tmp_pa
             assert not archive.problems
             assert archive.unacknowledged() == (record,)
             assert TrialArchive(folder).unacknowledged() == archive.unacknowledged()
-
-
-def test_an_altered_leftover_journal_is_named_and_not_offered(simulation, tmp_path):
-    with Server(simulation, tmp_path) as server:
-        server.start()
-        touch(server, 2)
-    server.path.write_bytes(server.path.read_bytes().replace(b'"P01"', b'"P02"', 1))
-    archive = TrialArchive(tmp_path)
-    archive.add_interrupted(server.path)
-    assert archive.unacknowledged() == ()
-    assert "altered" in archive.problems[0]
 
 
 @pytest.mark.parametrize(

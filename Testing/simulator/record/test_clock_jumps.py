@@ -82,8 +82,7 @@ def play(loop, trainee, is_ended):
     return loop.latest.training.trial_id
 
 
-@pytest.mark.parametrize("minutes", [-5, -600_000])
-@pytest.mark.parametrize("restarts", [False, True], ids=["in one server", "with a restart between"])
+@pytest.mark.parametrize(("minutes", "restarts"), [(-5, False), (-600_000, True)])
 def test_the_most_recently_started_trial_is_resumed_even_if_the_clock_was_set_back(
     simulation, tmp_path, jumping, minutes, restarts
 ):
@@ -102,12 +101,3 @@ def test_the_most_recently_started_trial_is_resumed_even_if_the_clock_was_set_ba
     assert interrupted is not None
     assert reading.header.trainee == "P02"
     assert [read_journal(path).header.number for path in names] == [2, 1]
-
-
-def test_a_journal_without_a_number_is_older_than_any_with_one(simulation, tmp_path):
-    with ControlLoop(simulation, tmp_path, speed=None) as loop:
-        play(loop, "P01", is_ended=False)
-    (path,) = tmp_path.glob(f"*{SUFFIX}")
-    header = path.read_bytes().splitlines(keepends=True)[0]
-    (tmp_path / f"29990101T000000Z_x{SUFFIX}").write_bytes(header.replace(b'"number":1,', b"", 1))
-    assert find_interrupted(tmp_path)[0].path == path

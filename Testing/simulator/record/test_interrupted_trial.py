@@ -3,7 +3,6 @@
 import errno
 import os
 import random
-import shutil
 import threading
 
 import numpy as np
@@ -14,10 +13,8 @@ from rastrainer.errors import InputError
 from rastrainer.journal.entries import read_lines
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.journal.recording import Recording
-from rastrainer.json_records import record_from_json
 from rastrainer.protocol import Phase, Proximity
 from rastrainer.transforms import MM_PER_M
-from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import InterruptedTrial, find_interrupted
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.record.trial_archive import SUFFIX
@@ -234,53 +231,6 @@ def test_a_waiting_trial_leaves_its_journal_unchanged(simulation, tmp_path):
             server.do(CommandName.SET_CAMERA, camera="far")
             server.move(ticks=120)
     assert server.path.read_bytes() == before
-
-
-def test_an_interrupted_trial_can_be_aborted_and_another_started(simulation, tmp_path):
-    with Server(simulation, tmp_path) as server:
-        server.start()
-    with Server(simulation, tmp_path) as server:
-        refused = server.do(CommandName.START_TASK, task="task-2", trainee="P02")
-        assert "P01 is still doing task-1" in refused.message
-        assert server.do(CommandName.ABORT).ok
-        assert read_journal(server.path).integrity is Integrity.INTACT
-        assert server.do(CommandName.START_TASK, task="task-2", trainee="P02").ok
-
-
-def test_only_the_newest_trial_is_resumed(simulation, tmp_path):
-    with Server(simulation, tmp_path) as server:
-        server.start()
-    older = tmp_path / "older"
-    older.mkdir()
-    shutil.copy(server.path, older / f"20000101T000000Z_x{SUFFIX}")
-    with Server(simulation, tmp_path) as server:
-        server.do(CommandName.ABORT)
-    shutil.copy(server.path, older)
-    assert find_interrupted(older) is None
-
-
-def test_a_full_disk_when_the_trial_is_resumed_pauses_it_again(
-    simulation, tmp_path, monkeypatch, anywhere
-):
-    with Server(simulation, tmp_path) as server:
-        server.start()
-        server.do(CommandName.CAPTURE)
-
-    with Server(simulation, tmp_path) as server:
-        with monkeypatch.context() as patch:
-            patch.setattr(os, "write", on_full_disk)
-            refused = server.do(CommandName.RESUME)
-        assert not refused.ok
-        assert "No space left" in refused.message
-        while server.training.phase is not Phase.PAUSED:
-            server.do(CommandName.LIST_TASKS)
-        assert server.do(CommandName.RESUME).ok
-        server.finish()
-    reading = read_journal(server.path)
-    assert reading.integrity is Integrity.INTACT
-    assert replay(reading, anywhere).difference is None
-    record = record_from_json(TrialRecord, reading.of_kind("registered")[-1]["record"])
-    assert record.labels == tuple(str(i) for i in range(1, 16))
 
 
 def test_an_altered_journal_is_named_and_not_resumed(simulation, tmp_path):

@@ -18,7 +18,6 @@ from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.study.journal_check import check_journal
 from rastrainer.transforms import MM_PER_M
-from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import InterruptedTrial, find_interrupted
@@ -168,15 +167,6 @@ def test_a_whole_procedure_replays_to_the_last_bit(finished, planned):
     assert report.compared["sample"] > 500
 
 
-def test_a_changed_depth_is_detected_by_the_replay(finished, planned):
-    reading = read_journal(finished[0])
-    entries = [dict(entry) for entry in reading.entries]
-    deep = [entry for entry in entries if entry.get("feedMm", 0.0) > 1.0 and "q" in entry]
-    deep[10]["feedMm"] += 1e-9
-    changed = type(reading)(**{**vars(reading), "entries": tuple(entries)})
-    assert "feedMm" in replay(changed, planned).difference
-
-
 def sampled_depths(entries):
     """Return the last depth of each (trajectory, phase), the tool at rest after every feed."""
     depths, at = {}, None
@@ -296,22 +286,6 @@ def test_a_server_that_ends_in_a_phase_is_resumed_there_and_everything_replays(
     assert len(record.procedure.instruments) == count
 
 
-@pytest.mark.parametrize("phase", PROCEDURE_PHASES, ids=str)
-def test_an_abort_in_a_phase_is_recorded_with_the_phase(simulation, tmp_path, phase):
-    with Theater(simulation, tmp_path) as server:
-        server.to(phase)
-        elapsed = server.loop.latest.elapsed
-        server.must(CommandName.ABORT, reason="trainee")
-        server.loop._writer.submit(lambda: None).result()
-        (record,) = server.loop.archive.unacknowledged()
-    assert isinstance(record, AbortedTrial)
-    assert (record.phase, record.reason) == (phase.value, "trainee")
-    assert len(record.points) == 15
-    assert record.counts_as_failed
-    assert record.elapsed_s >= elapsed
-    assert record_from_json(AbortedTrial, json.loads(json.dumps(record_to_json(record)))) == record
-
-
 def test_a_paused_procedure_is_aborted_in_the_phase_in_which_it_was_paused(simulation, tmp_path):
     with Theater(simulation, tmp_path) as server:
         server.to(Phase.DRILLING)
@@ -322,28 +296,6 @@ def test_a_paused_procedure_is_aborted_in_the_phase_in_which_it_was_paused(simul
         server.loop._writer.submit(lambda: None).result()
         (record,) = server.loop.archive.unacknowledged()
     assert (record.phase, left.phase) == ("drilling", "drilling")
-
-
-def test_a_procedure_that_nobody_resumes_counts_as_aborted_in_its_phase(simulation, tmp_path):
-    with Theater(simulation, tmp_path) as server:
-        server.to(Phase.DRILLING)
-        server.loop.stop()
-        elapsed = server.loop.latest.elapsed
-    record = interrupted_attempt(read_journal(server.path))
-    assert (record.phase, len(record.points)) == ("drilling", 15)
-    assert record.elapsed_s == pytest.approx(elapsed, abs=0.1)
-
-
-def test_a_trial_with_touches_only_has_no_procedure_in_its_journal(simulation, tmp_path):
-    with Server(simulation, tmp_path) as server:
-        server.start()
-        server.move()
-        server.finish()
-        (record,) = server.loop.archive.unacknowledged()
-    text = server.path.read_text().replace('"procedure":{"selfAlignment"', "")
-    assert '"procedure"' not in text
-    assert '"feedMm"' not in text
-    assert "procedure" not in record_to_json(record)
 
 
 @pytest.fixture(scope="module")

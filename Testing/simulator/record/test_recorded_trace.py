@@ -123,15 +123,6 @@ def test_a_journal_cut_at_any_byte_is_resumed_with_every_complete_traced_point(
         assert len(traced_in_air.state.training.trace.points) == len(kept)
 
 
-def test_the_journal_of_a_fiducial_trial_mentions_no_method(traced_in_air, tmp_path):
-    with Server(traced_in_air, tmp_path) as server:
-        start(server, "fiducials")
-        assert server.do(CommandName.REGISTER).ok
-    text = server.path.read_text(encoding="utf-8")
-    assert '"method"' not in text
-    assert '"trace"' not in text
-
-
 def test_a_trial_with_landmarks_other_than_the_scenarios_is_not_replayed(airy):
     own = airy.recorded(method=RegistrationMethod.SURFACE)
     assert airy.difference(own) == ""
@@ -159,12 +150,6 @@ def record_of(**changes):
         "trace": [[1.0, 2.0, float(number), 2.0 + number] for number in range(30)],
     }
     return {**values, **changes}
-
-
-def test_a_record_with_a_trace_is_read():
-    record = record_from_json(TrialRecord, record_of())
-    assert record.trace_mm.shape == (30, 3)
-    assert record_to_json(record) | record_of() == record_to_json(record)
 
 
 LINE = [[1.0, 2.0, float(number), 2.0] for number in range(501)]

@@ -10,7 +10,6 @@ import pytest
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
-from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.record.journal_writer import RecordsFolder
 from rastrainer_simulator.record.trial_archive import SUFFIX
@@ -38,21 +37,6 @@ def test_a_second_simulator_is_refused_with_a_message_that_names_the_first(tmp_p
     assert in_child(take, tmp_path) == "taken"
 
 
-def test_a_killed_simulator_leaves_the_folder_to_the_next(tmp_path):
-    assert in_child(take, tmp_path) == "taken"
-    RecordsFolder(tmp_path).close()
-
-
-def test_rastrainer_simulator_reports_that_another_one_records_there(tmp_path, capsys):
-    records = RecordsFolder(tmp_path / "records")
-    words = ["--port", "0", "--no-views", "--config", str(tmp_path / "config")]
-    assert main(["simulator", "--records", str(tmp_path / "records"), *words]) == 2
-    records.close()
-    error = capsys.readouterr().err
-    assert error.startswith("rastrainer: Another simulator")
-    assert len(error.splitlines()) == 1
-
-
 def take_without_permission(folder):
     if os.getuid() == 0:
         os.setuid(65534)
@@ -70,12 +54,6 @@ def test_a_read_only_folder_is_reported_before_anyone_plays():
         "choose another folder with --records."
     )
     assert "Permission denied" in missing
-
-
-def test_a_file_in_place_of_the_folder_is_reported(tmp_path):
-    (tmp_path / "trials").write_text("my notes")
-    with pytest.raises(InputError, match=r"cannot be recorded in .*trials: File exists"):
-        RecordsFolder(tmp_path / "trials")
 
 
 def journal_of_two_touches(simulation, folder):

@@ -6,7 +6,7 @@ import pytest
 from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.head.trial_head import UNMOVED, SkinShift
+from rastrainer.head.trial_head import SkinShift
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import Phase
@@ -16,7 +16,7 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.net.views.outgoing import TraceUpdate
 from rastrainer_simulator.presentation.presenter import TraceGuidance
-from rastrainer_simulator.record.trial_archive import archived_trial, interrupted_attempt
+from rastrainer_simulator.record.trial_archive import archived_trial
 from rastrainer_simulator.replay.resimulation import replay
 from Testing.simulator.record.test_interrupted_trial import Server
 from Testing.simulator.record.test_recorded_trace import airy, stroke  # noqa: F401
@@ -91,24 +91,6 @@ def test_points_on_shifted_skin_stay_hidden_and_survive_a_kill_and_a_replay(simu
     truth, journal = record_from_json(RevealedTruth, revealed.data), server.path.read_bytes()
     check_journal(record, truth, journal, simulation.setup.scenario)
     assert archived_trial(reading).truth.skin == SkinShift(3.0, SEED, 0.5)
-
-
-def test_the_journal_of_a_trial_on_unshifted_skin_mentions_no_skin(simulation, tmp_path):
-    with Server(simulation, tmp_path) as server:
-        start(server, skin={})
-        stroke(server, 60)
-    assert '"skin"' not in server.path.read_text(encoding="utf-8")
-    assert '"measuredMm"' not in server.path.read_text(encoding="utf-8")
-    assert simulation.truth.skin == UNMOVED
-
-
-def test_an_abandoned_interrupted_trial_has_its_touches_as_measured(simulation, tmp_path):
-    with Server(simulation, tmp_path) as server:
-        start(server, skin=SKIN)
-        kept = [1000.0 * np.array(touch.position) for touch in server.training.touches]
-        server.loop.stop()
-    interrupted = interrupted_attempt(read_journal(server.path))
-    np.testing.assert_allclose([p.position_mm for p in interrupted.points], kept, atol=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,6 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from rastrainer.journal.entries import Acknowledged
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.journal.recording import Recording
 from rastrainer.json_records import record_from_json
@@ -19,7 +18,6 @@ from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
 from rastrainer_simulator.virtual.play import play_virtual_trial
 from rastrainer_simulator.virtual.scripted_trainee import Skill
-from Testing.journal_lines import at
 
 DT = 0.02
 BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04)
@@ -63,21 +61,6 @@ def test_the_record_has_the_same_metrics_as_the_journal_to_the_last_bit(journal)
     assert record.motion["undone_touches"] == record.undone_touches
     assert record.motion["contacts"] >= 15
     assert 0.2 < record.motion["path_efficiency"] < 1.0
-
-
-def test_metrics_of_a_part_are_those_of_the_trial_up_to_then(journal):
-    half = tuple(journal.lines())[: len(journal.entries) // 2]
-    part = trial_motion(Recording.of(half).trajectory())
-    whole = trial_motion(Recording.of(journal.lines()).trajectory())
-    assert 0 < part["path_length_mm"] < whole["path_length_mm"]
-    assert 0 < part["contacts"] < whole["contacts"]
-
-
-def test_anything_after_the_trial_changes_nothing(journal):
-    again = Recording.of([*journal.lines(), at(1e6, Acknowledged("Slicer"))])
-    assert trial_motion(again.trajectory()) == trial_motion(
-        Recording.of(journal.lines()).trajectory()
-    )
 
 
 def test_the_command_measures_a_journal(journal, capsys):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -42,6 +43,7 @@ def carried_out(
     return procedure, replace(done, instruments=deeper)
 
 
+@lru_cache
 def outcome(kind: ProcedureKind, number: int = 0, by_robot: bool = False) -> ProcedureOutcome:
     """Return the outcome of `carried_out`."""
     procedure, done = carried_out(kind, number, by_robot)
@@ -60,10 +62,7 @@ def with_procedures(data: StudyData, by_robot: bool = False) -> StudyData:
     return replace(
         data,
         trials=tuple(
-            replace(
-                trial,
-                procedure=outcome(kinds[row % len(kinds)], row % 4, by_robot),
-            )
+            replace(trial, procedure=outcome(kinds[row % len(kinds)], row % 4, by_robot))
             for row, trial in enumerate(data.trials)
         ),
     )

@@ -2,7 +2,6 @@
 
 import csv
 import io
-import json
 import uuid
 from dataclasses import replace
 
@@ -10,13 +9,12 @@ import pytest
 
 from rastrainer.json_records import record_from_json
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import StoredAbortedTrial
 from rastrainer.study.protocol.study_progress import StudyProgress
-from rastrainer.study.study_data import StudyData, TrialRow, read_study_data
+from rastrainer.study.study_data import StudyData, read_study_data
 from rastrainer.study.tidy_csv import aborted_csv, aborted_touches_csv, write_history
-from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.record import AbortedTrial
 from rastrainer.trial.trial_feedback import competence_of
-from rastrainer_simulator.cli.main import main
+from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.export.xapi import statements
 from rastrainer_simulator.report.report import report_html
 from Testing.domain.study.played_study import study_with_trials
@@ -58,77 +56,50 @@ def test_the_report_says_how_many_trials_were_started_and_why_steps_were_repeate
     assert f"all trials of the study {finished + 2} {finished} 1 1" in words
     assert "1 trial run was ended without being registered" in words
     assert "aborted with 15 points touched (trainee): " + REASON in words
+    # C did not consent.
+    assert {record.trainee for record in data.aborted} == {"A", "B"}
     assert "For 1 aborted trial no reason of a repeat is stored" in words
 
 
-def test_aborted_trials_without_consent_are_left_out(path):
-    data = read_study_data(path)
-    assert {stored.record.trainee for stored in data.aborted} == {"A", "B"}
+def row(number, score=90.0, **others):
+    values = {"completion_time_s": 90.0, "rmse_mm": 1.0}
+    values |= {} if score is None else {"score": score}
+    known = {"started_utc": f"2024-05-17T{number + 8:02d}:00:00Z", "acceptable": True, **others}
+    return TrialRow("A", "hmd", "task-1", number, values, **known)
 
 
-def test_a_report_without_aborted_trials_says_so(tmp_path):
-    study_with_trials(tmp_path / "study.db")
-    data = read_study_data(tmp_path / "study.db")
-    count = len(data.trials)
-    words = words_of(report_html(data))
-    assert f"{count} of {count} started trials were finished" in words
-    assert "aborted with" not in words
+def aborted(number, **changes):
+    return record_from_json(AbortedTrial, make_aborted(number, trainee="A", mode="hmd", **changes))
 
 
 def test_started_and_finished_trials_are_those_of_one_method():
-    def row(number, method="fiducials"):
-        values = {"completion_time_s": 90.0, "rmse_mm": 1.0, "score": 90.0}
-        utc = f"2024-05-17T{number + 8:02d}:00:00Z"
-        return TrialRow("A", "hmd", "task-1", number, values, started_utc=utc, method=method)
-
-    def aborted(number, **changes):
-        record = make_aborted(number, trainee="A", mode="hmd", **changes)
-        return StoredAbortedTrial(record_from_json(AbortedTrial, record))
-
-    rows = (*map(row, range(1, 6)), *(row(number, "landmarks") for number in range(6, 9)))
-    data = StudyData("x", rows, has_order=True, aborted=(aborted(900), aborted(901)))
+    rows = (*map(row, range(1, 6)), *(row(number, method="landmarks") for number in range(6, 9)))
     others = tuple(aborted(number, method="landmarks", points=[]) for number in range(902, 905))
-    words = words_of(report_html(replace(data, aborted=(*data.aborted, *others))))
+    data = StudyData("x", rows, has_order=True, aborted=(aborted(900), aborted(901), *others))
+    words = words_of(report_html(data))
     assert "5 of 7 started trials were finished" in words
     assert "leaves out 6 trials by landmarks" in words
 
 
 def test_a_report_of_a_csv_has_no_section_on_started_trials():
-    row = TrialRow("A", "hmd", "1", 1, {"completion_time_s": 9.0, "rmse_mm": 1.0})
-    assert "started trials" not in words_of(report_html(StudyData("x", (row,))))
+    assert "started trials" not in words_of(report_html(StudyData("x", (row(1, score=None),))))
 
 
 def test_an_aborted_trial_counts_as_not_passed_in_the_lc_cusum():
-    def row(number):
-        values = {"completion_time_s": 90.0, "rmse_mm": 1.0, "score": 90.0}
-        utc = f"2024-05-17T{number + 8:02d}:00:00Z"
-        return TrialRow("A", "hmd", "task-1", number, values, started_utc=utc, acceptable=True)
-
-    def aborted(number, hour, **changes):
-        started = f"2024-05-17T{hour:02d}:30:00Z"
-        record = make_aborted(number, trainee="A", mode="hmd", startedUtc=started, **changes)
-        return StoredAbortedTrial(record_from_json(AbortedTrial, record))
-
-    rows = tuple(row(number) for number in range(1, 13))
-    whole = StudyData("x", rows, has_order=True)
+    whole = StudyData("x", tuple(map(row, range(1, 13))), has_order=True)
     shown_at = competence_of([False] * 12).competent_at
     assert f"12 12 (100 %) 1 of 1 {shown_at} 0 0" in words_of(report_html(whole))
-    with_one = replace(whole, aborted=(aborted(900, 9), aborted(901, 10, task="trial-run")))
+    early = aborted(900, startedUtc="2024-05-17T09:30:00Z")
+    run = aborted(901, startedUtc="2024-05-17T10:30:00Z", task="trial-run")
     later = competence_of([False, True, *[False] * 11]).competent_at
-    shown_later = "–" if later is None else later
-    competent = 0 if later is None else 1
-    assert f"13 12 (92 %) {competent} of 1 {shown_later} 1 0" in words_of(report_html(with_one))
+    assert later > shown_at
+    with_one = replace(whole, aborted=(early, run))
+    assert f"13 12 (92 %) 1 of 1 {later} 1 0" in words_of(report_html(with_one))
 
 
 def test_a_trial_without_a_score_counts_as_not_passed_and_is_named():
-    def row(number, **score):
-        values = {"completion_time_s": 90.0, "rmse_mm": 1.0, **score}
-        utc = f"2024-05-17T{number + 8:02d}:00:00Z"
-        others = {"trial_id": str(uuid.UUID(int=number)), "started_utc": utc, "acceptable": True}
-        return TrialRow("A", "hmd", "task-1", number, values, **others)
-
-    rows = (row(1, score=90.0), row(2), row(3, score=90.0))
-    words = words_of(report_html(StudyData("x", rows, has_order=True)))
+    unscored = row(2, score=None, acceptable=False, trial_id=str(uuid.UUID(int=2)))
+    words = words_of(report_html(StudyData("x", (row(1), unscored, row(3)), has_order=True)))
     assert "3 2 (67 %) 0 of 1 – 0 1" in words
     assert "1 finished trial without a score: each counts as not passed" in words
     assert str(uuid.UUID(int=2)) in words
@@ -165,7 +136,7 @@ def test_aborted_trials_and_their_touches_are_exported(path):
 
 def test_a_reason_never_becomes_a_formula_in_a_spreadsheet():
     record = record_from_json(AbortedTrial, make_aborted(reason="=1+1"))
-    text = aborted_csv([StoredAbortedTrial(record, "s", "@SUM(A1:A9)")])
+    text = aborted_csv([replace(record, step="s", repeat_reason="@SUM(A1:A9)")])
     assert "'=1+1" in text
     assert "'@SUM(A1:A9)" in text
 
@@ -173,19 +144,9 @@ def test_a_reason_never_becomes_a_formula_in_a_spreadsheet():
 def test_an_aborted_trial_is_a_statement_that_it_was_terminated(path):
     data = read_study_data(path)
     found = [s for s in statements(data) if s["verb"]["display"]["en-US"] == "terminated"]
-    assert [statement["id"] for statement in found] == [s.record.trial_id for s in data.aborted]
+    assert [statement["id"] for statement in found] == [s.trial_id for s in data.aborted]
     assert all(statement["result"]["completion"] is False for statement in found)
     assert [statement["result"].get("success") for statement in found] == [None, False, False]
-
-
-def test_the_commands_count_aborted_trials(path, tmp_path, capsys):
-    assert main(["report", str(path), "-o", str(tmp_path / "report")]) == 0
-    assert "3 aborted ones" in capsys.readouterr().out
-    assert main(["export", str(path), "-o", str(tmp_path / "export")]) == 0
-    assert "3 aborted ones" in capsys.readouterr().out
-    assert (tmp_path / "export" / "csv" / "aborted.csv").is_file()
-    content = json.loads((tmp_path / "export" / "xapi" / "statements.json").read_text())
-    assert sum(each["verb"]["display"]["en-US"] == "terminated" for each in content) == 3
 
 
 def test_a_trainees_history_is_written_with_the_aborted_trials(path, tmp_path):

@@ -13,14 +13,11 @@ from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.report.report import report_html
 from rastrainer_simulator.report.trainees import curricula
 from Testing.domain.study.played_study import study_with_trials
+from Testing.simulator.report.test_report import words_of
 
 pytestmark = pytest.mark.usefixtures("undrawn")
 
 SHIPPED = Path(__file__).parents[3] / "assets" / "studies" / "example-curriculum.json"
-
-
-def text_of(html):
-    return " ".join(re.sub(r"<[^>]+>", " ", html).split())
 
 
 def test_each_trainee_has_a_row_and_each_goal_a_sentence(tmp_path):
@@ -31,7 +28,7 @@ def test_each_trainee_has_a_row_and_each_goal_a_sentence(tmp_path):
         CurriculumStore(study).choose(Curriculum.read(SHIPPED))
     page = report_html(read_study_data(path))
     (found,) = re.findall(r"<section><h2>Curriculum</h2>.*?</section>", page, re.DOTALL)
-    words = text_of(found)
+    words = words_of(found)
     assert words.startswith("Curriculum First steps trainee trials (n) reached first-points")
     assert " B 1 0 of 6 0 of 2 locked locked locked locked locked " in words
     assert " A " not in words
@@ -49,4 +46,4 @@ def test_a_trial_that_counts_for_two_assignments_is_one_trial(tmp_path):
     twice = (first, replace(first, name="again", mark=50.0))
     with Study.open(path) as study:
         CurriculumStore(study).choose(Curriculum("c", "C", twice))
-    assert " B 1 0 of 2 " in text_of(curricula(read_study_data(path)))
+    assert " B 1 0 of 2 " in words_of(curricula(read_study_data(path)))

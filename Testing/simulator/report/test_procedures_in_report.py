@@ -6,14 +6,14 @@ from dataclasses import replace
 import pytest
 
 from rastrainer_simulator.report.procedures import procedures
-from rastrainer_simulator.report.report import report_html
 from Testing.simulator.report.studied_procedures import TOO_DEEP_MM, with_procedures
-from Testing.simulator.report.test_report import cohort
+from Testing.simulator.report.test_report import cohort, words_of
+from Testing.simulator.report.without_charts import without_charts
 
 
 def words_with(**options):
-    text = re.sub(r"<[^>]+>", " ", procedures(with_procedures(cohort(4), **options)))
-    return " ".join(text.replace("\N{NO-BREAK SPACE}", " ").split())
+    with without_charts():
+        return words_of(procedures(with_procedures(cohort(4), **options)))
 
 
 @pytest.fixture(scope="module")
@@ -80,4 +80,3 @@ def test_published_figures_are_for_orientation_with_their_sources(words):
 
 def test_a_study_with_touches_only_has_no_such_section():
     assert procedures(cohort(2)) == ""
-    assert "from the registration to the target" not in report_html(cohort(2), "today")

@@ -1,6 +1,5 @@
 """The report of a study: the paper's tables, self-contained, escaped and complete."""
 
-import csv
 import re
 import subprocess
 import sys
@@ -10,27 +9,20 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
-from scipy.stats import pearsonr
 
 from rastrainer.errors import InputError
 from rastrainer.study.database.study import Study
-from rastrainer.study.outcomes import MAIN_OUTCOMES
 from rastrainer.study.protocol.study_protocol import StudyProtocol
-from rastrainer.study.study_data import StudyData, TrialRow, read_study_data
+from rastrainer.study.study_data import StudyData, read_study_data
 from rastrainer.trial.scoring import LONG_PAUSE_S
 from rastrainer.trial.trial_feedback import competence_of
+from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.cli.main import main
-from rastrainer_simulator.report.comparisons import compare_modes, mode_delays, paired_means
-from rastrainer_simulator.report.published_tables import (
-    cohort_scores,
-    complexity,
-    performance_color,
-    with_ctps,
-)
-from rastrainer_simulator.report.report import report_html, write_report
+from rastrainer_simulator.report.comparisons import mode_delays, paired_means
+from rastrainer_simulator.report.published_tables import performance_color
+from rastrainer_simulator.report.report import report_html
 from rastrainer_simulator.virtual.outcome_model import OutcomeModel
 from Testing.domain.study.played_study import STUDIES, study_with_trials
-from Testing.domain.trial.trial_records import make_record
 from Testing.drawn_study import draw_study
 
 PUBLISHED = STUDIES / "published.csv"
@@ -88,7 +80,9 @@ def cohort(trainees, tasks=3, seed=0, learning=0.0):
                     "score": 60.0 + rng.normal(0, 5),
                     "sparc": -3 + rng.normal(0, 0.3),
                 }
-                rows.append(TrialRow(f"T{index:03d}", mode, f"task-{number}", number, values))
+                utc = f"2026-05-01T09:{number:02d}:00Z"
+                who = f"T{index:03d}", mode, f"task-{number}", number
+                rows.append(TrialRow(*who, values, started_utc=utc))
     return StudyData("A cohort", tuple(rows), has_order=True)
 
 
@@ -102,31 +96,11 @@ def test_both_tables_are_the_papers_to_the_printed_digit(page):
         "User Perf. 81.72 58.83 68.37 60.22 67.29",
     ):
         assert row in words
+    assert performance_color(37.1, [37.1, 56.6, 79.7]) == "#f4a59e"
+    assert performance_color(5.0, [5.0, 5.0]) == "#fceaaa"
     assert "67.29 ± 25.96" in words
     assert "25.47 divided by n" in words
     assert "r = 0.963, r² = 0.928" in words
-
-
-def test_the_marginals_are_colored_from_red_to_green():
-    values = [37.1, 56.6, 79.7]
-    assert performance_color(37.1, values) == "#f4a59e"
-    assert performance_color(79.7, values) == "#abdba5"
-    assert performance_color(5.0, [5.0, 5.0]) == "#fceaaa"
-
-
-def test_the_paired_tests_on_subject_means_are_those_of_the_shared_analysis(published):
-    results = {
-        c.outcome.name: c
-        for c in compare_modes(with_ctps(published), MAIN_OUTCOMES, "desktop", "hmd")
-    }
-    rmse = results["rmse_mm"]
-    assert len(rmse.trainees) == 4
-    assert rmse.result.difference.value == pytest.approx(0.147, abs=6e-4)
-    assert rmse.result.p == pytest.approx(0.005, abs=5e-4)
-    assert rmse.adjusted_p == pytest.approx(2 * rmse.result.p)
-    assert rmse.result.ranks.p == 0.125
-    assert results["completion_time_s"].result.p > 0.5
-    assert results["ctps"].result is None
 
 
 def test_the_report_says_what_four_subjects_cannot_show(page):
@@ -141,15 +115,11 @@ def test_the_report_says_what_four_subjects_cannot_show(page):
 
 def test_the_papers_inconsistencies_are_reported_with_its_numbers(page):
     words = words_of(page)
-    for sentence in (
-        "Equation 3 divides that by 2",
-        "64.81: cut off",
-        "speaks of five participants",
-    ):
-        assert sentence in words
     assert '"R²" of task number and completion time, HMD 5 task means 0.96 0.9633' in words
     assert "Overall CTPS, HMD 20 trials 64.81 64.818" in words
     assert "± of the overall CTPS, desktop 20 trials 25.96 25.963" in words
+    assert "r = −.75 (HMD, p = .15) and −.61 (desktop, p = .27)" in words
+    assert "CTPS r = −0.75 [−0.982, 0.396], p = .146" in words
 
 
 def test_the_page_is_self_contained_and_has_no_scripts(page):
@@ -179,54 +149,6 @@ def test_negative_numbers_have_a_minus_sign_not_a_hyphen(page):
     assert "−0.00" not in words
 
 
-def mean_ctps_of_tasks(mode):
-    """Return the CTPS of each task from the printed tables."""
-    with PUBLISHED.open() as file:
-        rows = [row for row in csv.DictReader(file) if row["mode"] == mode]
-    times, errors = (np.array([float(row[name]) for row in rows]) for name in ("ct", "rmse"))
-    mean = 129.42 if mode == "desktop" else times.mean()
-    scores = 100 * (times / mean - (errors - errors.min()) / errors.min())
-    tasks = np.array([int(row["task"]) for row in rows])
-    return [scores[tasks == task].mean() for task in range(1, 6)]
-
-
-def test_the_claim_that_ctps_falls_with_complexity_is_checked(published, page):
-    words = words_of(page)
-    found = []
-    for mode in ("hmd", "desktop"):
-        scores = cohort_scores(published, mode)
-        one = complexity(published, mode, scores)["task_scores"]
-        expected = pearsonr(range(1, 6), mean_ctps_of_tasks(mode))
-        assert (one.r, one.p) == pytest.approx((expected.statistic, expected.pvalue), abs=1e-9)
-        limits = expected.confidence_interval(0.95)
-        assert one.interval == pytest.approx((limits.low, limits.high), abs=1e-9)
-        found.append((round(one.r, 2), round(one.p, 2)))
-        assert one.interval[0] < 0 < one.interval[1]
-    assert found == [(-0.75, 0.15), (-0.61, 0.27)]
-    assert "r = −.75 (HMD, p = .15) and −.61 (desktop, p = .27)" in words
-    assert "CTPS r = −0.75 [−0.982, 0.396], p = .146" in words
-    assert "time r = 0.96 [0.540, 0.998], p = .008" in words
-    assert "time r = 0.92 [0.196, 0.995], p = .027" in words
-    assert "over the 20 trials: time r = 0.69" in words
-    assert "over the 20 trials: time r = 0.47" in words
-
-
-def test_the_unknown_order_of_modes_is_stated(published, page):
-    words = words_of(page)
-    assert "Which mode came first is not in the data" in words.split("Performance as")[0]
-    assert (
-        "the signed-rank test gives p = .125, the smallest two-sided p that four subjects allow"
-        in words
-    )
-    (rmse,) = (
-        c
-        for c in compare_modes(published, MAIN_OUTCOMES, "desktop", "hmd")
-        if c.outcome.name == "rmse_mm"
-    )
-    assert (rmse.order, rmse.result.sequences) == (None, None)
-    assert rmse.result.ranks.p == rmse.result.ranks.smallest_p == 0.125
-
-
 @pytest.mark.usefixtures("undrawn")
 def test_a_balanced_order_of_modes_separates_the_period_and_is_tabulated():
     model = OutcomeModel([120.0] * 5, [1.5] * 5, learning=0.3, carries_practice=True)
@@ -252,6 +174,16 @@ def test_alternating_modes_are_counted_as_periods():
     assert mode_delays(StudyData("x", tuple(rows)), "desktop", "hmd") == {"a": 1.0}
     rows = [*rows[:2], rows[1], rows[0]]
     assert mode_delays(StudyData("x", tuple(rows)), "desktop", "hmd") == {"a": 0.0}
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_trainees_are_compared_on_the_tasks_done_in_both_modes():
+    played = ("desktop", "1", 10.0), ("desktop", "2", 90.0), ("hmd", "1", 12.0)
+    rows = [TrialRow("a", mode, task, 1, {"completion_time_s": s}) for mode, task, s in played]
+    data = StudyData("x", tuple(rows))
+    assert paired_means(data, "completion_time_s", "desktop", "hmd") == {"a": (10.0, 12.0)}
+    missing = "Trials are missing: Task 2, Headset (HMD), of 1 of 1 trainee."
+    assert missing in words_of(report_html(data))
 
 
 def test_registering_and_scoring_import_no_scipy():
@@ -310,6 +242,7 @@ def test_an_unreadable_study_raises_a_one_sentence_error(words, sentence, tmp_pa
     assert printed.count("\n") == 1
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_large_cohort_gets_tables_curves_and_a_methods_paragraph():
     page = report_html(cohort(30, tasks=12, learning=0.7), "today")
     words = words_of(page)
@@ -320,7 +253,6 @@ def test_a_large_cohort_gets_tables_curves_and_a_methods_paragraph():
     assert "Motion metrics" in words
     assert "Smoothness, SPARC" in words
     assert "30 trainees did 720 trials" in words
-    assert len(page) < 2_000_000
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -329,19 +261,6 @@ def test_a_single_mode_is_described_and_not_tested():
     words = words_of(report_html(one))
     assert "nothing is tested" in words
     assert "No trainee did two modes" in words
-
-
-@pytest.mark.usefixtures("undrawn")
-def test_trainees_are_compared_on_the_tasks_done_in_both_modes():
-    def row(mode, task, time):
-        return TrialRow("a", mode, task, 1, {"completion_time_s": time})
-
-    rows = [row("desktop", "1", 10.0), row("desktop", "2", 90.0), row("hmd", "1", 12.0)]
-    data = StudyData("x", tuple(rows))
-    assert paired_means(data, "completion_time_s", "desktop", "hmd") == {"a": (10.0, 12.0)}
-    assert "Trials are missing: Task 2, Headset (HMD), of 1 of 1 trainee." in words_of(
-        report_html(data)
-    )
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -376,28 +295,9 @@ def test_passed_trials_and_competent_trainees_are_counted():
 
 def scored(trainee, number, score, method="fiducials", acceptable=True):
     values = {"completion_time_s": 90.0, "rmse_mm": 1.0, "score": score}
-    return TrialRow(trainee, "hmd", "task-1", number, values, method=method, acceptable=acceptable)
-
-
-@pytest.mark.usefixtures("undrawn")
-def test_a_report_explains_the_score_of_its_method():
-    def words(method):
-        return words_of(report_html(StudyData("One", (scored("A", 1, 80.0, method),))))
-
-    by_fiducials, by_surface = words("fiducials"), words("surface")
-    assert (
-        "and within the limits of the score: a true target error in the brain within that of its "
-        "task, unintended contact of at most 8 s and 160 mm, and a pressing depth of at most "
-        "1.5 mm; one that was aborted after a touch, or has no score, is not passed." in by_surface
-    )
-    bias = "a bias common to all touches of at most 1.5 mm, unintended contact of at most 8 s"
-    assert bias in by_fiducials
-    assert "trueness (ISO 5725-1) of the touches, 1/(1 + (b/1 mm)^4)" in by_fiducials
-    assert "common bias" not in by_surface
-    for each in (by_fiducials, by_surface):
-        assert "Accuracy is the true target error of the rigid registration" in each
-        assert "localization errors along the skin, of 1.5 mm, to the same region" in each
-        assert "Harrington 1965, The desirability function" in each
+    utc = f"2026-05-{number:02d}T09:00:00Z"
+    others = {"method": method, "acceptable": acceptable, "started_utc": utc}
+    return TrialRow(trainee, "hmd", "task-1", number, values, **others)
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -410,47 +310,6 @@ def test_a_pass_mark_of_fiducials_passes_no_trial_of_another_method_and_the_repo
     assert "these were registered by surface. Their scores do not compare" in words
     assert "30 (100 %)" not in words
     assert "LC-CUSUM of every trainee" not in words
-
-
-@pytest.mark.usefixtures("undrawn")
-@pytest.mark.parametrize("has_protocol", [True, False], ids=["silent protocol", "no protocol"])
-def test_a_pass_mark_without_protocol_is_called_the_default(has_protocol):
-    published = StudyProtocol.read(STUDIES / "published-protocol.json")
-    values = {"completion_time_s": 90.0, "rmse_mm": 1.0, "score": 80.0}
-    rows = (TrialRow("A", "hmd", "task-1", 1, values, acceptable=True),)
-    words = words_of(
-        report_html(StudyData("One", rows, protocol=published if has_protocol else None))
-    )
-    assert "70 of 100 points (the default, since the study sets no mark; no data" in words
-
-
-def test_names_are_texts_in_charts_whatever_they_contain(recwarn):
-    odd = "任务 $\\frac{1}$ & <b>"
-    rows = [
-        TrialRow(odd, mode, odd, number, {"completion_time_s": 10.0 + number, "rmse_mm": 1.0})
-        for mode in ("desktop", odd)
-        for number in range(1, 4)
-    ]
-    page = report_html(StudyData(odd, tuple(rows), has_order=True), "today")
-    shown = [
-        "".join(text.itertext())
-        for chart in re.findall(r"<svg.*?</svg>", page, re.DOTALL)
-        for text in ElementTree.fromstring(chart).iter("{http://www.w3.org/2000/svg}text")
-    ]
-    assert any(odd in text for text in shown)
-    assert "<b>" not in page
-    assert [str(each.message) for each in recwarn if "Glyph" in str(each.message)] == []
-
-
-def test_hostile_pseudonyms_and_titles_are_escaped():
-    evil = '<script>alert("x")</script>'
-    rows = [
-        TrialRow(evil, mode, "task-1", 1, {"completion_time_s": 10.0 + i, "rmse_mm": 1.0 + i})
-        for i, mode in enumerate(("desktop", "hmd"))
-    ]
-    page = report_html(StudyData(evil, tuple(rows)))
-    assert "<script" not in page
-    assert "&lt;script&gt;" in page
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -469,22 +328,15 @@ def test_a_report_of_a_database_has_scores_motion_questionnaires_and_skipped_ste
         ("B", "desktop"),
     ]
     assert "Left out: 1 trial that the protocol had not asked for." in words
-
-
-@pytest.mark.usefixtures("undrawn")
-def test_trainees_without_consent_are_left_out_and_counted(tmp_path):
-    study_with_trials(tmp_path / "study.db", consent=False)
-    data = read_study_data(tmp_path / "study.db")
-    assert data.trainees == ("B",)
-    assert data.answers == ()
-    assert "Left out: 1 trainee who did not consent" in words_of(report_html(data))
-
-
-def test_a_study_without_any_consent_is_refused(tmp_path):
     with Study.open(tmp_path / "study.db") as study:
-        study.add_trial(make_record())
-    with pytest.raises(InputError, match=r"1 did not\): note in 3D Slicer, Trainees"):
-        write_report(read_study_data(tmp_path / "study.db"), tmp_path)
+        study.change_trainee("A", consent=False)
+    data = read_study_data(tmp_path / "study.db")
+    assert (data.trainees, data.answers) == (("B",), ())
+    assert "Left out: 1 trainee who did not consent" in words_of(report_html(data))
+    with Study.open(tmp_path / "study.db") as study:
+        study.change_trainee("B", consent=False)
+    with pytest.raises(InputError, match=r"2 did not\): note in 3D Slicer, Trainees"):
+        read_study_data(tmp_path / "study.db")
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -495,3 +347,22 @@ def test_no_line_ends_between_a_number_and_its_unit():
     assert "equivalent within" not in page
     assert "of at most 8\xa0s and 160\xa0mm, and a" in page
     assert not re.search(r"\d (mm|%)", page)
+
+
+def test_names_are_texts_whatever_they_contain(recwarn):
+    odd = "任务 $\\frac{1}$ & <script>alert(1)</script>"
+    rows = [
+        TrialRow(odd, mode, odd, number, {"completion_time_s": 10.0 + number, "rmse_mm": 1.0})
+        for mode in ("desktop", odd)
+        for number in range(1, 4)
+    ]
+    page = report_html(StudyData(odd, tuple(rows), has_order=True), "today")
+    shown = [
+        "".join(text.itertext())
+        for chart in re.findall(r"<svg.*?</svg>", page, re.DOTALL)
+        for text in ElementTree.fromstring(chart).iter("{http://www.w3.org/2000/svg}text")
+    ]
+    assert any(odd in text for text in shown)
+    assert "<script" not in page
+    assert "&lt;script&gt;" in page
+    assert [str(each.message) for each in recwarn if "Glyph" in str(each.message)] == []

@@ -1,6 +1,5 @@
 import asyncio
 import os
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -63,36 +62,10 @@ def test_a_broken_file_in_the_cache_is_rebuilt(built, setup, monkeypatch):
     assert asyncio.run(SceneFiles(folder).scene(setup, "")) == file
 
 
-def test_giving_up_waiting_ends_the_build(setup, tmp_path, monkeypatch):
-    start, started = asyncio.create_subprocess_exec, []
-
-    async def start_endless(*_words, **named):
-        endless = "import time; time.sleep(600.0)"
-        started.append(await start(sys.executable, "-c", endless, **named))
-        return started[-1]
-
-    async def give_up():
-        building = asyncio.create_task(SceneFiles(tmp_path).scene(setup, ""))
-        while not started:
-            await asyncio.sleep(0.001)
-        building.cancel()
-        await asyncio.gather(building, return_exceptions=True)
-
-    monkeypatch.setattr(scene_files_module.asyncio, "create_subprocess_exec", start_endless)
-    asyncio.run(give_up())
-    assert [process.returncode is None for process in started] == [False]
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_a_scene_that_cannot_be_built_is_reported_in_one_sentence(setup, tmp_path):
     scenario = replace(setup.scenario, folder=tmp_path / "gone")
     with pytest.raises(InputError, match=r"could not be built: .*gone does not exist"):
         asyncio.run(SceneFiles(tmp_path).scene(replace(setup, scenario=scenario), ""))
-
-
-def test_a_task_missing_from_the_scenario_has_no_scene(setup, tmp_path):
-    with pytest.raises(InputError, match="no such task"):
-        asyncio.run(SceneFiles(tmp_path).scene(setup, "task-99"))
 
 
 def test_the_key_changes_with_task_scenario_and_robot(setup):

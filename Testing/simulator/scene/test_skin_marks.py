@@ -7,10 +7,7 @@ from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, read_head_mesh
 from rastrainer_simulator.authoring.task_set import smooth_places
 from rastrainer_simulator.scene.skin_marks import (
     ARROW_LIFT,
-    DOT_LIFT,
     NUMBER_HEIGHT,
-    NUMBER_LIFT,
-    RIM_LIFT,
     RIM_RADIUS,
     skin_marks,
 )
@@ -29,14 +26,6 @@ def ball() -> HeadMesh:
     return HeadMesh(np.array(sphere.vertices), np.array(sphere.faces))
 
 
-def test_marks_lie_on_the_skin_and_follow_its_curve(ball):
-    for mark in skin_marks(ball, FRONT, ("7", "12", "15")):
-        lifts = [(mark.dot, DOT_LIFT), (mark.rim, RIM_LIFT), (mark.number, NUMBER_LIFT)]
-        for shape, lift in [*lifts, *([(mark.arrow, ARROW_LIFT)] if mark.arrow else [])]:
-            heights = np.linalg.norm(shape.points, axis=1) - RADIUS
-            assert np.all(np.abs(heights - lift) < 0.3)
-
-
 def test_a_number_is_readable_from_outside_with_the_patients_superior_up(ball):
     points = skin_marks(ball, FRONT[:1], ("1L",))[0].number.points
     assert np.ptp(points[:, 2]) == pytest.approx(NUMBER_HEIGHT, rel=0.05)
@@ -51,13 +40,6 @@ def test_overlapping_fiducials_get_no_arrow_between_them(ball):
     close = RADIUS * np.array([[0.0, 1.0, 0.0], [np.sin(turn), np.cos(turn), 0.0]])
     marks = skin_marks(ball, close, ("1", "2"))
     assert [mark.arrow for mark in marks] == [None, None]
-
-
-def test_an_arrow_leads_around_the_ball_to_the_other_side(ball):
-    arrow = skin_marks(ball, np.array([FRONT[0], [0.0, -RADIUS, 0.1]]), ("1", "2"))[0].arrow
-    heights = np.linalg.norm(arrow.points, axis=1) - RADIUS
-    assert np.all(np.abs(heights - ARROW_LIFT) < 0.3)
-    assert arrow.points[-1, 2] > 20.0, "over the top, where the other side is nearest"
 
 
 @pytest.fixture(scope="module")
@@ -112,13 +94,6 @@ def test_no_number_touches_an_arrow_a_fiducial_or_another_number(marks):
         assert apart(own, rims) > 1.0
         for other in marks[: marks.index(mark)]:
             assert apart(own, places_on(other.number)) > 4.0
-
-
-def test_every_number_is_closest_to_its_own_fiducial(marks, points):
-    for index, mark in enumerate(marks):
-        distances = np.linalg.norm(mark.number.points.mean(axis=0) - points, axis=1)
-        assert np.argmin(distances) == index
-        assert distances[index] < 30.0
 
 
 def test_arrows_touch_no_fiducials_and_are_clear_of_each_other(marks):

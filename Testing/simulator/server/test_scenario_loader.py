@@ -93,13 +93,6 @@ def test_bundled_scenario_is_loaded_by_its_name(make, may_be_anywhere):
     assert loop.simulations[0].folder == asset_path("scenarios", "colin27")
 
 
-@pytest.mark.parametrize("may_be_anywhere", [True, False])
-def test_scenario_in_the_library_is_loaded_by_its_name(make, library, may_be_anywhere):
-    loop = Loop()
-    assert make(loop, may_be_anywhere).load("ball").result(60).ok
-    assert loop.simulations[0].folder == library / "ball"
-
-
 def test_scenarios_are_listed_with_their_pictures_and_problems(make, library):
     loader = make(Loop(), may_be_anywhere=False)
     assert loader.pictures.get("ball") is None
@@ -109,10 +102,6 @@ def test_scenarios_are_listed_with_their_pictures_and_problems(make, library):
     assert loader.pictures.get("ball") == library / "ball" / "preview.png"
     assert loader.pictures.get("colin27") == asset_path("scenarios", "colin27", "preview.png")
     assert loader.pictures.get("broken") is loader.pictures.get("../ball") is None
-
-
-def test_any_folder_may_be_loaded_by_its_path_on_one_computer(make, tmp_path):
-    assert make(Loop(), may_be_anywhere=True).load(str(tmp_path)).result(60).ok
 
 
 @pytest.mark.parametrize("folder", ["/etc", "../colin27", "colin27/..", "."])
@@ -179,11 +168,6 @@ def test_trials_may_start_again_after_any_failure_and_the_answer_reports_it(
     assert loader.load("colin27").result(60).ok
 
 
-def test_folder_that_cannot_be_used_is_refused_in_one_sentence(make, tmp_path):
-    answer = make(Loop(), may_be_anywhere=True).load(str(tmp_path / "none")).result(60)
-    assert (answer.ok, "does not exist" in answer.message) == (False, True)
-
-
 def test_a_scenario_with_an_infeasible_procedure_is_refused_and_nothing_changes(library):
     up_into_the_air = made_up_procedure(trajectory(target=(0, 0, 130)))
     planned = write_planned(library / "planned", up_into_the_air)
@@ -200,12 +184,6 @@ def test_a_scenario_with_an_infeasible_procedure_is_refused_and_nothing_changes(
         assert loop.simulations == []
     finally:
         loader.close()
-
-
-def test_refusal_by_the_control_loop_is_passed_on(make):
-    loop = Loop()
-    loop.answer = Answer(0, False, "A trial is running.")
-    assert make(loop, may_be_anywhere=True).load("colin27").result(60) == loop.answer
 
 
 def test_the_current_scenario_can_be_reloaded_wherever_it_came_from(make, tmp_path):

@@ -44,18 +44,6 @@ def test_the_test_of_the_conditions_is_the_two_sample_t_test_of_later_minus_earl
     np.testing.assert_allclose(found.difference.interval, limits, rtol=1e-9)
 
 
-def test_difference_and_period_are_scipys_regression_on_the_order(study):
-    first, second, order = study
-    expected = scipy.stats.linregress(order, second - first)
-    found = compare_paired(first, second, order)
-    assert found.difference.value == pytest.approx(expected.intercept, rel=1e-9)
-    assert found.standard_error == pytest.approx(expected.intercept_stderr, rel=1e-9)
-    assert found.sequences.later.value == pytest.approx(expected.slope, rel=1e-9)
-    reach = scipy.stats.t.ppf(0.975, len(order) - 2) * expected.stderr
-    limits = expected.slope - reach, expected.slope + reach
-    np.testing.assert_allclose(found.sequences.later.interval, limits, rtol=1e-9)
-
-
 def test_difference_and_period_are_statsmodels_model_of_subject_mode_and_period():
     """Numbers of statsmodels 0.15.0, `smf.ols("y ~ C(subject) + mode + period", rows).fit()`.
 

@@ -8,7 +8,6 @@ from rastrainer.trial.lc_cusum import lc_cusum, lc_cusum_limit
 from rastrainer_simulator.report.comparisons import CONFIRMATORY, compare_modes
 from rastrainer_simulator.report.published_tables import with_ctps
 from rastrainer_simulator.statistics import paired
-from rastrainer_simulator.statistics.intervals import correlation
 from rastrainer_simulator.statistics.paired import compare_paired, equivalence_margin
 from rastrainer_simulator.virtual.outcome_model import OutcomeModel
 from Testing.drawn_study import draw_study
@@ -73,14 +72,6 @@ def test_modes_that_differ_by_the_margin_are_called_equivalent_in_5_percent_of_s
         for _ in range(studies)
     ]
     assert np.mean(np.array(margins) < 1.0) == pytest.approx(0.05, abs=off)
-
-
-def test_uncorrelated_values_correlate_in_5_percent_of_studies(studies, off):
-    random = np.random.default_rng(13)
-    found = [correlation(*random.normal(size=(2, 10))) for _ in range(studies)]
-    assert np.mean([one.p < 0.05 for one in found]) == pytest.approx(0.05, abs=off)
-    outside = [not one.interval[0] <= 0 <= one.interval[1] for one in found]
-    assert np.mean(outside) == pytest.approx(0.05, abs=off)
 
 
 def test_incompetent_trainees_are_called_competent_in_at_most_5_percent(studies, off):

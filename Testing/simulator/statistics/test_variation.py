@@ -3,7 +3,6 @@
 How often the intervals contain the truth is among the error rates.
 """
 
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +10,6 @@ import pytest
 
 from rastrainer_simulator.report.variation import study_variation, variation, view_bias
 from rastrainer_simulator.statistics.variation import Trials, fit_variation
-from rastrainer_simulator.virtual.outcome_model import draw_outcomes, expected_outcomes
 from Testing.error_rates.recovery import MODEL, PROTOCOL, draw_protocol_study
 
 NOISELESS = {"trainee_time_sd": 0.0, "trainee_fle_sd": 0.0, "interaction_sd": 0.0}
@@ -63,17 +61,6 @@ def test_without_noise_every_coefficient_is_exact_for_time_and_error():
         assert [square.value for square in variances] == pytest.approx([0, 0, 0], abs=1e-12)
 
 
-def test_without_noise_in_the_errors_the_trade_off_is_exact():
-    """Given the times it is linear in the logarithms of the errors, too."""
-
-    class Timed(Noiseless):
-        def normal(self, loc=0.0, scale=1.0, size=None):
-            return np.random.Generator.normal(self, loc, scale, size)
-
-    study = draw_protocol_study(replace(MODEL, **NOISELESS), PROTOCOL, 12, Timed(2))
-    assert study_variation(study).trade_off.value == pytest.approx(MODEL.trade_off, abs=1e-12)
-
-
 @pytest.mark.parametrize("trainees", [4, 12])
 @pytest.mark.parametrize("source", ["trainee_variance", "interaction_variance", "trial_variance"])
 def test_the_expected_value_of_each_variance_is_the_variance(source, trainees):
@@ -116,27 +103,6 @@ def test_the_expected_bias_of_a_view_is_the_bias():
     assert view_bias(replace(study, trials=tuple(trials[::4])), "hmd") is None
 
 
-def test_the_components_of_variance_are_those_of_a_balanced_analysis():
-    """Without practice, tasks and lapses they are the textbook's mean squares."""
-    random = np.random.default_rng(2)
-    shape = (6, 2, 8)
-    values = random.normal(0, 0.3, (6, 1, 1)) + random.normal(0, 0.2, (6, 2, 1))
-    values = values + random.normal(0, 0.1, shape)
-    trainees, modes, _ = (axis.ravel() for axis in np.indices(shape))
-    # As many early as late trials in every cell, so that practice takes nothing from the levels.
-    numbers = np.tile([1, 2, 3, 4, 4, 3, 2, 1], 12)
-    trials = Trials(trainees, modes, 0 * modes, numbers, np.zeros(96))
-    found = fit_variation(trials, np.exp(values.ravel()))
-    cells, rows = values.mean(axis=2), values.mean(axis=(1, 2))
-    both = cells - rows[:, None] - cells.mean(axis=0) + values.mean()
-    ms_both, ms_rows = 8 * (both**2).sum() / 5, 16 * rows.var(ddof=1)
-    # The chance in the levels is known, except for practice, which all levels share.
-    assert found.interaction_variance.value == pytest.approx(
-        (ms_both - found.trial_variance.value) / 8, abs=1e-12
-    )
-    assert found.trainee_variance.value == pytest.approx((ms_rows - ms_both) / 16, abs=1e-12)
-
-
 @pytest.mark.parametrize(
     "study",
     [
@@ -163,10 +129,6 @@ def test_trainees_without_all_modes_are_left_out():
     assert found.time.learning == expected.time.learning
 
 
-def test_nothing_is_estimated_from_three_trainees():
-    assert variation(drawn(trainees=3)) == ""
-
-
 def test_the_report_has_a_table_of_variation_with_n():
     page = variation(drawn())
     assert "What completion time and error vary with" in page
@@ -176,32 +138,3 @@ def test_the_report_has_a_table_of_variation_with_n():
     found = study_variation(drawn())
     assert f"{found.time.learning.value:.3f} [" in page
     assert "displacement of the target, mm [95 %]" in page
-
-
-def test_every_estimate_in_the_table_has_an_interval():
-    html = variation(drawn())
-    numbers = [
-        cell for cell in re.findall(r"<td[^>]*>([^<]*)</td>", html) if re.search(r"\d\.\d|%", cell)
-    ]
-    # b, modes, three SDs and lapses of both outcomes; k; the share of lapses; two views.
-    assert len(numbers) == 6 * 2 + 1 + 1 + 2
-    for cell in numbers:
-        low, high = re.search(r"\[([−\d.]+), ([−\d.]+)\]$", cell).groups()
-        assert float(low.replace("−", "-")) < float(high.replace("−", "-"))
-
-
-def test_the_expected_outcomes_are_the_means_of_very_many_trainees():
-    modes = ("desktop", "hmd")
-    orders = [modes, modes[::-1]] * 30_000
-    found = draw_outcomes(MODEL, 60_000, modes, np.random.default_rng(3), orders)
-    for values, expected in zip(found, expected_outcomes(MODEL, modes), strict=True):
-        assert values.mean(axis=0) == pytest.approx(expected, rel=0.005)
-
-
-def test_a_bias_of_the_view_moves_the_target_and_leaves_the_residuals_unchanged():
-    plain, biased = (drawn(mode_bias_mm=bias) for bias in ({}, {"desktop": 2.0, "hmd": 2.0}))
-    for one, other in zip(plain.trials, biased.trials, strict=True):
-        assert other.values["rmse_mm"] == one.values["rmse_mm"]
-    true = [np.mean([t.values["true_tre_mm"] for t in s.trials]) for s in (plain, biased)]
-    assert true[0] < 0.6
-    assert true[1] == pytest.approx(2.0, abs=0.1)

@@ -84,25 +84,6 @@ def test_every_refusal_of_the_rules_is_among_the_codes_for_clients():
     assert [key for key in (*keys, "tutorial is open") if key not in codes] == []
 
 
-@pytest.mark.parametrize("language", sorted(LANGUAGES))
-def test_a_single_point_is_not_called_points(language):
-    feedback = ("more points", "less points", "more points than last", "less points than last")
-    keys = ("trial.paused", "abort.text", *(f"feedback.{key}" for key in (*feedback, "not passed")))
-    table = LANGUAGES[language]
-    assert [key for key in keys if re.search(r"\} \w* ?(points|Punkt|puntos)", table[key])] == []
-
-
-@pytest.mark.parametrize(
-    ("language", "words"),
-    [("en", "Resum"), ("de", "[Mm]ach.* weiter|Weitermach"), ("fr", "[Rr]epr"), ("es", "[Rr]ean")],
-)
-def test_what_ends_a_pause_has_one_name(language, words):
-    keys = ("trial.resume", "paused", "interrupted", "interrupted procedure", "is paused")
-    table = LANGUAGES[language]
-    assert [key for key in keys if re.search(words, table[key], re.IGNORECASE) is None] == []
-    assert [key for key in table if key.endswith(".resume")] == ["trial.resume", "practice.resume"]
-
-
 def test_every_language_is_offered_by_its_own_name_in_all_of_them():
     for tag in LANGUAGES:
         assert len({table[f"settings.language.{tag}"] for table in LANGUAGES.values()}) == 1

@@ -36,21 +36,6 @@ def place_line(trial):
     return reply
 
 
-def test_a_trial_without_a_procedure_has_none_of_its_phases(scenario):
-    trial = Trial(scenario)
-    trial.start()
-    trial.touch(15)
-    trial.must(CommandName.REGISTER)
-    assert trial.state.phase is Phase.REGISTERED
-    assert trial.procedure is None
-
-
-def test_an_unknown_procedure_is_refused_with_a_list_of_the_known_ones(scenario):
-    reply = Trial(scenario).start(procedure="craniotomy")
-    assert not reply.ok
-    assert "it has dbs, plain" in reply.message
-
-
 def test_a_whole_procedure_goes_through_its_phases_with_each_tool(scenario):
     trial = at_procedure(scenario, Phase.VERIFYING)
     tools = [trial.procedure.tool]
@@ -196,12 +181,6 @@ def test_nothing_is_checked_or_accepted_before_there_is_a_registration(scenario)
     assert trial.do(CommandName.REGISTER_AGAIN).ok
 
 
-def test_a_procedure_without_checkpoints_says_so(scenario):
-    trial = at_procedure(scenario, Phase.VERIFYING, "plain")
-    assert "no checkpoints" in trial.do(CommandName.CAPTURE, trial.place(VERTEX)).message
-    assert trial.do(CommandName.ACCEPT_REGISTRATION).ok
-
-
 def test_registering_again_repeats_all_touches_and_keeps_the_first_attempt_in_the_record(scenario):
     trial = at_procedure(scenario, Phase.VERIFYING, shift_mm=(9.0, 0.0, 0.0))
     trial.must(CommandName.CAPTURE, trial.place(VERTEX))
@@ -258,32 +237,6 @@ def test_a_guide_through_which_nothing_can_be_drilled_is_not_locked(scenario, sk
     assert trial.state is before
 
 
-def test_the_most_recently_locked_guide_is_recorded(scenario):
-    trial = at_procedure(scenario, Phase.DRILLING)
-    trial.must(CommandName.RETRACT_DRILL, feed=Feed(0.01, 0.01, AHEAD))
-    assert trial.state.phase is Phase.ALIGNING
-    tip, direction = (0.48, 0.01, 0.39), (0.0, 0.6, -0.8)
-    trial.must(CommandName.LOCK_GUIDE, tip, feed=LOCKABLE, direction=direction)
-    line = trial.procedure.trajectories[0]
-    assert (line.guide.tip, line.guide.direction, line.alignments) == (tip, direction, 2)
-    assert not line.is_self_aligned
-
-
-def test_a_guide_that_lies_on_the_plan_counts_as_aligned_by_the_robot(scenario):
-    trial = at_procedure(scenario, Phase.ALIGNING)
-    line = trial.procedure.present.line
-    tip = tuple(e - 0.03 * d for e, d in zip(line.entry, line.direction, strict=True))
-    trial.must(CommandName.LOCK_GUIDE, tip, feed=LOCKABLE, direction=line.direction)
-    assert trial.procedure.present.is_self_aligned
-
-
-def test_a_drill_that_has_cut_bone_must_stay_in_its_hole_however_far_it_is_retracted(scenario):
-    trial = at_procedure(scenario, Phase.DRILLING)
-    reply = trial.do(CommandName.RETRACT_DRILL, feed=Feed(0.0, 0.0271, AHEAD))
-    assert "has cut bone" in reply.message
-    assert trial.state.phase is Phase.DRILLING
-
-
 def test_no_instrument_without_a_hole_and_no_release_inside_the_guide(scenario):
     trial = at_procedure(scenario, Phase.DRILLING)
     assert "Nothing is drilled" in trial.do(CommandName.START_INSERTION, feed=LOCKABLE).message
@@ -311,16 +264,6 @@ def test_a_pause_returns_to_the_phase_in_which_it_began(scenario, phase):
     assert trial.training.elapsed(trial.now) == elapsed
 
 
-@pytest.mark.parametrize("phase", PROCEDURE_PHASES, ids=str)
-def test_an_abort_ends_a_procedure_in_each_phase(scenario, phase):
-    trial = at_procedure(scenario, phase)
-    trial.must(CommandName.ABORT)
-    assert trial.state.phase is Phase.IDLE
-    assert trial.procedure is None
-    assert trial.start().ok
-    assert trial.procedure is None
-
-
 @pytest.mark.parametrize(
     ("phase", "command", "feed"),
     [
@@ -345,11 +288,3 @@ def test_a_change_that_could_not_be_written_is_undone_including_its_feed(
     assert reply.feed == given
     trial.must(CommandName.RESUME)
     assert trial.state.phase is phase
-
-
-def test_entries_that_could_not_be_written_leave_the_drill_where_it_is(scenario):
-    trial = at_procedure(scenario, Phase.DRILLING)
-    now = Feed(0.02, 0.02, AHEAD)
-    revision = trial.state.revision
-    reply = trial.do(RECORDING_FAILED, feed=now, revision=revision, reason="disk full")
-    assert (trial.state.phase, reply.feed) == (Phase.PAUSED, now)

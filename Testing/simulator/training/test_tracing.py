@@ -73,12 +73,6 @@ def test_a_surface_trial_touches_three_landmarks_and_then_waits_for_the_trace(la
     assert "0 points are traced, and registering needs 30" in trial.do(CommandName.REGISTER).message
 
 
-def test_a_landmark_surface_trial_touches_all_landmarks_first(landmarked):
-    trial = traced(landmarked, MIN_TRACE_POINTS, "landmarks-surface")
-    assert [touch.label for touch in trial.state.touches] == NAMES
-    assert trial.state.phase is Phase.COMPLETE
-
-
 def test_the_tip_leaves_a_point_every_millimeter_and_only_on_the_skin(landmarked):
     trial = begun(landmarked)
     trial.touch(3)
@@ -152,15 +146,6 @@ def test_undo_removes_the_last_stroke_and_then_the_last_landmark(landmarked):
     assert trial.state.next_point == NAMES[2]
 
 
-def test_undo_during_a_stroke_ends_it(landmarked):
-    trial = traced(landmarked, 8)
-    trial.must(CommandName.TRACE, on=True)
-    drag(trial, 4, first=100)
-    trial.must(CommandName.UNDO)
-    assert len(trial.state.trace.points) == 8
-    assert not trial.state.trace.is_on
-
-
 def test_a_pause_ends_the_stroke_and_keeps_its_points(landmarked):
     trial = begun(landmarked)
     trial.touch(3)
@@ -194,10 +179,3 @@ def test_a_method_the_scenario_does_not_support_is_refused_with_the_reason(scena
     reply = Trial(replace(scenario, landmarks=())).start(method=method)
     assert not reply.ok
     assert said in reply.message
-
-
-def test_nothing_is_traced_in_a_trial_by_fiducials(scenario):
-    trial = Trial(scenario)
-    trial.start(method="fiducials")
-    assert "No skin is traced" in trial.do(CommandName.TRACE, on=True).message
-    assert "method" not in trial.must(CommandName.GET_TRIAL).data

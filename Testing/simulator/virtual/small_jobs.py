@@ -2,7 +2,6 @@
 
 import os
 import signal
-import time
 from pathlib import Path
 
 
@@ -28,8 +27,3 @@ def kill_self(folder: Path, job, times: int) -> None:
 
 def refused(number):
     raise ZeroDivisionError(f"not {number}")
-
-
-def own_process(_number):
-    time.sleep(0.05)
-    return os.getpid()

@@ -5,15 +5,12 @@ import functools
 import numpy as np
 import pytest
 
-from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import TouchRule
 from rastrainer.trial.scoring import PASS_MARK, passes
 from Testing.error_rates.played import score_of
-from Testing.simulator.authoring import planned_heads
 from Testing.simulator.virtual.cheating_trainees import (
     BIAS_MM,
     CHEATS,
-    Pilot,
     along_skin,
     play_honestly,
 )
@@ -45,18 +42,6 @@ def touch_errors(played):
     return record.positions_mm - np.array(fiducials)
 
 
-def test_honest_play_presses_well_under_a_millimeter_and_has_little_unintended_contact(honest):
-    motion = honest.record.motion
-    assert motion["pressing_depth_mm"] < 0.6
-    assert motion["unintended_contact_time_s"] < 0.5
-    assert motion["unintended_contact_path_mm"] < 5.0
-    assert np.sqrt((touch_errors(honest) ** 2).sum(axis=1).mean()) == pytest.approx(1.0, abs=0.4)
-
-
-def test_the_record_has_the_metrics_of_the_trajectory(honest):
-    assert honest.record.motion == trial_motion(honest.trajectory)
-
-
 def test_dragging_from_fiducial_to_fiducial_counts_as_unintended_contact_nearly_all_the_way(cheat):
     motion = cheat("drag").record.motion
     # Five millimeters about each touch belong to it: ten on each of fourteen paths.
@@ -81,14 +66,6 @@ def test_hovering_makes_no_contact_and_gives_all_touches_the_same_error(cheat):
     assert np.ptp(errors, axis=0).max() < 0.05
 
 
-def test_hovering_is_refused_where_a_touch_must_be_on_the_skin(setup, task):
-    pilot = Pilot(setup, task, SEED)
-    place, normal = pilot.fiducials[0], pilot.normals[0]
-    pilot.carry_to(place + 9.0 * normal, normal)
-    with pytest.raises(AssertionError, match="above the skin"):
-        pilot.touch()
-
-
 def test_a_common_aiming_bias_shifts_all_touches_equally_along_the_skin(setup, task, honest, cheat):
     bias = np.array(along_skin(setup, task, SEED, BIAS_MM))
     played = cheat("aim-beside")
@@ -100,21 +77,5 @@ def test_a_common_aiming_bias_shifts_all_touches_equally_along_the_skin(setup, t
 @pytest.mark.parametrize("name", CHEATS)
 def test_no_cheat_scores_more_than_40_points_or_passes(setup, cheat, name):
     score = score_of(setup, cheat(name))
-    assert score.score <= 40.0
-    assert not passes(score.score, score.acceptable, PASS_MARK)
-
-
-def test_honest_play_is_acceptable_and_scores_far_more(setup, honest):
-    score = score_of(setup, honest)
-    assert score.acceptable
-    assert score.score > 50.0
-
-
-@pytest.mark.soak
-@pytest.mark.parametrize("name", CHEATS)
-@pytest.mark.parametrize("head", planned_heads.HEADS)
-def test_no_cheat_scores_more_than_40_points_or_passes_on_another_head(head, name, tmp_path):
-    other = planned_heads.setup_of(head, tmp_path)
-    score = score_of(other, CHEATS[name](other, "task-1", SEED))
     assert score.score <= 40.0
     assert not passes(score.score, score.acceptable, PASS_MARK)

@@ -1,8 +1,5 @@
 """A simulated cohort is a study like any other, repeatable, and its truth can be recovered."""
 
-import functools
-import json
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -11,14 +8,11 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.study.database.study import Study
-from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.report.report import report_html
-from rastrainer_simulator.virtual.cohort import DATABASE, RECORDS, TRUTH, run_jobs, simulate_cohort
-from rastrainer_simulator.virtual.play import PlaySettings, play_job
-from rastrainer_simulator.virtual.population import trial_jobs
-from rastrainer_simulator.virtual.scripted_trainee import STUCK_AFTER_S
+from rastrainer_simulator.virtual.cohort import DATABASE, run_jobs, simulate_cohort
+from rastrainer_simulator.virtual.play import PlaySettings
 from Testing.simulator.virtual.conftest import AIM_FACTOR, BRISK
 from Testing.simulator.virtual.small_jobs import squared
 
@@ -44,14 +38,6 @@ def test_the_cohort_is_stored_like_a_real_study_and_reported(data):
     assert "(virtual trainees)" in page
 
 
-def test_the_path_efficiency_is_measured_again_from_the_journal(played, data, capsys):
-    trial = data.trials[0]
-    (path,) = (played / RECORDS).glob(f"*{trial.trial_id}.journal")
-    assert main(["measure", str(path), "--json"]) == 0
-    efficiency = json.loads(capsys.readouterr().out)["path_efficiency"]
-    assert efficiency == trial.values["path_efficiency"]
-
-
 def test_orders_are_balanced_and_dates_follow_the_order(played):
     with Study.open(played / DATABASE) as study:
         modes = [[t.record.mode for t in study.history(f"V000{i}")] for i in (1, 2)]
@@ -69,46 +55,12 @@ def test_the_scatter_of_the_aim_is_recovered_from_the_registrations(data):
     assert fle_of["hmd"] > 1.5 * fle_of["desktop"]
 
 
-def test_no_trainee_gets_stuck_at_a_fiducial(played):
-    with Study.open(played / DATABASE) as study:
-        records = [trial.record for i in (1, 2) for trial in study.history(f"V000{i}")]
-    waits = [np.diff([point.sim_time_s for point in record.points]) for record in records]
-    # A trainee who lapses waits at least this long, after the path to the fiducial.
-    assert np.max(waits) < STUCK_AFTER_S
-
-
-def test_the_ground_truth_is_stored_beside_the_study(played):
-    truth = json.loads((played / TRUTH).read_text())
-    assert truth["seed"] == 7
-    assert truth["population"]["modes"]["hmd"]["aim"] == AIM_FACTOR
-    assert truth["population"]["skill"]["aim_sd_mm"] == BRISK.aim_sd_mm
-
-
-@pytest.mark.soak
-def test_equal_jobs_give_equal_trials_whatever_was_played_before_and_in_which_process(
-    protocol, population
-):
-    jobs = list(trial_jobs(protocol, population, 1, 7))
-    play = functools.partial(play_job, settings=PlaySettings())
-    here = [numbers(trial) for trial in run_jobs(play, jobs, workers=1)]
-    there = [numbers(trial) for trial in run_jobs(play, jobs[::-1], workers=2)]
-    assert there[::-1] == here
-
-
 @pytest.mark.parametrize(
     ("engine", "workers"), [("processes", 2), pytest.param("dask", 1, marks=pytest.mark.soak)]
 )
 def test_every_engine_returns_the_results_in_job_order(engine, workers):
     found = list(run_jobs(squared, range(20), engine, workers))
     assert found == [number * number for number in range(20)]
-
-
-@pytest.mark.soak
-def test_dask_plays_the_same_trial_as_this_process(protocol, population):
-    job = next(iter(trial_jobs(protocol, population, 1, 7)))
-    play = functools.partial(play_job, settings=PlaySettings())
-    (there,) = run_jobs(play, [job], "dask", workers=1)
-    assert numbers(there) == numbers(play(job))
 
 
 @pytest.mark.soak
@@ -144,30 +96,6 @@ def test_the_command_reports_power_without_playing(capsys):
         "score",
     ]
     assert "p (Holm) < .05" in text
-
-
-def test_power_grows_with_the_repetitions_of_the_protocol(capsys, tmp_path):
-    shares = []
-    for repetitions in (1, 8):
-        protocol = StudyProtocol(
-            "p", "P", ("desktop", "hmd"), "fixed", ("task-1",), "fixed", repetitions
-        )
-        path = tmp_path / f"{repetitions}.json"
-        path.write_text(json.dumps(protocol.to_json()))
-        words = ["--protocol", str(path), "--power", "100", "--hmd-speed", "1.1"]
-        assert main(["simulate-cohort", "--trainees", "8", *words]) == 0
-        shares.append(re.search(r"completion_time_s +\S+ +([0-9.]+) %", capsys.readouterr().out)[1])
-    assert float(shares[1]) > float(shares[0]) + 15
-
-
-def test_properties_of_simulated_trainees_can_be_set_by_options(capsys):
-    """Haste that costs accuracy makes errors scatter: the same effect is found less often."""
-    shares = []
-    for haste in ([], ["--tempo-spread", "0.5", "--trade-off", "1", "--interaction", "0.2"]):
-        words = ["simulate-cohort", "--trainees", "8", "--power", "100", "--hmd-aim", "1.2"]
-        assert main([*words, *haste, "--lapses", "0.1", "--accuracy-learning", "0.1"]) == 0
-        shares.append(float(re.search(r"rmse_mm +\S+ +([0-9.]+) %", capsys.readouterr().out)[1]))
-    assert shares[1] < shares[0] - 30
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,6 @@ from rastrainer_headless.scene import HeadlessScene
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.export.trial_files import (
     participant_labels,
-    transform_text,
     write_motion_bids,
 )
 from rastrainer_simulator.virtual.cohort import DATABASE, RECORDS
@@ -61,15 +60,6 @@ def test_the_bids_samples_match_those_of_the_journal(played, exported):
         expected = np.interp(at, trajectory.times_s, trajectory.tip_mm[:, column])
         np.testing.assert_allclose(values[:, column], expected, atol=1e-4)
     assert trial_motion(trajectory)["sparc"] == trial.values["sparc"]
-
-
-def test_a_tidy_table_has_one_row_per_trial_and_units_in_its_columns(exported):
-    rows = list(csv.DictReader((exported / "csv" / "trials.csv").open()))
-    assert len(rows) == 4
-    assert {"trainee", "mode", "task", "completion_time_s", "rmse_mm", "ctps", "score"} <= set(
-        rows[0]
-    )
-    assert all(float(row["completion_time_s"]) > 0 for row in rows)
 
 
 def test_every_touch_is_a_row_with_its_residual(played, exported):
@@ -150,27 +140,15 @@ def points_of(markups):
     return np.array([markups.GetNthControlPointPosition(i) for i in range(count)])
 
 
-def test_itk_text_is_in_lps_and_maps_from_the_parent():
-    assert transform_text(transforms.rigid(np.eye(3), [1.0, 2.0, 3.0])).splitlines()[3] == (
-        "Parameters: 1.0 0.0 0.0 0.0 1.0 0.0 0.0 0.0 1.0 1.0 2.0 -3.0"
-    )
-
-
-def test_participant_labels_are_plain_and_distinct():
-    labels = participant_labels(("T-1", "T1", "../..", "Ä", "t1"))
-    assert len({label.lower() for label in labels.values()}) == 5
-    assert all(label.isascii() and label.isalnum() for label in labels.values())
-
-
-def test_exports_never_mix_with_existing_files(played, exported, capsys):
-    words = ["export", played / DATABASE, "-o", exported, "--format", "csv"]
-    assert main([str(word) for word in words]) == 2
-    assert "is not empty" in capsys.readouterr().err
-
-
 def test_exporting_motion_bids_without_journals_is_refused(played, tmp_path, capsys):
     words = ["export", played / DATABASE, "-o", tmp_path / "x", "--format", "bids"]
     assert main([str(word) for word in words]) == 2
     assert "give their folder with --records" in capsys.readouterr().err
     with pytest.raises(InputError, match="No trial of the study has a journal"):
         write_motion_bids(read_study_data(played / DATABASE), tmp_path / "y", lambda _id: None)
+
+
+def test_participant_labels_are_plain_and_distinct():
+    labels = participant_labels(("T-1", "T1", "../..", "Ä", "t1"))
+    assert len({label.lower() for label in labels.values()}) == 5
+    assert all(label.isascii() and label.isalnum() for label in labels.values())

@@ -59,12 +59,6 @@ def test_a_film_of_another_format_is_refused(tmp_path, journal, capsys):
     assert "must be named *.webm" in capsys.readouterr().err
 
 
-def test_a_film_in_a_missing_folder_is_refused(tmp_path, journal, capsys):
-    target = tmp_path / "missing" / "trial.webm"
-    assert main(["replay", str(journal), "--film", str(target)]) == 2
-    assert "is its folder there" in capsys.readouterr().err
-
-
 def test_without_opencv_a_sentence_says_what_to_install(monkeypatch, tmp_path):
     monkeypatch.setitem(sys.modules, "cv2", None)
     with pytest.raises(InputError, match=r"rastrainer\[film\]"):

@@ -12,29 +12,20 @@ from pathlib import Path
 
 import pytest
 
-from rastrainer.study.database.cohort_store import CohortStore, IncompleteStudyError
+from rastrainer.study.database.cohort_store import CohortStore
 from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.main import main
-from rastrainer_simulator.virtual import cohort
 from rastrainer_simulator.virtual.cohort import DATABASE, RECORDS, run_jobs, simulate_cohort
-from rastrainer_simulator.virtual.play import PlaySettings, play_job
+from rastrainer_simulator.virtual.play import PlaySettings
 from rastrainer_simulator.virtual.worker_pool import ATTEMPTS, WorkerDiedError
 from Testing.running_process import runs, started_by
 from Testing.simulator.virtual.small_jobs import (
-    kill_self,
-    own_process,
     refused,
     squared_by_mortals,
 )
 
 STORED_WHEN = {"stored_utc", "created_utc", "finished_utc"}
-
-
-def played_by_mortals(folder, doomed, times, job, settings):
-    if job.trial_id in doomed:
-        kill_self(folder, job.trial_id, times)
-    return play_job(job, settings)
 
 
 def tables(path):
@@ -121,27 +112,6 @@ def test_an_error_in_a_worker_is_raised_with_its_location_and_no_worker_is_left(
     assert not any(map(is_worker, started_by(os.getpid())))
 
 
-def test_all_workers_get_jobs_and_end_with_the_run():
-    pids = set(run_jobs(own_process, range(12), workers=2))
-    assert len(pids) == 2
-    assert os.getpid() not in pids
-    assert not any(map(runs, pids))
-
-
-@pytest.mark.soak
-def test_a_cohort_whose_workers_are_killed_is_the_same_to_the_last_bit(
-    played, protocol, population, tmp_path, monkeypatch
-):
-    with Study.open(played / DATABASE) as study:
-        doomed = {trial.record.trial_id for trial in study.history("V0001")[:1]}
-    mortal = functools.partial(played_by_mortals, tmp_path, doomed, 1)
-    monkeypatch.setattr(cohort, "play_job", mortal)
-    folder = tmp_path / "study"
-    simulate_cohort(protocol, population, 2, 7, folder, PlaySettings(), True, workers=2)
-    assert tables(folder / DATABASE) == tables(played / DATABASE)
-    assert journals(folder) == journals(played)
-
-
 @pytest.mark.parametrize("missing", [1, pytest.param(3, marks=pytest.mark.soak)])
 def test_a_resumed_cohort_equals_an_uninterrupted_one_to_the_last_bit(
     missing, played, copied, protocol, population
@@ -153,13 +123,6 @@ def test_a_resumed_cohort_equals_an_uninterrupted_one_to_the_last_bit(
     assert (run.found, run.played) == (4 - missing, missing)
     assert tables(copied / DATABASE) == tables(played / DATABASE)
     assert journals(copied) == journals(played)
-
-
-def test_a_complete_cohort_has_nothing_left_to_play(played, copied, protocol, population):
-    words = (protocol, population, 2, 7, copied, PlaySettings(), True)
-    run = simulate_cohort(*words, workers=1)
-    assert (run.found, run.played) == (4, 0)
-    assert tables(copied / DATABASE) == tables(played / DATABASE)
 
 
 def test_trials_of_a_deleted_trainee_are_not_played_again(copied, protocol, population):
@@ -210,13 +173,6 @@ def test_an_incomplete_cohort_is_reported_on_request_and_the_page_says_so(copied
     assert main(words) == 0
     page = (tmp_path / "page" / "report.html").read_text()
     assert "3 of 4 trials are stored. What follows is about these trials alone." in page
-
-
-def test_a_cohort_without_any_trials_yet_is_reported_too(tmp_path):
-    with Study.open(tmp_path / DATABASE) as study:
-        CohortStore(study).start({"seed": 1}, 40)
-    with pytest.raises(IncompleteStudyError, match="0 of 40 trials"):
-        read_study_data(tmp_path / DATABASE)
 
 
 def test_trials_that_got_stuck_are_reported_and_not_played_again(tmp_path):

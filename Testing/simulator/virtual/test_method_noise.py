@@ -5,8 +5,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, hides
-from rastrainer.protocol import RegistrationMethod
-from rastrainer_simulator.virtual.method_trials import PUBLISHED_NOISE, RangeCamera
+from rastrainer_simulator.virtual.method_trials import RangeCamera
 from Testing.domain.registration.traces import colin27
 
 
@@ -35,11 +34,6 @@ def test_a_camera_that_sees_too_little_is_refused_with_a_message():
     head = colin27()
     with pytest.raises(InputError, match="range camera sees"):
         RangeCamera(head.middle + np.array([0.0, 500.0, 0.0]), 1.0, spacing_mm=90.0).seen(head)
-
-
-def test_noise_is_stated_for_every_method():
-    assert set(PUBLISHED_NOISE) == set(RegistrationMethod)
-    assert all(point_mm > 0 for point_mm in PUBLISHED_NOISE.values())
 
 
 def test_a_ray_that_misses_the_surface_hits_nothing():

@@ -4,16 +4,10 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.study.outcomes import MAIN_OUTCOMES
 from rastrainer_simulator.report.comparisons import compare_modes
-from rastrainer_simulator.statistics.intervals import paired_power
-from rastrainer_simulator.statistics.trend import TrendVerdict, falling_trend, fit_learning_curve
 from rastrainer_simulator.virtual.outcome_model import (
-    DOF,
     OutcomeModel,
-    draw_outcomes,
-    expected_outcomes,
     rejection_rates,
 )
 from rastrainer_simulator.virtual.population import ModeEffect, Population
@@ -26,64 +20,6 @@ TASKS = 10
 
 def model(**changes):
     return OutcomeModel([120.0] * TASKS, [1.5] * TASKS, **changes)
-
-
-@pytest.fixture(scope="module")
-def cohort():
-    """200 trainees, 10 tasks, 2 modes: times 10 % shorter and errors 20 % larger with the HMD."""
-    truth = model(mode_time={"hmd": 0.9}, mode_fle={"hmd": 1.2}, learning=0.25)
-    return draw_study(truth, 200, MODES, np.random.default_rng(5))
-
-
-def test_the_effects_of_the_mode_are_recovered(cohort):
-    found = {c.outcome.name: c for c in compare_modes(cohort, MAIN_OUTCOMES, *MODES)}
-    for name, factor in (("completion_time_s", 0.9), ("rmse_mm", 1.2)):
-        ratio = np.mean(found[name].second_means) / np.mean(found[name].first_means)
-        assert ratio == pytest.approx(factor, rel=0.02)
-        assert found[name].adjusted_p < 1e-6
-
-
-def test_the_localization_error_is_recovered_from_the_registration_errors(cohort):
-    squares = [t.values["rmse_mm"] ** 2 for t in cohort.of_mode("desktop")]
-    fle = np.sqrt(np.mean(squares) / (1 - 2 / FIDUCIAL_COUNT))
-    spread = 0.15**2 + 0.05**2
-    assert fle == pytest.approx(1.5 * np.exp(spread), rel=0.03)
-
-
-def test_the_learning_rate_is_recovered(cohort):
-    means = [
-        np.mean([t.values["completion_time_s"] for t in cohort.of_mode("desktop") if t.number == n])
-        for n in range(1, TASKS + 1)
-    ]
-    curve = fit_learning_curve(means)
-    assert falling_trend(means).verdict is TrendVerdict.FALLS
-    assert curve.at(10) / curve.at(1) == pytest.approx(10**-0.25, rel=0.03)
-
-
-@pytest.mark.parametrize(
-    ("trainees", "studies"),
-    [(8, 300), *(pytest.param(n, 1500, marks=pytest.mark.soak) for n in (8, 20))],
-)
-def test_without_an_effect_every_test_rejects_about_5_percent(trainees, studies):
-    by_chance = 3.3 * np.sqrt(0.05 * 0.95 / studies)
-    for rates in rejection_rates(model(), trainees, MODES, studies, seed=1):
-        assert rates.t_test == pytest.approx(0.05, abs=by_chance)
-        # An exact test of a discrete statistic stays at or below its level.
-        assert 0.038 - by_chance < rates.ranks < 0.047 + by_chance
-        assert rates.holm < rates.t_test
-        assert rates.coverage is None or rates.coverage == pytest.approx(0.95, abs=by_chance)
-
-
-@pytest.mark.soak
-def test_with_an_effect_intervals_cover_and_power_is_as_computed():
-    truth = model(mode_time={"hmd": 1.05})
-    rates = {r.outcome: r for r in rejection_rates(truth, 16, MODES, 800, seed=2)}
-    assert rates["completion_time_s"].coverage == pytest.approx(0.95, abs=0.025)
-    times, _ = draw_outcomes(truth, 20_000, MODES, np.random.default_rng(3))
-    differences = np.diff(times.mean(axis=2))[:, 0]
-    expected = paired_power(float(differences.mean() / differences.std()), 16)
-    assert rates["completion_time_s"].t_test == pytest.approx(expected, abs=0.06)
-    assert rates["rmse_mm"].t_test < 0.08
 
 
 @pytest.mark.parametrize("alternating", [False, True])
@@ -105,40 +41,6 @@ def test_the_fast_rejection_rates_match_those_of_the_report(alternating):
             ends = np.array([one.result.difference.interval for one in found]).T
             held = (ends[0] <= rates.true_difference) & (rates.true_difference <= ends[1])
             assert rates.coverage == np.mean(held)
-
-
-def test_orders_that_no_rank_test_can_compare_are_never_rejected_by_one():
-    orders = [MODES, ("desktop", "other", "hmd"), MODES[::-1]] * 3
-    for rates in rejection_rates(model(), 9, MODES, 5, seed=1, orders=orders):
-        assert rates.ranks == 0.0
-
-
-@pytest.mark.soak
-def test_practice_carried_over_between_modes_biases_a_fixed_order_but_not_a_balanced_one():
-    truth = model(mode_time={"hmd": 1.05}, learning=0.2, carries_practice=True)
-    fixed = rejection_rates(truth, 16, MODES, 300, seed=4)[0]
-    balanced = rejection_rates(truth, 16, MODES, 300, seed=4, orders=[MODES, MODES[::-1]] * 8)[0]
-    assert fixed.coverage < 0.2
-    assert balanced.coverage == pytest.approx(0.95, abs=0.04)
-    assert fixed.true_difference == balanced.true_difference > 0
-
-
-def test_the_expected_outcomes_match_those_of_very_many_trainees():
-    truth = model(mode_time={"hmd": 0.9}, mode_fle={"hmd": 1.2}, learning=0.25)
-    drawn = draw_outcomes(truth, 20_000, MODES, np.random.default_rng(3))
-    for expected, values in zip(expected_outcomes(truth, MODES), drawn, strict=True):
-        np.testing.assert_allclose(values.mean(axis=0), expected, rtol=0.006)
-
-
-def test_the_spread_between_trainees_is_recovered(cohort):
-    """The logarithms of means over tasks and modes have σ² = σ²ₜ + σ²ᵢ/2 + σ²ₑ/20."""
-    for name, noise in (("completion_time_s", 0.12), ("rmse_mm", 1 / np.sqrt(2 * DOF))):
-        own = [
-            np.mean([np.log(t.values[name]) for t in cohort.trials if t.trainee == trainee])
-            for trainee in cohort.trainees
-        ]
-        beside = 0.05**2 / 2 + noise**2 / (2 * TASKS)
-        assert np.sqrt(np.var(own, ddof=1) - beside) == pytest.approx(0.15, rel=0.15)
 
 
 def test_the_same_seed_gives_the_same_trainees_however_many():
@@ -214,12 +116,6 @@ def test_lapses_occur_in_their_share_of_trials():
     slips = [skill.slip_at is not None for skill in hands(Population(lapses=0.3))]
     assert np.mean(slips) == pytest.approx(0.3, abs=0.03)
     assert {skill.slip_at for skill in hands(Population(), trainees=9)} == {Skill().slip_at}
-
-
-def test_a_misleading_view_biases_the_aim_only_in_its_mode():
-    population = Population(modes={"hmd": ModeEffect(bias_mm=(0.0, 2.0, 0.0))})
-    assert hands(population, "hmd", trainees=1)[0].aim_bias_mm == (0.0, 2.0, 0.0)
-    assert hands(population, "desktop", trainees=1)[0].aim_bias_mm == (0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize(

@@ -17,13 +17,6 @@ from pydicom.uid import (
 LPS_TO_RAS = np.diag([-1.0, -1.0, 1.0, 1.0])
 
 
-def write_series(folder, values, spacing, series="1.2.3.4", first=(0.0, 0.0, 0.0)):
-    """Write (i, j, k) int16 values, axial, one file a slice from below; `first` is LPS mm."""
-    matrix = np.diag([*spacing, 1.0])
-    matrix[:3, 3] = first
-    write_slices(folder, slices(values, matrix, series), series)
-
-
 def write_slices(folder, datasets, prefix="IM"):
     """Write each data set into its own file, not in the order of their places."""
     folder.mkdir(exist_ok=True, parents=True)

@@ -45,6 +45,12 @@ def sequence(length, items):
     return long((0x0008, 0x1140), b"SQ", length) + items
 
 
+def write(folder, content):
+    """Write nine slices, of which the fifth has this content."""
+    for number in range(9):
+        (folder / f"{number}.dcm").write_bytes(content if number == 4 else slice_at(number))
+
+
 HUGE = long((0x0009, 0x1001), b"OB", FOUR_GB)
 SMALL = struct.pack("<HH2sH6s", 0x0008, 0x1155, b"UI", 6, b"1.2.3")
 ENDS = plain(END_OF_ITEM) + plain(END_OF_SEQUENCE)
@@ -53,7 +59,6 @@ ENDS = plain(END_OF_ITEM) + plain(END_OF_SEQUENCE)
 @pytest.mark.parametrize(
     "content",
     [
-        pytest.param(with_first(HUGE), id="an element"),
         pytest.param(
             with_first(sequence(UNDEFINED, plain(ITEM, UNDEFINED) + HUGE + ENDS)), id="in an item"
         ),
@@ -65,9 +70,7 @@ ENDS = plain(END_OF_ITEM) + plain(END_OF_SEQUENCE)
     ],
 )
 def test_a_file_that_claims_more_than_it_holds_is_refused_without_its_memory(content, tmp_path):
-    for number in range(9):
-        (tmp_path / f"{number}.dcm").write_bytes(slice_at(number))
-    (tmp_path / "4.dcm").write_bytes(content)
+    write(tmp_path, content)
     tracemalloc.start()
     with pytest.raises(InputError, match=r"4\.dcm is cut short or damaged"):
         readDicom(tmp_path)
@@ -79,16 +82,10 @@ def test_a_file_that_claims_more_than_it_holds_is_refused_without_its_memory(con
 @pytest.mark.parametrize(
     "content",
     [
-        pytest.param(SLICE, id="plain"),
         pytest.param(
             with_first(sequence(UNDEFINED, plain(ITEM, UNDEFINED) + SMALL + ENDS)),
             id="sequence of unknown length",
         ),
-        pytest.param(
-            with_first(sequence(8 + len(SMALL), plain(ITEM, len(SMALL)) + SMALL)),
-            id="sequence of known length",
-        ),
-        pytest.param(with_first(sequence(0, b"")), id="empty sequence"),
         pytest.param(
             with_first(sequence(8 + len(HUGE), plain(ITEM, len(HUGE)) + HUGE)),
             id="a sequence that can be skipped whatever it claims",
@@ -96,7 +93,5 @@ def test_a_file_that_claims_more_than_it_holds_is_refused_without_its_memory(con
     ],
 )
 def test_a_complete_file_is_not_called_truncated(content, tmp_path):
-    for number in range(9):
-        (tmp_path / f"{number}.dcm").write_bytes(slice_at(number))
-    (tmp_path / "4.dcm").write_bytes(content)
+    write(tmp_path, content)
     assert readDicom(tmp_path).values.shape == (8, 8, 9)

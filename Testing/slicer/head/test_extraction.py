@@ -72,10 +72,19 @@ def skin_errors(mesh, above=LOWEST + 3.0):
     return np.abs((radius - 1) / gradient)[~(base | airway | ear)]
 
 
+def expect_skin(mesh, errors, base_mm):
+    assert len(errors) > 10_000
+    assert errors.mean() < 0.5
+    assert np.percentile(errors, 95) < 1.0
+    assert mesh.is_closed
+    assert mesh.euler_characteristic == 2
+    assert mesh.vertices[:, 2].min() == pytest.approx(LOWEST + 1.0, abs=base_mm)
+
+
 def skin_in(volume):
     """Return the surface of the head that is found in a volume."""
     settings = HeadSettings(openingMm=8)
-    return skinOf(findHead(volume, settings, no_progress), settings, no_progress)
+    return skinOf(findHead(volume, settings, no_progress), no_progress)
 
 
 @pytest.mark.parametrize(
@@ -86,18 +95,9 @@ def skin_in(volume):
     ],
 )
 def test_the_skin_of_a_phantom_is_found_within_half_a_millimeter(spacing, turn_deg, flip):
-    shape = tuple(
-        int(np.ceil(extent / s)) for extent, s in zip((96, 100, 70), spacing, strict=True)
-    )
-    volume = phantom(around_head(axes(spacing, turn_deg, flip), shape), shape)
-    mesh = skin_in(volume)
-    errors = skin_errors(mesh)
-    assert len(errors) > 10_000
-    assert errors.mean() < 0.5
-    assert np.percentile(errors, 95) < 1.0
-    assert mesh.is_closed
-    assert mesh.euler_characteristic == 2
-    assert mesh.vertices[:, 2].min() == pytest.approx(LOWEST + 1.0, abs=1e-4)
+    shape = tuple(np.ceil(np.divide((96, 100, 70), spacing)).astype(int))
+    mesh = skin_in(phantom(around_head(axes(spacing, turn_deg, flip), shape), shape))
+    expect_skin(mesh, skin_errors(mesh), 1e-4)
     on_base = np.isclose(mesh.vertices[:, 2], LOWEST + 1.0, atol=1e-4)
     assert (mesh.vertices[~on_base, 2] > LOWEST + 1.001).all()
 
@@ -112,15 +112,10 @@ def test_the_skin_of_a_phantom_is_found_within_half_a_millimeter(spacing, turn_d
 def test_the_skin_is_found_however_the_scan_is_oriented_and_stored(directions, spacing):
     mesh = skin_in(stored_along(directions, spacing))
     # Below, the neck continues straight where the tilted lowest slice omits some of it.
-    errors = skin_errors(mesh, above=LOWEST + 14.0)
-    assert errors.mean() < 0.5
-    assert np.percentile(errors, 95) < 1.0
-    assert mesh.is_closed
-    assert mesh.euler_characteristic == 2
-    assert mesh.vertices[:, 2].min() == pytest.approx(LOWEST + 1.0, abs=0.5)
+    expect_skin(mesh, skin_errors(mesh, above=LOWEST + 14.0), 0.5)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(3))
 def test_a_head_turned_by_up_to_15_degrees_is_cut_flat_and_closed_at_any_height(seed):
     chance = np.random.default_rng(seed)
     turn = Rotation.from_euler("xyz", chance.uniform(-15.0, 15.0, 3), degrees=True).as_matrix()
@@ -144,17 +139,11 @@ def test_a_nose_cut_off_by_the_image_ends_rounded_a_few_millimeters_beyond_it():
     shape = (80, 60, 60)
     volume = phantom(around_head(axes((1, 1, 1)), shape), shape)
     edge = volume.ijkToRas[1, 3] + shape[1] - 1
-    mesh = skin_in(volume)
+    mesh, again = skin_in(volume), skin_in(volume)
+    assert np.array_equal(mesh.vertices, again.vertices)
+    assert np.array_equal(mesh.triangles, again.triangles)
     assert edge + 2 < mesh.vertices[:, 1].max() < edge + 10
     assert mesh.euler_characteristic == 2
-
-
-def test_the_same_volume_gives_the_same_head():
-    shape = (84, 90, 60)
-    volume = phantom(around_head(axes((1, 1, 1)), shape), shape)
-    first, second = (skin_in(volume) for _ in range(2))
-    assert np.array_equal(first.vertices, second.vertices)
-    assert np.array_equal(first.triangles, second.triangles)
 
 
 def test_progress_is_reported_and_may_cancel():
@@ -168,7 +157,7 @@ def test_progress_is_reported_and_may_cancel():
         if step == "Filling cavities":
             raise CanceledError
 
-    volume = phantom(around_head(axes((1, 1, 1)), (84, 90, 60)), (84, 90, 60))
+    volume = phantom(around_head(axes((2, 2, 2)), (42, 45, 30)), (42, 45, 30))
     with pytest.raises(CanceledError):
         findHead(volume, HeadSettings(), progress)
     assert received == sorted(received)

@@ -76,7 +76,7 @@ def test_anything_far_from_the_head_becomes_air():
     made, _sentence, head = images(scan)
     far = depths(made) < -KEPT_MM - 3.0
     assert not made.values[far & (np.indices(made.values.shape)[2] > 20)].any()
-    skin = skinOf(head, HeadSettings(), lambda _step, _share: None)
+    skin = skinOf(head, lambda _step, _share: None)
     corners = np.array([made.ijk_to_ras[:3, 3], (made.ijk_to_ras @ [*made.values.shape, 1])[:3]])
     assert (corners[0][:2] > skin.vertices.min(axis=0)[:2] - KEPT_MM - 2).all()
     assert (corners[1] < skin.vertices.max(axis=0) + KEPT_MM + 3).all()

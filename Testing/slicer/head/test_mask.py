@@ -46,7 +46,7 @@ def with_tunnel(width):
     return body
 
 
-@pytest.mark.parametrize("width", [0, 1, 3])
+@pytest.mark.parametrize("width", [0, 3])
 def test_a_tunnel_is_closed_by_one_thin_membrane(width):
     wanted = with_tunnel(width)
     assert euler_characteristic(wanted) == 0

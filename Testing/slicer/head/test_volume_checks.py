@@ -1,13 +1,11 @@
 """Volumes that are broken or not heads: one error each. Odd but sound volumes are used."""
 
-import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.head.head_draft import checkVolume, makeDraft
 from rastrainer_headless.dicom_series import readDicom
 from Testing.slicer.head.broken_volumes import HEADLESS, UNUSABLE, block
-from Testing.slicer.head.dicom_series import write_series
 
 
 def sheared():
@@ -39,26 +37,6 @@ def test_a_volume_without_a_head_is_refused_with_a_message(name):
 
 def test_thick_slices_are_used_with_a_warning():
     assert "5.0 mm apart" in checkVolume(block((100, 100, 40), (1.0, 1.0, 5.0)))[0]
-
-
-def test_a_dicom_series_is_read_by_position_whatever_its_files_are_called(tmp_path):
-    values = np.arange(20 * 24 * 16, dtype=np.int16).reshape(20, 24, 16)
-    write_series(tmp_path, values, (2.0, 3.0, 4.0), first=(-10.0, -20.0, -30.0))
-    write_series(tmp_path, values[:, :, :9] + 7, (2.0, 3.0, 4.0), series="1.2.3.5")
-    (tmp_path / "notes.txt").write_text("no image")
-    read = readDicom(tmp_path)
-    assert np.array_equal(read.values, values)
-    # DICOM is LPS, the volume RAS: x and y change their signs.
-    assert np.allclose(read.ijkToRas[:3, :3], np.diag([-2, -3, 4]))
-    assert np.allclose(read.ijkToRas[:3, 3], [10, 20, -30])
-
-
-def test_a_series_with_a_missing_slice_is_refused(tmp_path):
-    values = np.zeros((20, 20, 12), np.int16)
-    write_series(tmp_path, values, (1.0, 1.0, 2.0))
-    sorted(tmp_path.iterdir())[4].unlink()
-    with pytest.raises(InputError, match="not evenly spaced"):
-        readDicom(tmp_path)
 
 
 @pytest.mark.parametrize("content", [b"", bytes(128) + b"DICM" + b"\x02\x00garbage" * 40])

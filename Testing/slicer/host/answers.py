@@ -10,14 +10,7 @@ from Testing.slicer.host.failures import FAILURES
 
 @dataclass(frozen=True)
 class Message:
-    """A message box that was shown.
-
-    Attributes:
-        title: of its window.
-        text: its sentence.
-        details: what its button Show Details would show.
-        answer: name of the button that was pressed.
-    """
+    """A message box that was shown."""
 
     title: str
     text: str
@@ -26,12 +19,7 @@ class Message:
 
 
 class Answers:
-    """Answers dialogs in the order in which the test has given the answers.
-
-    Attributes:
-        messages: all message boxes so far.
-        are_given_by_hand: whether dialogs stay open until someone presses their buttons.
-    """
+    """Answers dialogs in the order in which the test has given the answers."""
 
     def __init__(self) -> None:
         self.messages: list[Message] = []
@@ -39,17 +27,11 @@ class Answers:
         self._prepared: list[tuple[str, Any]] = []
 
     def clear(self) -> None:
-        """Forget everything."""
         self.__init__()
 
     def prepare(self, part: str, answer: Any) -> None:
         """Answer the next dialog whose text or title contains `part`."""
         self._prepared.append((part, answer))
-
-    @property
-    def unused(self) -> list[str]:
-        """The texts of the dialogs that were expected and have not appeared."""
-        return [part for part, _answer in self._prepared]
 
     def take(self, *texts: str) -> Any | None:
         """Return the answer prepared for a dialog with these texts; None if there is none."""

@@ -13,7 +13,6 @@ OFFSCREEN_REMARK = "This plugin does not support propagateSizeHints()"
 
 
 def application() -> QtWidgets.QApplication:
-    """Return this process's QApplication."""
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
     running = QtWidgets.QApplication.instance()
     if running is not None:

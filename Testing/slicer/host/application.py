@@ -73,7 +73,6 @@ class Application(Checked):
         return self._exit_status
 
     def close_of_host(self) -> None:
-        """Stop writing the log."""
         self._error_log.close()
 
     def setAttribute(self, attribute: int, on: bool = True) -> None:
@@ -116,23 +115,8 @@ class Application(Checked):
     def overrideCursor(self) -> Any:
         return from_qt(QtWidgets.QApplication.overrideCursor())
 
-    def style(self) -> Any:
-        return wrap(QtWidgets.QApplication.style())
-
-    def clipboard(self) -> Any:
-        return wrap(QtWidgets.QApplication.clipboard())
-
-    def palette(self, *_class: str) -> Any:
-        return wrap(QtWidgets.QApplication.palette())
-
     def topLevelWidgets(self) -> tuple:
         return tuple(wrap(widget) for widget in QtWidgets.QApplication.topLevelWidgets())
-
-    def pauseRender(self) -> None:
-        """Nothing is rendered by itself here."""
-
-    def resumeRender(self) -> None:
-        """Nothing is rendered by itself here."""
 
     def isInstalled(self) -> bool:
         return True

@@ -14,11 +14,7 @@ PERIOD_MS = 5
 
 @contextmanager
 def cancels(host: Host, button: str, when: Callable[[], bool] = lambda: True) -> Iterator[None]:
-    """Press a button within the context when it says Cancel and `when()` is true.
-
-    Raises:
-        AssertionError: the context ends before that happens.
-    """
+    """Press a button within the context when it says Cancel and `when()` is true."""
     timer = QtCore.QTimer()
     timer.setInterval(PERIOD_MS)
 

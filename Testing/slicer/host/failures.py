@@ -16,12 +16,7 @@ from Testing.slicer.host.members import Checked
 
 
 class Failures:
-    """What would be in Slicer's error log, unseen.
-
-    Attributes:
-        texts: one traceback or sentence a failure.
-        listener: receives each of them, if there is one.
-    """
+    """What would be in Slicer's error log, unseen."""
 
     def __init__(self) -> None:
         self.texts: list[str] = []
@@ -45,11 +40,7 @@ FAILURES = Failures()
 
 
 class ErrorLog(Checked):
-    """Stands in for `ctkErrorLogModel`, of which the file alone is offered.
-
-    Attributes:
-        filePath: of the log.
-    """
+    """Stands in for `ctkErrorLogModel`, of which the file alone is offered."""
 
     measured = frozenset({"filePath", "logEntryCount", "logEntryDescription", "clear"})
     title = "slicer.app.errorLogModel()"
@@ -63,13 +54,11 @@ class ErrorLog(Checked):
         FAILURES.listener = lambda text: self.write("CRITICAL", "Stream", text)
 
     def write(self, level: str, origin: str, text: str) -> None:
-        """Append an entry."""
         moment = datetime.now().strftime("%d.%m.%Y %H:%M:%S")
         with Path(self.filePath).open("a", encoding="utf-8") as file:
             file.write(f"[{level}][{origin}] {moment} [] (unknown:0) - {text}\n")
 
     def close(self) -> None:
-        """Stop writing."""
         FAILURES.listener = None
         logging.getLogger().removeHandler(self._handler)
 
@@ -98,7 +87,6 @@ class VtkMessages:
         self._tags = [self._window.AddObserver(event, _take) for event in _EVENTS]
 
     def close(self) -> None:
-        """Stop listening."""
         for tag in self._tags:
             self._window.RemoveObserver(tag)
 

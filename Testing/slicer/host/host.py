@@ -31,15 +31,7 @@ CONNECTOR_PERIOD_MS = 5
 
 
 class Host(User):
-    """Slicer, its scene and one module in it, with the hands and the eyes of a user.
-
-    Attributes:
-        scene: `slicer.mrmlScene`.
-        widget: the module's widget, once it is opened.
-        clicks: names of the buttons and headers that were clicked, in their order.
-        keeps_lock: whether the main thread keeps Python's lock while it waits for events, as in
-            Slicer; the threads of a test's own peers then run only now and then.
-    """
+    """Slicer, its scene and one module in it, with the hands and the eyes of a user."""
 
     def __init__(
         self,
@@ -48,14 +40,6 @@ class Host(User):
         connector: bool = True,
         window: bool = True,
     ) -> None:
-        """Start Slicer.
-
-        Args:
-            folder: for settings, temporary files and Slicer's own folder.
-            module_file: of the module.
-            connector: whether the extension SlicerOpenIGTLink is installed.
-            window: False is Slicer without a main window, as in its generic tests.
-        """
         lend_references()
         self.keeps_lock = False
         appearance.application()
@@ -96,7 +80,6 @@ class Host(User):
 
     @property
     def messages(self) -> list[Message]:
-        """The message boxes so far."""
         return ANSWERS.messages
 
     @property
@@ -126,12 +109,10 @@ class Host(User):
             self.leave()
 
     def enter(self) -> None:
-        """Return to the module."""
         self._frame._qt.enter()
         self.widget.enter()
 
     def leave(self) -> None:
-        """Go to another module."""
         self.widget.exit()
         self._frame._qt.exit()
 
@@ -210,7 +191,6 @@ class Host(User):
         return slicer.app.exit_status_of_host()
 
     def close(self) -> None:
-        """Quit Slicer."""
         try:
             if self.widget is not None:
                 self.widget.exit()

@@ -60,7 +60,6 @@ class Installation:
         setattr(slicer, name, value)
 
     def remove(self) -> None:
-        """Restore the former state."""
         for name, value in self._modules.items():
             if value is _MISSING:
                 sys.modules.pop(name, None)
@@ -90,7 +89,6 @@ class Home:
         QStandardPaths.setTestModeEnabled(True)
 
     def leave(self) -> None:
-        """Restore the former state."""
         for name, value in self._former.items():
             if value is None:
                 os.environ.pop(name, None)

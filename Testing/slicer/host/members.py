@@ -59,7 +59,7 @@ def members_of(class_name: str) -> Members:
         own = Members(
             own.properties | base.properties, own.signals | base.signals, own.methods | base.methods
         )
-    return _add(own, EXTRA_MEMBERS.get(class_name, ""))
+    return own
 
 
 def _add(members: Members, names: str) -> Members:
@@ -83,12 +83,8 @@ def _argument_count(signature: str) -> int:
 
 
 class Checked:
-    """Distinguishes what Slicer lacks from what only the host does not offer.
-
-    Attributes:
-        measured: names of the members of Slicer's object.
-        title: what Slicer calls it.
-    """
+    """Distinguishes what Slicer lacks, whose object has the `measured` members, from what only the
+    host does not offer."""
 
     measured: frozenset[str]
     title: str
@@ -117,12 +113,9 @@ UNMEASURED: dict[str, tuple[str, str]] = {
         " setSectionHidden setSectionsClickable resizeSections sectionSizeHint count",
     ),
     "QScrollBar": ("QSlider", ""),
-    "QByteArray": ("", "data isEmpty size length toBase64"),
     "QFile": ("", "exists open close ReadOnly fileName"),
     "QUiLoader": ("", "load"),
     "QUrl": ("", "fromLocalFile toLocalFile toString isValid"),
-    "QFont": ("", "setBold bold setItalic setPointSize pointSize setFamily Monospace setStyleHint"),
-    "QBrush": ("", "color setColor style"),
     "QCursor": ("", "shape pos"),
     "qSlicerMainWindow": ("QWidget", "statusBar moduleSelector"),
     "QPoint": ("", "x y"),
@@ -130,42 +123,21 @@ UNMEASURED: dict[str, tuple[str, str]] = {
     "QSizePolicy": ("", "Expanding Preferred Fixed Minimum MinimumExpanding Ignored Maximum"),
     "QKeySequence": ("", "toString"),
     "QDesktopServices": ("", "openUrl"),
-    "QEvent": ("", "type Resize Show Hide KeyPress"),
-    "QPalette": ("", "color setColor Window WindowText Base Text Highlight"),
-    "QSpacerItem": ("", ""),
-    "QWidgetItem": ("", "widget layout spacerItem"),
-    "QDate": ("", "toString"),
-    "QTime": ("", "toString"),
-    "QTextDocument": ("QObject", "toPlainText clear"),
-    "QTextCursor": ("", "End movePosition"),
-    "QModelIndex": ("", "row column isValid"),
-    "QClipboard": ("QObject", "setText text"),
-    "QFontMetrics": ("", "height horizontalAdvance"),
-    "QStyle": ("QObject", "standardIcon"),
     "qSlicerScriptedLoadableModuleWidget": ("QWidget", ".isEntered .moduleName setMRMLScene"),
 }
-
-# Static functions that stood behind a property of the same name when the classes were measured.
-EXTRA_MEMBERS: dict[str, str] = {}
 
 
 _NAMES = {
     "qt": """
-        QAction QApplication QButtonGroup QCheckBox QColor QComboBox QDateTime QDialog
-        QDoubleSpinBox QFileDialog QFormLayout QFrame QGridLayout QGroupBox QHBoxLayout QIcon
-        QInputDialog QLabel QLineEdit QListWidget QMenu QMessageBox QPixmap QPlainTextEdit
-        QProcess QProcessEnvironment QProgressBar QProgressDialog QPushButton QRadioButton
-        QScrollArea QSettings QSize QSlider QSpinBox QSplitter QStackedWidget QStandardPaths
-        QTabWidget QTableView QTableWidget QTableWidgetItem QTextBrowser QTextEdit QTimer
-        QToolButton QTreeWidget QVBoxLayout QWidget
+        QApplication QCheckBox QColor QComboBox QDialog QDoubleSpinBox QFileDialog QFormLayout
+        QFrame QGridLayout QGroupBox QHBoxLayout QIcon QInputDialog QLabel QLineEdit QMessageBox
+        QPixmap QPlainTextEdit QProcess QProgressBar QProgressDialog QPushButton QScrollArea
+        QSettings QSize QSlider QSpinBox QStandardPaths QTableView QTableWidget QTableWidgetItem
+        QTimer QVBoxLayout QWidget
     """,
-    "ctk": """
-        ctkCollapsibleButton ctkCollapsibleGroupBox ctkComboBox ctkDirectoryButton
-        ctkMessageBox ctkPathLineEdit ctkPushButton ctkSliderWidget
-    """,
+    "ctk": "ctkCollapsibleButton ctkCollapsibleGroupBox ctkMessageBox ctkPathLineEdit",
     "qMRML": """
-        qMRMLNodeComboBox qMRMLPlotView qMRMLPlotWidget qMRMLTableView qMRMLWidget
-        qMRMLSliceWidget qMRMLSliceView qMRMLThreeDWidget qMRMLThreeDView
+        qMRMLNodeComboBox qMRMLPlotWidget qMRMLSliceWidget qMRMLThreeDWidget qMRMLWidget
     """,
 }
 OFFERED = {module: tuple(names.split()) for module, names in _NAMES.items()}

@@ -193,11 +193,7 @@ class QtConstants:
 
 @functools.cache
 def class_named(name: str) -> type:
-    """Return the class that a module of Slicer's sees under that name.
-
-    Raises:
-        AttributeError: Slicer has no such class, or the host does not offer it.
-    """
+    """Return the class that a module of Slicer's sees under that name."""
     if module_of(name) is None:
         raise AttributeError(f"Neither Slicer nor the host is known to have {name}.")
     qt_class = _qt_class(name)

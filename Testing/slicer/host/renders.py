@@ -22,9 +22,6 @@ class RenderCounter:
     Each change of a transform or of what can be shown is a reason to render, also one to the same
     matrix, of a hidden node, in any module. All changes in one turn of the event loop make
     one rendering.
-
-    Attributes:
-        count: renderings so far.
     """
 
     def __init__(self, scene: Any) -> None:
@@ -37,7 +34,6 @@ class RenderCounter:
         ]
 
     def close(self) -> None:
-        """Release the scene."""
         for tag in self._tags:
             self._scene.RemoveObserver(tag)
 

@@ -30,12 +30,7 @@ class SampleDataSource:
 
 
 class SampleDataLogic:
-    """Stands in for the logic of Sample Data. What Slicer would download is made here instead.
-
-    Attributes:
-        uri: where Slicer's own samples are; an address without a server means no network.
-        attempts: how often a sample was to be downloaded.
-    """
+    """Stands in for the logic of Sample Data. What Slicer would download is made here instead."""
 
     def __init__(self) -> None:
         self.uri = Path(__file__).as_uri()
@@ -113,7 +108,6 @@ def _load(source: SampleDataSource) -> Any:
 
 
 def make_module() -> ModuleType:
-    """Return the module `SampleData`."""
     module = ModuleType("SampleData")
     module.SampleDataLogic = SampleDataLogic
     return module

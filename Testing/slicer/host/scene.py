@@ -25,12 +25,7 @@ MODULE_LOGICS = {
 
 
 class ApplicationScene:
-    """Owns the scene and its logics.
-
-    Attributes:
-        scene: what the module sees as `slicer.mrmlScene`.
-        applicationLogic: of the application.
-    """
+    """Owns the scene and its logics."""
 
     def __init__(self) -> None:
         self.scene = slicer.vtkMRMLScene()

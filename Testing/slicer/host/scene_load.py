@@ -18,15 +18,7 @@ from Testing.slicer.host.values import Slot
 
 @dataclass(frozen=True)
 class Load:
-    """What one turn, or several, have handed over.
-
-    Attributes:
-        events: of all nodes; each is answered by views, widgets and trees.
-        nodes: that were added.
-        kibibytes: of surfaces and images that are new to their nodes, or changed.
-        cells: of these surfaces, each of which the views cut and draw.
-        views: slice views that were moved, each of which cuts images and surfaces again.
-    """
+    """What one turn, or several, have handed over."""
 
     events: int = 0
     nodes: int = 0
@@ -76,7 +68,6 @@ class SceneLoad:
 
     @property
     def total(self) -> Load:
-        """All of each."""
         return Load.combined([Load(), *self._turns], sum)
 
     @vtk.calldata_type(vtk.VTK_OBJECT)

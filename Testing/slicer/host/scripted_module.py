@@ -115,7 +115,6 @@ class ScriptedLoadableModuleTest(unittest.TestCase):
 
 
 def make_module() -> ModuleType:
-    """Return the module `slicer.ScriptedLoadableModule`."""
     module = ModuleType("slicer.ScriptedLoadableModule")
     for kind in (
         ScriptedLoadableModule,

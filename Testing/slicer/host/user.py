@@ -86,7 +86,6 @@ class User:
         self.process_events()
 
     def check(self, name: str, checked: bool = True) -> None:
-        """Check or uncheck a box."""
         if self._usable(name).isChecked() != checked:
             self._usable(name).click()
         self.process_events()
@@ -115,12 +114,7 @@ class User:
         return self.find(name).text
 
     def wait_until(self, condition: Callable[[], Any], what: str, timeout_s: float = 300.0) -> None:
-        """Process events until something is true.
-
-        Raises:
-            AssertionError: it is not true in time, or something failed meanwhile; `what` names
-                the condition.
-        """
+        """Process events until something is true."""
         deadline = time.monotonic() + timeout_s
         while not condition():
             self.process_events()
@@ -155,7 +149,6 @@ class User:
             self._wait()
 
     def process_events(self) -> None:
-        """Let Qt process its events."""
         if self.keeps_lock:
             event_loop.process_events_keeping_lock()
         else:
@@ -163,7 +156,6 @@ class User:
         QtWidgets.QApplication.sendPostedEvents(None, QtCore.QEvent.Type.DeferredDelete)
 
     def _wait(self) -> None:
-        """Wait for the next event."""
         if self.keeps_lock:
             event_loop.wait_keeping_lock()
         else:

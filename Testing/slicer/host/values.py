@@ -110,12 +110,7 @@ CONNECTIONS = "_connectionsOfHost"
 
 
 class Slot:
-    """Calls a function with as many arguments as it takes, and catches its errors.
-
-    Attributes:
-        is_tick: whether it is called by a timer.
-        watchers: called before and after each call that is not made within another one.
-    """
+    """Calls a function with as many arguments as it takes, and catches its errors."""
 
     watchers: ClassVar[list[Callable[[], None]]] = []
     _depth: ClassVar[int] = 0

@@ -47,6 +47,17 @@ SLICE_COLORS = {
 }
 
 
+def picture_of(window: Any, width: int, height: int) -> QtGui.QImage:
+    reader = vtk.vtkWindowToImageFilter()
+    reader.SetInput(window)
+    reader.ReadFrontBufferOff()
+    reader.Update()
+    colors = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
+    rows = np.ascontiguousarray(colors.reshape(height, width, -1)[::-1, :, :3])
+    image = QtGui.QImage(rows.data, width, height, 3 * width, QtGui.QImage.Format.Format_RGB888)
+    return image.copy()
+
+
 class View:
     """A render window without a screen, and the managers that fill it.
 
@@ -70,20 +81,12 @@ class View:
         self._group.SetMRMLDisplayableNode(node)
 
     def picture(self, width: int, height: int) -> QtGui.QImage:
-        """Return what the view shows."""
         self._open_window()
         self.window.SetSize(width, height)
         # The labels of markups find their positions in the second one.
         self.window.Render()
         self.window.Render()
-        reader = vtk.vtkWindowToImageFilter()
-        reader.SetInput(self.window)
-        reader.ReadFrontBufferOff()
-        reader.Update()
-        colors = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
-        rows = np.ascontiguousarray(colors.reshape(height, width, -1)[::-1, :, :3])
-        image = QtGui.QImage(rows.data, width, height, 3 * width, QtGui.QImage.Format.Format_RGB888)
-        return image.copy()
+        return picture_of(self.window, width, height)
 
     def _open_window(self) -> None:
         if not isinstance(self.window, vtk.vtkGenericOpenGLRenderWindow):
@@ -112,7 +115,6 @@ class View:
         return drawn
 
     def close(self) -> None:
-        """Release the scene."""
         self._group.SetMRMLDisplayableNode(None)
         self.window.Finalize()
 
@@ -130,11 +132,6 @@ class ThreeDView(View):
             node = scene.AddNode(node)
         factory = slicer.vtkMRMLThreeDViewDisplayableManagerFactory.GetInstance()
         super().__init__(factory, THREE_D_MANAGERS, logic, node)
-
-    def camera_node(self) -> Any:
-        """Return the camera of the view."""
-        manager = self._group.GetDisplayableManagerByClassName("vtkMRMLCameraDisplayableManager")
-        return manager.GetCameraNode()
 
     def look_from(self, azimuth: float, elevation: float, zoom: float) -> None:
         """Look at everything from an angle, degrees from the front."""

@@ -14,12 +14,10 @@ def plan(tour: Tour) -> str:
     hands = tour.hands
     hands.open("planCollapsibleButton")
     hands.click("placeTargetButton")
-    hands.find("planComboBox").currentNode().AddControlPoint(*PLAN_MM)
-    interaction = slicer.app.applicationLogic().GetInteractionNode()
-    interaction.SetCurrentInteractionMode(interaction.ViewTransform)
-    hands.wait_until(lambda: hands.find("sendPlanButton").enabled, "the plan can be sent")
+    tour.place(hands.find("planComboBox").currentNode(), PLAN_MM)
+    hands.wait_enabled("sendPlanButton")
     hands.click("sendPlanButton")
-    hands.wait_until(lambda: "shows the plan" in hands.text("reachableText"), "it is shown")
+    hands.wait_for("reachableText", "shows the plan")
     text, plan = hands.text("reachableText"), hands.find("planComboBox").currentNode()
     hands.click("removePlanPointButton")
     hands.must(plan.GetNumberOfControlPoints() == 0, "The target is not removed.")
@@ -33,12 +31,7 @@ def keep_trajectory(tour: Tour) -> str:
     hands = tour.hands
     hands.open("planCollapsibleButton")
     hands.click("placeTrajectoryButton")
-    line = hands.find("planComboBox").currentNode()
-    for place in TRAJECTORY_MM:
-        line.AddControlPoint(*place)
-    interaction = slicer.app.applicationLogic().GetInteractionNode()
-    interaction.SetCurrentInteractionMode(interaction.ViewTransform)
-    hands.idle_for(0.5)
+    tour.place(hands.find("planComboBox").currentNode(), *TRAJECTORY_MM)
     hands.find("planTitleLineEdit").text = "Plan of the tour"
     hands.click("keepPlanButton")
     combo = hands.find("scenarioComboBox")
@@ -53,9 +46,9 @@ def replay(tour: Tour) -> str:
     hands.open("scoreCollapsibleButton")
     hands.click("replayButton")
     hands.wait_until(lambda: slicer.util.getNodes("Replay of *"), "the replay is loaded")
-    hands.wait_until(lambda: hands.find("worstTouchButton").enabled, "the replay is ready")
+    hands.wait_enabled("worstTouchButton")
     hands.click("worstTouchButton")
-    hands.wait_until(lambda: "clearance" in hands.text("replayText"), "the clearance is shown")
+    hands.wait_for("replayText", "clearance")
     return hands.text("replayText")
 
 
@@ -111,6 +104,6 @@ def save_and_load_scene(tour: Tour) -> str:
     slicer.mrmlScene.Clear(0)
     hands.idle_for(0.5)
     slicer.util.loadScene(str(path))
-    hands.wait_until(lambda: hands.text("linkText") == "Connected", "it is connected again")
+    hands.wait_for("linkText", "Connected")
     hands.must(slicer.util.getNodes("*fiducials"), "The fiducials are not in the scene.")
     return f"{path.stat().st_size} bytes"

@@ -59,7 +59,7 @@ def _abort_and_repeat_step(tour: Tour) -> None:
     """Abort a trial of the study, say why it is repeated, and abort it again."""
     hands = tour.hands
     hands.open("trainingCollapsibleButton")
-    hands.wait_until(lambda: hands.find("startStepButton").enabled, "a trial can be started")
+    hands.wait_enabled("startStepButton")
     # An aborted trial counts, at once, if it has a touch.
     _abort_step(tour, "--points", "1", "1")
     hands.wait_until(lambda: hands.find("repeatStepButton").visible, "a reason is asked for")
@@ -72,7 +72,7 @@ def _abort_and_repeat_step(tour: Tour) -> None:
 def _abort_step(tour: Tour, *played: str) -> None:
     hands = tour.hands
     hands.click("startStepButton")
-    hands.wait_until(lambda: hands.text("nextStepButton") == "Pause", "the trial runs")
+    hands.wait_for("nextStepButton", "Pause")
     if played:
         tour.play(*played)
     tour.dialogs.answer("Abort the trial", "Yes")
@@ -97,7 +97,7 @@ def delete_every_node(tour: Tour) -> str:
             slicer.mrmlScene.RemoveNode(node)
             hands.idle_for(0.05)
             count += 1
-    hands.wait_until(lambda: hands.text("linkText") == "Connected", "it is connected again")
+    hands.wait_for("linkText", "Connected")
     return f"{count} nodes"
 
 
@@ -107,11 +107,11 @@ def delete_trainee_and_stop(tour: Tour) -> str:
     hands.choose("traineeComboBox", TRAINEE)
     tour.dialogs.answer("cannot be undone", "Yes")
     hands.click("deleteTraineeButton")
-    hands.wait_until(lambda: "was deleted" in hands.text("traineeText"), "the trainee is deleted")
+    hands.wait_for("traineeText", "was deleted")
     text, group = hands.text("traineeText"), _group_of_simulator(tour)
     hands.must(_processes(group), "The simulator's process is not found.")
     hands.click("stopSimulatorButton")
-    hands.wait_until(lambda: hands.text("nextStepButton") == "Start and connect", "it ends")
+    hands.wait_for("nextStepButton", "Start and connect")
     hands.wait_until(lambda: not _processes(group), "no process of the simulator is left")
     return text
 
@@ -121,10 +121,10 @@ def start_and_stop(tour: Tour) -> str:
     hands = tour.hands
     hands.open("simulatorCollapsibleButton")
     hands.click("startSimulatorButton")
-    hands.wait_until(lambda: hands.text("linkText") == "Connected", "it connects")
+    hands.wait_for("linkText", "Connected")
     text = hands.text("programText")
     hands.click("stopSimulatorButton")
-    hands.wait_until(lambda: hands.text("nextStepButton") == "Start and connect", "it ends")
+    hands.wait_for("nextStepButton", "Start and connect")
     return text
 
 

@@ -16,13 +16,7 @@ class TourError(Exception):
 
 
 class Hands:
-    """Clicks, types and waits.
-
-    Attributes:
-        module: the module's widget, as its Python class.
-        patience_s: how long one thing may take, unless it is known to take longer.
-        clicked: names of the buttons and boxes that were clicked.
-    """
+    """Clicks, types and waits."""
 
     def __init__(self, module: Any, unexpected: list[str], patience_s: float) -> None:
         """`unexpected` grows by the text of each unexpected dialog."""
@@ -92,16 +86,7 @@ class Hands:
             time.sleep(0.005)
 
     def wait_until(self, condition: Callable[[], Any], what: str, at_least_s: float = 0.0) -> None:
-        """Let Slicer process its events until something is true.
-
-        Args:
-            condition: ends the wait.
-            what: names the condition.
-            at_least_s: patience for slow work.
-
-        Raises:
-            TourError: it is not true in time, or an unexpected dialog has opened.
-        """
+        """Let Slicer process its events until something is true."""
         timeout_s = max(at_least_s, self.patience_s)
         end = time.monotonic() + timeout_s
         while not condition():
@@ -109,6 +94,13 @@ class Hands:
             if time.monotonic() > end:
                 raise TourError(f"In {timeout_s:g} s it did not happen: {what}.")
             self.idle_for(0.02)
+
+    def wait_for(self, name: str, part: str, at_least_s: float = 0.0) -> None:
+        """Wait until the text of a widget contains `part`."""
+        self.wait_until(lambda: part in self.text(name), f"{name} says “{part}”", at_least_s)
+
+    def wait_enabled(self, name: str) -> None:
+        self.wait_until(lambda: self.find(name).enabled, f"{name} can be used")
 
     def _handle_dialogs(self) -> None:
         """Raise `TourError` if an unexpected dialog has opened."""

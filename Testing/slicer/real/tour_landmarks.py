@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import slicer
 from tour_stage import Tour
 
 TITLE = "Landmarks of the tour"
@@ -26,31 +25,19 @@ def place(tour: Tour) -> str:
     hands.click("undoLandmarkButton")
     hands.wait_until(lambda: table.rowCount == OF_COLIN27, "the landmark is back")
     hands.choose("landmarkNameComboBox", PLACED)
-    _place(tour)
+    hands.click("placeLandmarkButton")
+    tour.place_active(PLACED_MM)
     hands.wait_until(lambda: table.rowCount == OF_COLIN27 + 1, "another one is placed")
     hands.click("undoLandmarkButton")
     hands.wait_until(lambda: table.rowCount == OF_COLIN27, "it is gone")
     hands.click("proposeLandmarksButton")
-    hands.wait_until(
-        lambda: "are proposed" in hands.text(text), "they are proposed", SCENARIO_TIMEOUT_S
-    )
+    hands.wait_for(text, "are proposed", SCENARIO_TIMEOUT_S)
     words = hands.text(text)
     hands.click("checkLandmarksButton")
-    hands.wait_until(
-        lambda: "can be used" in hands.text(text), "they are checked", SCENARIO_TIMEOUT_S
-    )
+    hands.wait_for(text, "can be used", SCENARIO_TIMEOUT_S)
     hands.find("landmarksTitleLineEdit").text = TITLE
     hands.click("saveLandmarksButton")
     combo = hands.find("scenarioComboBox")
     hands.wait_until(lambda: combo.currentText == TITLE, "the copy is chosen", SCENARIO_TIMEOUT_S)
     tour.remove_chosen_scenario()
     return words
-
-
-def _place(tour: Tour) -> None:
-    tour.hands.click("placeLandmarkButton")
-    selection = slicer.app.applicationLogic().GetSelectionNode()
-    points = slicer.mrmlScene.GetNodeByID(selection.GetActivePlaceNodeID())
-    points.AddControlPoint(*PLACED_MM)
-    interaction = slicer.app.applicationLogic().GetInteractionNode()
-    interaction.SetCurrentInteractionMode(interaction.ViewTransform)

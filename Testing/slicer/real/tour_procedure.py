@@ -23,7 +23,8 @@ def plan(tour: Tour) -> str:
     hands.click("editProcedureButton")
     table = hands.find("linesTable")
     hands.wait_until(lambda: table.rowCount == 1, "its line is listed")
-    _place_line(tour)
+    hands.click("placeLineButton")
+    tour.place_active(*SECOND_LINE_MM)
     hands.wait_until(lambda: table.rowCount == 2, "the new line is listed")
     hands.wait_until(lambda: table.item(1, 1).text() != "–", "its length is measured")
     table.selectRow(1)
@@ -35,9 +36,7 @@ def plan(tour: Tour) -> str:
         is_told = STRUCTURE in hands.text("noGoText")
         hands.must(is_told == is_kept, "The structure stays as it was.")
     hands.click("checkLinesButton")
-    hands.wait_until(
-        lambda: "can be carried out" in hands.text(text), "it is measured", SCENARIO_TIMEOUT_S
-    )
+    hands.wait_for(text, "can be carried out", SCENARIO_TIMEOUT_S)
     words = f"angle {table.item(0, 2).text()}°, {table.item(0, 3).text()}"
     hands.find("procedureScenarioLineEdit").text = TITLE
     hands.click("saveProcedureButton")
@@ -47,17 +46,6 @@ def plan(tour: Tour) -> str:
     return words
 
 
-def _place_line(tour: Tour) -> None:
-    tour.hands.click("placeLineButton")
-    selection = slicer.app.applicationLogic().GetSelectionNode()
-    line = slicer.mrmlScene.GetNodeByID(selection.GetActivePlaceNodeID())
-    for place in SECOND_LINE_MM:
-        line.AddControlPoint(*place)
-    interaction = slicer.app.applicationLogic().GetInteractionNode()
-    interaction.SetCurrentInteractionMode(interaction.ViewTransform)
-    tour.hands.idle_for(0.2)
-
-
 def start(tour: Tour) -> str:
     """Start the task with a procedure, and touch and register its points."""
     hands = tour.hands
@@ -65,7 +53,7 @@ def start(tour: Tour) -> str:
     hands.choose("taskComboBox", "Task 1")
     hands.choose("procedureComboBox", PROCEDURE)
     hands.click("startTaskButton")
-    hands.wait_until(lambda: hands.text("nextStepButton") == "Pause", "the trial runs")
+    hands.wait_for("nextStepButton", "Pause")
     _touch_all(tour)
     return hands.text("procedureStateText")
 
@@ -86,10 +74,10 @@ def verify(tour: Tour) -> str:
     _touch_all(tour)
     tour.play("--checkpoint", str(CHECKPOINT))
     text = "procedureInstructionText"
-    hands.wait_until(lambda: "checkpoint was" in hands.text(text), "its error is shown")
+    hands.wait_for(text, "checkpoint was")
     words = hands.text(text)
     hands.click("acceptButton")
-    hands.wait_until(lambda: hands.find("alignButton").enabled, "the guide is aligned next")
+    hands.wait_enabled("alignButton")
     return words
 
 
@@ -98,7 +86,7 @@ def align(tour: Tour) -> str:
     hands = tour.hands
     state = _align_and_lock(tour)
     hands.click("retractDrillButton")
-    hands.wait_until(lambda: hands.find("alignButton").enabled, "the guide is aligned again")
+    hands.wait_enabled("alignButton")
     _align_and_lock(tour)
     return state
 
@@ -106,10 +94,10 @@ def align(tour: Tour) -> str:
 def _align_and_lock(tour: Tour) -> str:
     hands, state = tour.hands, "procedureStateText"
     hands.click("alignButton")
-    hands.wait_until(lambda: "0.00 mm and 0.00°" in hands.text(state), "the guide is on the line")
+    hands.wait_for(state, "0.00 mm and 0.00°")
     text = hands.text(state)
     hands.click("lockButton")
-    hands.wait_until(lambda: hands.find("advanceButton").enabled, "the drill is in the guide")
+    hands.wait_enabled("advanceButton")
     return text
 
 
@@ -121,7 +109,7 @@ def drill(tour: Tour) -> str:
     tour.play("--drill")
     text = hands.text(state)
     hands.click("startInsertionButton")
-    hands.wait_until(lambda: hands.find("releaseButton").enabled, "the instrument is in the guide")
+    hands.wait_enabled("releaseButton")
     return text
 
 
@@ -135,7 +123,7 @@ def insert(tour: Tour) -> str:
     hands.wait_until(lambda: table.rowCount == 1 and hands.text(text), "the errors are shown")
     hands.must("Not acceptable" not in hands.text(text), hands.text(text))
     table.selectRow(0)
-    hands.wait_until(lambda: hands.text("nextStepButton") == "Show result", "it is scored")
+    hands.wait_for("nextStepButton", "Show result")
     hands.click("nextStepButton")
     hands.open("procedureCollapsibleButton")
     hands.choose("procedureComboBox", "none")
@@ -148,7 +136,7 @@ def _advance_and_withdraw(tour: Tour) -> None:
     hands.click("advanceButton")
     hands.wait_until(lambda: ": 1.0 mm" in hands.text(state), f"the state changes from {before}")
     hands.click("withdrawButton")
-    hands.wait_until(lambda: ": 0.0 mm" in hands.text(state), "the drill is withdrawn")
+    hands.wait_for(state, ": 0.0 mm")
 
 
 def _watch_slices(tour: Tour) -> None:

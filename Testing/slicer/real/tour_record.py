@@ -19,14 +19,7 @@ _ENTRY = re.compile(r"^\[[A-Z]+\]\[")
 
 @dataclass(frozen=True)
 class Step:
-    """One step of the tour.
-
-    Attributes:
-        name: of the action.
-        ok: whether all was as it should be.
-        seconds: how long it took.
-        note: what there is to say about it; why not, where it is not well.
-    """
+    """One step of the tour."""
 
     name: str
     ok: bool
@@ -35,11 +28,7 @@ class Step:
 
 
 class Record:
-    """Does the steps, and writes their results.
-
-    Attributes:
-        steps: those that are over.
-    """
+    """Does the steps, and writes their results."""
 
     def __init__(self, folder: Path, panel: Any) -> None:
         """`panel` is the module's widget, which is in the pictures where there is no window."""

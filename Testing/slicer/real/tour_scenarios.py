@@ -17,11 +17,11 @@ def zip_file(tour: Tour) -> str:
     tour.dialogs.answer("Save the scenario", path)
     hands.click("exportScenarioButton")
     hands.wait_until(path.is_file, "the file is written", SCENARIO_TIMEOUT_S)
-    hands.wait_until(lambda: "was written" in hands.text("scenarioText"), "the message is shown")
+    hands.wait_for("scenarioText", "was written")
     text = hands.text("scenarioText")
     tour.dialogs.answer("Add a scenario", path)
     hands.click("importScenarioButton")
-    hands.wait_until(lambda: "was added" in hands.text("scenarioText"), "it is added")
+    hands.wait_for("scenarioText", "was added")
     hands.click("loadScenarioButton")
     tour.remove_chosen_scenario()
     return text
@@ -45,15 +45,13 @@ def preview_and_check(tour: Tour) -> str:
     _choose_volume(tour)
     hands.click("previewHeadButton")
     text = "newScenarioText"
-    hands.wait_until(
-        lambda: "the head that was found" in hands.text(text), "it is found", SCENARIO_TIMEOUT_S
-    )
+    hands.wait_for(text, "the head that was found", SCENARIO_TIMEOUT_S)
     hands.open("scenarioCollapsibleButton", "otherHeadGroupBox")
     hands.find("headModelComboBox").setCurrentNode(slicer.util.getNode("Head as found"))
     hands.click("useHeadButton")
-    hands.wait_until(lambda: "is now the head" in hands.text("otherHeadText"), "it is used")
+    hands.wait_for("otherHeadText", "is now the head")
     hands.click("checkScenarioButton")
-    hands.wait_until(lambda: "can be used" in hands.text(text), "it is checked", SCENARIO_TIMEOUT_S)
+    hands.wait_for(text, "can be used", SCENARIO_TIMEOUT_S)
     return hands.text(text)
 
 

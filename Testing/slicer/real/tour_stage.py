@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import qt
 import slicer
@@ -14,20 +15,9 @@ SLIP_AT = 9
 
 
 class Tour:
-    """The opened module, and someone who works with it.
-
-    Attributes:
-        hands: work the widgets.
-        dialogs: answer what the module asks.
-        panel: the module's widget.
-        session: what the module keeps while it is loaded.
-        folder: of all that is written.
-        program: a simulator that is installed elsewhere, empty for the module's own.
-        has_window: whether the trainee's window is opened.
-    """
+    """The opened module, and someone who works with it."""
 
     def __init__(self, folder: Path, program: str, has_window: bool, patience_s: float) -> None:
-        """Open the module."""
         if slicer.util.mainWindow() is not None:
             slicer.util.selectModule("RASTrainer")
         module = slicer.util.getModuleWidget("RASTrainer")
@@ -87,6 +77,19 @@ class Tour:
         self.play("--await", "colin27")
         shutil.rmtree(folder)
 
+    def place(self, node: Any, *places: tuple[float, ...]) -> None:
+        """Place points of a markup, as by clicks in a view."""
+        for place in places:
+            node.AddControlPoint(*place)
+        interaction = slicer.app.applicationLogic().GetInteractionNode()
+        interaction.SetCurrentInteractionMode(interaction.ViewTransform)
+        self.hands.idle_for(0.5)
+
+    def place_active(self, *places: tuple[float, ...]) -> None:
+        """Place points of the markup that the module has just added."""
+        selection = slicer.app.applicationLogic().GetSelectionNode()
+        self.place(slicer.mrmlScene.GetNodeByID(selection.GetActivePlaceNodeID()), *places)
+
     def touch(self, first: int, last: int) -> str:
         """Let the trainee touch points, and wait until Slicer shows them; return its sentence."""
         hands = self.hands
@@ -117,11 +120,7 @@ MAX_TRIES = 50
 
 
 class Dialogs:
-    """Presses the buttons of dialogs, by a timer, which runs while a dialog waits for its user.
-
-    Attributes:
-        unexpected: what dialogs said for which no answer was prepared; they are canceled.
-    """
+    """Presses the buttons of dialogs, by a timer, which runs while a dialog waits for its user."""
 
     def __init__(self) -> None:
         # The dialogs of the system are not Qt's: their buttons cannot be pressed from here.
@@ -136,20 +135,13 @@ class Dialogs:
         self._timer.start()
 
     def close(self) -> None:
-        """Stop answering."""
         self._timer.stop()
 
     def answer(self, part: str, answer: str) -> None:
-        """Answer the next dialog whose text or title contains `part`.
-
-        Args:
-            part: of the text or of the title.
-            answer: name of a button of a question, a path for a file dialog, or a text.
-        """
+        """Answer the next dialog whose text or title contains `part`."""
         self._answers.append((part, str(answer)))
 
     def forget(self) -> None:
-        """Forget the unused answers."""
         self._answers = []
 
     def _look(self) -> None:

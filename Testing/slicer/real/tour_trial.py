@@ -28,7 +28,7 @@ def open_module(tour: Tour) -> str:
         hands.find("programPathLineEdit").currentPath = tour.program
     hands.find("windowCheckBox").checked = tour.has_window
     tour.choose_study(tour.fresh(STUDY))
-    hands.wait_until(lambda: hands.text("nextStepButton") == "Start and connect", "it begins")
+    hands.wait_for("nextStepButton", "Start and connect")
     return hands.text("nextStepText")
 
 
@@ -48,13 +48,13 @@ def connect_to_web_page(tour: Tour) -> str:
     try:
         port.value = int(page.stdout.readline())
         hands.click("probeButton")
-        hands.wait_until(lambda: "web page" in hands.text("stateText"), "it is recognized")
+        hands.wait_for("stateText", "web page")
         hands.click("connectButton")
-        hands.wait_until(lambda: hands.text("linkText") == "No simulator", "the error is shown")
+        hands.wait_for("linkText", "No simulator")
         text = hands.text("stateText")
         hands.idle_for(3.0)
         hands.click("connectButton")
-        hands.wait_until(lambda: hands.text("linkText") == "Not connected", "it is given up")
+        hands.wait_for("linkText", "Not connected")
     finally:
         page.kill()
         port.value = former
@@ -66,7 +66,7 @@ def start_and_connect(tour: Tour) -> str:
     tour.dialogs.answer("not set up on this computer yet", "Ok")
     hands.click("nextStepButton")
     patience = SETUP_TIMEOUT_S if tour.session.simulator.setup.isRunning else 0.0
-    hands.wait_until(lambda: hands.text("linkText") == "Connected", "it connects", patience)
+    hands.wait_for("linkText", "Connected", patience)
     tour.dialogs.forget()
     return hands.text("stateText")
 
@@ -101,14 +101,14 @@ def abort_trial_run(tour: Tour) -> str:
     # The tutorial would come first, and waits for a person.
     hands.check("tutorialCheckBox", wanted=False)
     hands.click("startTrialRunButton")
-    hands.wait_until(lambda: hands.text("nextStepButton") == "Pause", "the trial run runs")
+    hands.wait_for("nextStepButton", "Pause")
     tour.dialogs.answer("Abort the trial", "No")
     hands.click("abortButton")
     hands.idle_for(1.0)
     hands.must(hands.text("nextStepButton") == "Pause", "It was aborted against the answer.")
     tour.dialogs.answer("Abort the trial", "Yes")
     hands.click("abortButton")
-    hands.wait_until(lambda: hands.find("startTaskButton").enabled, "no trial is open")
+    hands.wait_enabled("startTaskButton")
     return hands.text("phaseText")
 
 
@@ -116,7 +116,7 @@ def start_task(tour: Tour) -> str:
     hands = tour.hands
     hands.open("trainingCollapsibleButton")
     hands.click("startTaskButton")
-    hands.wait_until(lambda: hands.text("nextStepButton") == "Pause", "the trial runs")
+    hands.wait_for("nextStepButton", "Pause")
     return hands.text("phaseText")
 
 
@@ -127,15 +127,15 @@ def touch_some(tour: Tour) -> str:
 def pause_and_resume(tour: Tour) -> None:
     hands = tour.hands
     hands.click("nextStepButton")
-    hands.wait_until(lambda: hands.text("nextStepButton") == "Resume", "the trial is paused")
+    hands.wait_for("nextStepButton", "Resume")
     hands.click("pauseButton")
-    hands.wait_until(lambda: hands.text("nextStepButton") == "Pause", "the trial is resumed")
+    hands.wait_for("nextStepButton", "Pause")
 
 
 def close_scene_during_trial(tour: Tour) -> str:
     hands = tour.hands
     slicer.mrmlScene.Clear(0)
-    hands.wait_until(lambda: hands.text("linkText") == "Connected", "it is connected again")
+    hands.wait_for("linkText", "Connected")
     hands.wait_until(lambda: slicer.util.getNodes("*fiducials"), "the trial is shown again")
     return hands.text("phaseText")
 
@@ -180,9 +180,9 @@ def fix_registration(tour: Tour) -> str:
 def score(tour: Tour) -> str:
     hands = tour.hands
     tour.play("--register")
-    hands.wait_until(lambda: hands.text("nextStepButton") == "Show result", "it is scored")
+    hands.wait_for("nextStepButton", "Show result")
     hands.click("nextStepButton")
     hands.open("measuresGroupBox")
     hands.wait_until(lambda: hands.find("scoreTable").rowCount, "the score is shown")
-    hands.wait_until(lambda: "Score" in hands.text("feedbackText"), "the feedback is shown")
+    hands.wait_for("feedbackText", "Score")
     return hands.text("feedbackText").splitlines()[0]

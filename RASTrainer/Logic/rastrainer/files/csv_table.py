@@ -31,11 +31,9 @@ _POINT_NUMBER = re.compile(r"[+-]?\d*\.\d+(e[+-]?\d+)?", re.IGNORECASE)
 class CsvTable:
     """The cells of a CSV file.
 
-    Attributes:
-        remarks: what its first lines say as "# name = value", by name in lower case.
-        first: the line that should be the header, as it is written.
-        header: the names of the columns in lower case; empty for those without a name.
-        lines: number and stripped cells of each further line that is not empty.
+    `remarks` are what its first lines say as "# name = value", by name in lower case; `first` is
+    the line that should be the header, as it is written; `header` has the names of the columns in
+    lower case, `lines` the number and stripped cells of each further line that is not empty.
     """
 
     path: str | os.PathLike[str]
@@ -73,24 +71,19 @@ class CsvTable:
                     f"{columns}.{hint if len(cells) > columns else ''}"
                 )
             rows.append((number, dict(zip(self.header, cells, strict=False))))
-        self._replace_decimal_commas([cells for _, cells in rows], required)
-        return rows
-
-    def _replace_decimal_commas(self, rows: list[dict[str, str]], columns: Sequence[str]) -> None:
-        cells = [row[column] for row in rows for column in columns]
-        comma = next(filter(_COMMA_NUMBER.fullmatch, cells), None)
-        point = next(filter(_POINT_NUMBER.fullmatch, cells), None)
-        if comma is None:
-            return
-        if point is not None:
+        numbers = [cells[column] for _, cells in rows for column in required]
+        comma = next(filter(_COMMA_NUMBER.fullmatch, numbers), None)
+        point = next(filter(_POINT_NUMBER.fullmatch, numbers), None)
+        if comma is not None and point is not None:
             raise InputError(
                 f"The file {self.path} has numbers with commas and with points, {comma[:40]!r} and "
                 f"{point[:40]!r}: write all with decimal points."
             )
-        for row in rows:
-            for column in columns:
-                if _COMMA_NUMBER.fullmatch(row[column]):
-                    row[column] = row[column].replace(",", ".")
+        for _, named in rows:
+            for column in required:
+                if _COMMA_NUMBER.fullmatch(named[column]):
+                    named[column] = named[column].replace(",", ".")
+        return rows
 
 
 def read_table(path: str | os.PathLike[str]) -> CsvTable:
@@ -105,7 +98,12 @@ def read_table(path: str | os.PathLike[str]) -> CsvTable:
             content = content.decode("utf-16").encode()
     text = decode_text(content, f"The file {path}")
     lines = text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\n").split("\n")
-    remarks, start = _remarks(lines)
+    remarks: dict[str, str] = {}
+    start = 0
+    while start < len(lines) and (lines[start].startswith("#") or not lines[start].strip()):
+        name, _, value = lines[start].lstrip("# ").partition("=")
+        remarks[name.strip().lower()] = value.strip()
+        start += 1
     separator = _SEPARATOR.fullmatch(lines[start]) if start < len(lines) else None
     if separator:
         start += 1
@@ -129,17 +127,6 @@ def read_table(path: str | os.PathLike[str]) -> CsvTable:
         header.pop()
     names = tuple(name.strip().lower() for name in header)
     return CsvTable(path, remarks, first, names, tuple(read))
-
-
-def _remarks(lines: list[str]) -> tuple[dict[str, str], int]:
-    """Return what the first lines say behind #, and where the lines below them start."""
-    remarks: dict[str, str] = {}
-    for start, line in enumerate(lines):
-        if line.strip() and not line.startswith("#"):
-            return remarks, start
-        name, _, value = line.lstrip("# ").partition("=")
-        remarks[name.strip().lower()] = value.strip()
-    return remarks, len(lines)
 
 
 def number_in(

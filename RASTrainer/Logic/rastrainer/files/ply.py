@@ -42,11 +42,9 @@ Column = np.ndarray | list[np.ndarray]
 
 @dataclass(frozen=True)
 class PlyFile:
-    """The content of a PLY file.
+    """The content of a PLY file: by the names of element and property, its column.
 
-    Attributes:
-        space: the frame that a comment names, in capitals, such as RAS or LPS; empty without one.
-        elements: by the names of element and property, its column.
+    `space` is the frame that a comment names, such as RAS or LPS; empty without one.
     """
 
     space: str
@@ -149,15 +147,13 @@ def _columns(elements: list[_Element], body: bytes, order: str) -> dict[str, dic
 
     read: dict[str, dict[str, Column]] = {}
     for element in elements:
-        properties = element.properties
         table = _even_table(element, body, at, order) if order else None
-        if table is not None:
+        if table is None:
+            read[element.name] = _uneven_columns(element, take)
+        else:
             at += table.nbytes
-            read[element.name] = {
-                column.name: table[f"values{number}"] for number, column in enumerate(properties)
-            }
-            continue
-        read[element.name] = _uneven_columns(element, take)
+            names = enumerate(each.name for each in element.properties)
+            read[element.name] = {name: table[f"values{number}"] for number, name in names}
     if body[at:].strip() if order else words[at:]:
         raise ValueError
     return read
@@ -166,16 +162,17 @@ def _columns(elements: list[_Element], body: bytes, order: str) -> dict[str, dic
 def _uneven_columns(element: _Element, take: Callable[[str, int], np.ndarray]) -> dict[str, Column]:
     """Return the columns of an element, read row by row."""
     columns: dict[str, Column] = {}
-    cells: list[list] = [[] for _ in element.properties]
+    cells: list[list[np.ndarray]] = [[] for _ in element.properties]
     for _ in range(element.rows):
-        for column, values in zip(element.properties, cells, strict=True):
-            if column.length:
-                values.append(take(column.type, int(take(column.length, 1)[0])))
-            else:
-                values.append(take(column.type, 1)[0])
-    for column, values in zip(element.properties, cells, strict=True):
-        is_even = not column.length or len({len(value) for value in values}) == 1
-        columns[column.name] = np.array(values, column.type) if is_even else values
+        for each, values in zip(element.properties, cells, strict=True):
+            count = int(take(each.length, 1)[0]) if each.length else 1
+            values.append(take(each.type, count))
+    for each, values in zip(element.properties, cells, strict=True):
+        if each.length:
+            is_even = len({len(value) for value in values}) == 1
+            columns[each.name] = np.array(values, each.type) if is_even else values
+        else:
+            columns[each.name] = np.array(values, each.type).reshape(-1)
     return columns
 
 

@@ -17,13 +17,10 @@ COORDINATE_LIMIT_MM = 1e6
 
 @dataclass(frozen=True, eq=False)
 class PointList:
-    """Points in mm.
+    """Points in mm, (n, 3) float, finite, n ≥ 1; `labels` are unique, or empty.
 
-    Attributes:
-        labels: Unique names of the points; empty if the points have none.
-        points: (n, 3) float, finite, n ≥ 1.
-        left_out: places in the list, from 0, and labels of points that are not to be used: those
-            that are deselected or not placed in Slicer. `labels` and `points` are without them.
+    `left_out` are places in the list, from 0, and labels of points that are not to be used: those
+    that are deselected or not placed in Slicer. `labels` and `points` are without them.
     """
 
     labels: tuple[str, ...]
@@ -39,9 +36,7 @@ class PointList:
             raise InputError("All its points are deselected or not placed in Slicer.")
         if points.ndim != 2 or points.shape[1] != 3 or len(points) == 0:
             raise InputError("A list of points needs at least one point of three coordinates.")
-        labels = tuple(self.labels)
-        if not any(labels):
-            labels = ()
+        labels = tuple(self.labels) if any(self.labels) else ()
         _check_labels(labels, len(points))
         bad = np.flatnonzero(~(np.abs(points) <= COORDINATE_LIMIT_MM).all(axis=1))
         if len(bad):

@@ -77,9 +77,9 @@ def read_json(path: str | os.PathLike[str], limit_bytes: int) -> Any:
 MAX_RECORD_BYTES = 2**20
 
 
-def read_record(kind: type[T], path: Path, only_known: bool = False) -> T:
+def read_record(kind: type[T], path: Path) -> T:
     """Return the record of a dataclass `kind` in a JSON file; errors begin with the file's path."""
-    return record_from_json(kind, read_json(path, MAX_RECORD_BYTES), str(path), only_known)
+    return record_from_json(kind, read_json(path, MAX_RECORD_BYTES), str(path))
 
 
 def format_version(version: int) -> Callable[[Any], int]:

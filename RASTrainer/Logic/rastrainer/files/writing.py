@@ -82,7 +82,6 @@ def make_folder(folder: Path, is_private: bool = False) -> None:
 
 
 def make_empty_folder(folder: Path) -> None:
-    """Make a folder; raise `InputError` if that fails or it is not empty."""
     make_folder(folder)
     if any(folder.iterdir()):
         raise InputError(f"The folder {folder} is not empty; choose an empty one.")

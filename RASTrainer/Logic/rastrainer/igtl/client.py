@@ -41,11 +41,8 @@ class Client:
     """A connection to an OpenIGTLink server; close it, or use it in a `with` statement.
 
     `on_message` is called in the receiving thread with every message except answers to
-    `send_command`; it must not wait for an answer itself.
-
-    Attributes:
-        latest: the last message of each device, by name.
-        is_open: the connection is open, as far as this side knows.
+    `send_command`; it must not wait for an answer itself. `latest` has the last message of each
+    device; `is_open` says whether the connection is open, as far as this side knows.
     """
 
     def __init__(

@@ -9,7 +9,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 from rastrainer.errors import InputError
 
@@ -77,6 +77,18 @@ MAX_STRING_BYTES = 65_535
 """Bytes that a STRING holds: its length is a 16-bit number."""
 
 
+def _unpack_with_text(
+    layout: struct.Struct, data: bytes, what: str, keep_bytes: bool
+) -> tuple[Any, ...]:
+    """Return the fields of a layout that ends with encoding and length of a text, and the text."""
+    if len(data) < layout.size:
+        raise InputError(f"A {what} must have at least {layout.size} bytes, not {len(data)}.")
+    *fields, _encoding, length = layout.unpack_from(data)
+    if length > len(data) - layout.size:
+        raise InputError(f"A {what} must be as long as it says.")
+    return *fields, decode_text(data[layout.size : layout.size + length], keep_bytes)
+
+
 @dataclass(frozen=True)
 class Transform:
     """A homogeneous transform in mm; becomes a linear transform node in Slicer.
@@ -124,12 +136,8 @@ class String:
 
     @classmethod
     def unpack(cls, data: bytes, keep_bytes: bool = False) -> String:
-        if len(data) < _STRING.size:
-            raise InputError(f"A STRING must have at least {_STRING.size} bytes, not {len(data)}.")
-        _encoding, length = _STRING.unpack_from(data)
-        if length > len(data) - _STRING.size:
-            raise InputError("A STRING must be as long as it says.")
-        return cls(decode_text(data[_STRING.size : _STRING.size + length], keep_bytes))
+        (text,) = _unpack_with_text(_STRING, data, cls.TYPE, keep_bytes)
+        return cls(text)
 
 
 @dataclass(frozen=True)
@@ -187,13 +195,8 @@ class _NumberedText:
 
     @classmethod
     def unpack(cls: type[_T], data: bytes, keep_bytes: bool = False) -> _T:
-        if len(data) < _COMMAND.size:
-            raise InputError(f"A COMMAND must have at least {_COMMAND.size} bytes.")
-        command_id, name, _encoding, length = _COMMAND.unpack_from(data)
-        if length > len(data) - _COMMAND.size:
-            raise InputError("A COMMAND must be as long as it says.")
-        body = data[_COMMAND.size : _COMMAND.size + length]
-        return cls(command_id, unpack_name(name, keep_bytes), decode_text(body, keep_bytes))
+        command_id, name, body = _unpack_with_text(_COMMAND, data, "COMMAND", keep_bytes)
+        return cls(command_id, unpack_name(name, keep_bytes), body)
 
 
 @dataclass(frozen=True)
@@ -217,31 +220,27 @@ FAIL = "FAIL"
 """What an answer's metadata says, as Slicer reads it."""
 
 
-_POINT = struct.Struct(">64s32s4B4f20s")
+_POINT = struct.Struct(">64s32x4B3f24x")
 
 MAX_POINTS = 1_000
 
 
 @dataclass(frozen=True)
 class Point:
-    """One labeled point.
+    """One labeled point; its group, diameter and owner are not sent, and not read.
 
     The label has at most 64 ASCII characters, the position is in mm, the color is RGBA from 0 to
-    255; alpha 0 would hide the point in Slicer. The group `Unselected` makes Slicer show it as not
-    selected; diameter and owner are dropped.
+    255; alpha 0 would hide the point in Slicer.
     """
 
     label: str
     position: tuple[float, float, float]
     color: tuple[int, int, int, int] = (255, 255, 0, 255)
-    group: str = ""
-    diameter: float = 0.0
-    owner: str = ""
 
     def __post_init__(self):
         if len(self.position) != 3:
             raise InputError("A point must have three coordinates.")
-        check_float32((*self.position, self.diameter), "The numbers of a point")
+        check_float32(self.position, "The numbers of a point")
         if len(self.color) != 4 or not all(0 <= value <= 255 for value in self.color):
             raise InputError("A point's color must be four numbers from 0 to 255.")
 
@@ -256,33 +255,20 @@ class Points:
     def pack(self) -> bytes:
         if len(self.points) > MAX_POINTS:
             raise InputError(f"A POINT message must have at most {MAX_POINTS} points.")
-        packed = (
-            _POINT.pack(
-                pack_name(point.label, 64, "The label of a point"),
-                pack_name(point.group, 32, "The group of a point"),
-                *point.color,
-                *point.position,
-                point.diameter,
-                pack_name(point.owner, 20, "The owner of a point"),
-            )
-            for point in self.points
+        what = "The label of a point"
+        return b"".join(
+            _POINT.pack(pack_name(each.label, 64, what), *each.color, *each.position)
+            for each in self.points
         )
-        return b"".join(packed)
 
     @classmethod
     def unpack(cls, data: bytes, keep_bytes: bool = False) -> Points:
         if len(data) % _POINT.size:
             raise InputError(f"A POINT message must have {_POINT.size} bytes for each point.")
-        points = (
-            Point(
-                label=unpack_name(label, keep_bytes),
-                position=position,
-                color=color,
-                group=unpack_name(group),
-                diameter=diameter,
-                owner=unpack_name(owner),
+        fields = _POINT.iter_unpack(data)
+        return cls(
+            tuple(
+                Point(unpack_name(label, keep_bytes), (x, y, z), tuple(color))
+                for label, *color, x, y, z in fields
             )
-            for label, group, *numbers, diameter, owner in _POINT.iter_unpack(data)
-            for color, position in [(tuple(numbers[:4]), tuple(numbers[4:]))]
         )
-        return cls(tuple(points))

@@ -68,7 +68,9 @@ MAX_METADATA = 256
 """Entries in the metadata of one message."""
 
 _HEADER = struct.Struct(">H12s20sIIQQ")
-_EXTENDED = struct.Struct(">HHII")
+_EXTENDED = struct.Struct(">HHI4x")
+"""Sizes of itself, of the index and of the entries of metadata; the number of the message, which
+nobody uses."""
 _COUNT = struct.Struct(">H")
 _ENTRY = struct.Struct(">HHI")
 _TYPE_FIELD = re.compile(rb"[A-Z][A-Z0-9_]{0,11}\0*")
@@ -81,14 +83,13 @@ class Message:
     """One message.
 
     The device, 1 to 20 ASCII characters, is the name of the node in Slicer; the class of the
-    content is the type. Metadata and number need version 2 of the header. The timestamp is in
-    seconds since 1970, None for the time of packing; Slicer sends 0.
+    content is the type. Metadata need version 2 of the header. The timestamp is in seconds since
+    1970, None for the time of packing; Slicer sends 0.
     """
 
     device: str
     content: Content
     metadata: Mapping[str, str] = field(default_factory=dict)
-    message_id: int = 0
     timestamp: float | None = None
     version: int = 2
 
@@ -113,8 +114,8 @@ def pack(message: Message) -> bytes:
     if not device:
         raise InputError("A message must name its device.")
     timestamp = time.time() if message.timestamp is None else message.timestamp
-    if not (0 <= timestamp < 2**32 and 0 <= message.message_id < 2**32):
-        raise InputError("The time and the number of a message must fit 32 bits.")
+    if not 0 <= timestamp < 2**32:
+        raise InputError("The time of a message must fit 32 bits.")
     body = _pack_body(message)
     if len(body) > MAX_BODY_BYTES:
         raise InputError(f"The body of a message must have at most {MAX_BODY_BYTES} bytes.")
@@ -147,7 +148,7 @@ def _pack_body(message: Message) -> bytes:
         encoding, value_bytes = encode_text(value)
         index += _ENTRY.pack(len(key_bytes), encoding, len(value_bytes))
         entries += key_bytes + value_bytes
-    extended = _EXTENDED.pack(_EXTENDED.size, len(index), len(entries), message.message_id)
+    extended = _EXTENDED.pack(_EXTENDED.size, len(index), len(entries))
     return extended + content + index + entries
 
 
@@ -171,17 +172,17 @@ def unpack(header: Header, body: bytes, keep_bytes: bool = False) -> Message:
         raise InputError(f"The type of a message must be one of {', '.join(CONTENTS)}.")
     if header.version == 1:
         content = kind.unpack(body, keep_bytes)
-        return Message(header.device, content, {}, 0, header.timestamp, 1)
+        return Message(header.device, content, {}, header.timestamp, 1)
     if len(body) < _EXTENDED.size:
         raise InputError("A message of header version 2 must have an extended header.")
-    extended_size, index_size, entries_size, message_id = _EXTENDED.unpack_from(body)
+    extended_size, index_size, entries_size = _EXTENDED.unpack_from(body)
     content_end = len(body) - index_size - entries_size
     if extended_size < _EXTENDED.size or content_end < extended_size:
         raise InputError("The sizes in an extended header must fit the message.")
     index = body[content_end : content_end + index_size]
     metadata = _unpack_metadata(index, body[content_end + index_size :], keep_bytes)
     content = kind.unpack(body[extended_size:content_end], keep_bytes)
-    return Message(header.device, content, metadata, message_id, header.timestamp, 2)
+    return Message(header.device, content, metadata, header.timestamp, 2)
 
 
 def _unpack_metadata(index: bytes, entries: bytes, keep_bytes: bool) -> dict[str, str]:
@@ -232,11 +233,8 @@ class MessageReader:
     header is rejected at once: a web page can make a browser send an HTTP request with messages in
     its body to any port.
 
-    Attributes:
-        taken: number of processed messages and stretches of garbage between them.
-        errors: number of errors of each kind.
-        version: of the last header, whether or not its message is usable; None before the first.
-        refusal: why reading stopped, the message to close the connection with; empty while reading.
+    `taken` counts processed messages and stretches of garbage, `errors` those of each kind;
+    `version` is that of the last header, usable or not. `refusal` says why reading stopped.
     """
 
     def __init__(self, kept: Mapping[str, int] | None = None):

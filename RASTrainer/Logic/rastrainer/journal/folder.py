@@ -60,15 +60,10 @@ _Text = Annotated[str, text(1000, 0)]
 
 @dataclass(frozen=True)
 class FolderHolder:
-    """The simulator that holds a folder.
+    """The simulator that holds a folder, with 0 and "" for what is unknown or missing.
 
-    Attributes:
-        pid: of its process; 0 if unknown yet.
-        started: UTC, ISO 8601.
-        started_by: program that started it; empty if a person did.
-        host: on which it listens for OpenIGTLink.
-        port: its port; 0 if it does not listen.
-        page: address of its page; empty if none.
+    `started` is UTC, ISO 8601, and `started_by` empty if a person started it. On host and port it
+    listens for OpenIGTLink; `page` is the address of its page.
     """
 
     pid: Annotated[int, whole_number(0, 2**63)] = 0
@@ -196,11 +191,9 @@ _NUMBER = re.compile(
 
 @dataclass(frozen=True, order=True)
 class JournalNumber:
-    """The number of a trial within its folder; earlier trials have smaller numbers.
+    """The number of a trial within its folder, from 1; earlier trials have smaller numbers.
 
-    Attributes:
-        number: from 1; 0 if it is unknown.
-        series: UUID of the numbering, which begins with the first journal of a folder.
+    `series` is the UUID of the numbering, which begins with the first journal of a folder.
     """
 
     number: Annotated[int, whole_number(0, NUMBER_LIMIT)] = 0

@@ -105,14 +105,11 @@ class Integrity(str, Enum):
 
 @dataclass(frozen=True)
 class JournalReading:
-    """The content of a journal.
+    """The content of a journal, and its integrity in words.
 
-    Attributes:
-        entries: JSON objects of the complete lines, up to the first altered one.
-        end: number of bytes of these lines.
-        sentence: the integrity in words.
-        seed: of the head's pose. It is as secret as the pose while the trial is open: its last
-            entry reveals it; until then a separate file holds it (`SEED_SUFFIX`).
+    The entries are JSON objects of the complete lines, up to the first altered one; these have
+    `end` bytes. The seed of the head's pose is as secret as the pose while the trial is open: its
+    last entry reveals it; until then a separate file holds it (`SEED_SUFFIX`).
     """
 
     path: Path
@@ -123,9 +120,7 @@ class JournalReading:
     seed: int | None = None
 
     def lines(self, pause: Callable[[], None] = lambda: None) -> Iterator[Line]:
-        """Yield the entries with their times, the header with the seed; `pause` as in
-        `read_journal`.
-        """
+        """Yield the entries with their times, the header with the seed."""
         first = [{**entry, "seed": self.seed} for entry in self.entries[:1]]
         yield from read_lines((*first, *self.entries[1:]), pause)
 
@@ -165,7 +160,8 @@ def revealed_seed(entries: Iterable[Mapping[str, Any]]) -> int | None:
 def _read(path: Path, file: BinaryIO, pause: Callable[[], None]) -> JournalReading:
     beginning = file.read(len(FIRST_BYTES))
     if not FIRST_BYTES.startswith(beginning):
-        raise InputError(f"{path} is not a trial's journal: it should start with {_BEGINNING}.")
+        start = FIRST_BYTES.decode()[:-1].replace(NO_LINE, "000…")
+        raise InputError(f"{path} is not a trial's journal: it should start with {start}.")
     file.seek(0)
     entries: list[dict[str, Any]] = []
     previous, end = NO_LINE, 0
@@ -197,6 +193,3 @@ def _read(path: Path, file: BinaryIO, pause: Callable[[], None]) -> JournalReadi
         return JournalReading(path, Integrity.INTACT, tuple(entries), end, sentence)
     sentence = f"cut short: recovered up to line {len(entries)}, {why}"
     return JournalReading(path, Integrity.CUT_SHORT, tuple(entries), end, sentence)
-
-
-_BEGINNING = '{"n":1,"previous":"000…","kind":"header","format":"rastrainer-trial-journal"'

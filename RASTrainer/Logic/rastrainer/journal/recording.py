@@ -17,6 +17,7 @@ from rastrainer.journal.entries import (
     AcceptedCheckpoint,
     AcceptedTouch,
     CameraChange,
+    CommandDone,
     Continued,
     Entry,
     JournalHeader,
@@ -26,6 +27,7 @@ from rastrainer.journal.entries import (
     Registered,
     Rejected,
     Sample,
+    Stamp,
     Stroke,
     TracePoint,
     Undo,
@@ -78,8 +80,12 @@ class Recording:
     def add(self, line: Line) -> None:
         entry, sim_time = line.entry, line.at.sim_time_s
         match entry:
-            case Sample():
-                self._add_sample(entry, sim_time)
+            case Sample() if self._paused_since is None:
+                time = self._trial_time(sim_time)
+                if not self._samples or time > self._samples[-_COLUMNS]:
+                    place = (*entry.tip_mm, entry.clearance_mm, entry.depth_mm)
+                    self._samples += array("d", (time, *place))
+                    self._press(entry.depth_mm)
             case JournalHeader():
                 self._tick_s = entry.tick_s
                 self.start_s = sim_time - self._tick_s
@@ -124,8 +130,9 @@ class Recording:
     def trajectory(self) -> Trajectory:
         """Return the movement so far; open intervals end with the last sample."""
         samples = np.array(self._samples).reshape(-1, _COLUMNS)
-        times, tip, clearance = samples[:, 0].copy(), samples[:, 1:4].copy(), samples[:, 4].copy()
-        depth = samples[:, 5].copy()
+        times, tip, clearance, depth = (
+            samples[:, columns].copy() for columns in (0, slice(1, 4), 4, 5)
+        )
         end = float(times[-1]) if len(times) else 0.0
         near, contacts = list(self._near), list(self._contacts)
         if self._state is not Proximity.FREE:
@@ -149,15 +156,6 @@ class Recording:
             shortest_path_mm=self._shortest_path,
             depth_mm=depth,
         )
-
-    def _add_sample(self, sample: Sample, sim_time: float) -> None:
-        """Keep a sample that is later than the last one."""
-        time = self._trial_time(sim_time)
-        is_late = self._samples and time <= self._samples[-_COLUMNS]
-        if self._paused_since is not None or is_late:
-            return
-        self._samples += array("d", (time, *sample.tip_mm, sample.clearance_mm, sample.depth_mm))
-        self._press(sample.depth_mm)
 
     def _trial_time(self, sim_time: float) -> float:
         if self._paused_since is not None:
@@ -241,26 +239,26 @@ EVENTS = (
     AcceptedCheckpoint,
     ProximityChange,
     CameraChange,
+    CommandDone,
+    Continued,
 )
 """Entries that change the view besides the arm."""
 
 
 class RecordedEvent(NamedTuple):
-    """An entry of `EVENTS`, its trial time, and its simulated time, s."""
+    """An entry of `EVENTS`, its trial time, s, and when it was recorded."""
 
     time_s: float
-    sim_time_s: float
+    at: Stamp
     entry: Entry
 
 
 @dataclass(frozen=True, eq=False)
 class ReplayTrack:
-    """A recorded trial in trial time, which excludes pauses.
+    """A recorded trial in trial time, which excludes pauses; it starts at a simulated time.
 
-    Attributes:
-        start_s: simulated time of its start.
-        q: (n, 7) float, joint angles in rad, one row per sample.
-        feed_mm: (n,) float, how far drill or instrument was beyond the guide's tip; 0 without.
+    One row per sample: `q` are the joint angles (n, 7), rad, `feed_mm` (n,) how far drill or
+    instrument was beyond the guide's tip, 0 without.
     """
 
     header: JournalHeader
@@ -293,13 +291,12 @@ def find_track(records: Path, trial_id: str) -> ReplayTrack:
 def read_track(path: Path, pause: Callable[[], None] = lambda: None) -> ReplayTrack:
     """Return the track of a journal, as far as it is intact; `pause` as in `read_journal`."""
     reading = read_journal(path, pause)
-    recording = _ReplayRecording.of(reading.lines(pause))
-    trajectory = recording.trajectory()
-    if len(recording.postures) < 2:
+    found = _ReplayRecording.of(reading.lines(pause))
+    if len(found.postures) < 2:
         raise InputError(f"{path} has no movement to replay.")
-    q, feeds = np.array(recording.postures), np.array(recording.feeds)
-    events = tuple(recording.events)
-    return ReplayTrack(reading.header, recording.start_s, trajectory, q, feeds, events)
+    rows = np.array(found.postures), np.array(found.feeds)
+    start_s, events = found.start_s, tuple(found.events)
+    return ReplayTrack(reading.header, start_s, found.trajectory(), *rows, events)
 
 
 class _ReplayRecording(WholeRecording):
@@ -323,4 +320,4 @@ class _ReplayRecording(WholeRecording):
             # Keep events in order, also in the tick in which a trial is paused.
             before_s = self.events[-1].time_s if self.events else 0.0
             time_s = max(before_s, self._trial_time(seen_s))
-            self.events.append(RecordedEvent(time_s, sim_time, entry))
+            self.events.append(RecordedEvent(time_s, line.at, entry))

@@ -23,9 +23,9 @@ from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.volume import check_place, read_head_volume
 from rastrainer.home_folder import home_folder
 from rastrainer.procedure.checks import unusable_lines
-from rastrainer.procedure.plan import read_all_no_go, read_procedure_meshes
+from rastrainer.procedure.plan import read_procedure_meshes
 from rastrainer.scenario.scenario import FILE_NAME, PREVIEW_NAME, Scenario, load_scenario
-from rastrainer.scenario.writer import new_folder, write_scenario
+from rastrainer.scenario.writer import new_folder, read_files, write_scenario
 from rastrainer.work_progress import Progress, no_progress
 
 MAX_SCENARIOS = 200
@@ -89,13 +89,11 @@ def list_folder(folder: Path) -> ListedScenario:
 def _is_picture(path: Path) -> bool:
     """Return whether a file starts as a PNG of a size that every view supports."""
     try:
-        if path.stat().st_size > MAX_PICTURE_BYTES:
-            return False
         with path.open("rb") as file:
             start = file.read(_PNG_START.size)
+        if len(start) < _PNG_START.size or path.stat().st_size > MAX_PICTURE_BYTES:
+            return False
     except OSError:
-        return False
-    if len(start) < _PNG_START.size:
         return False
     signature, chunk, width, height = _PNG_START.unpack(start)
     is_png = signature == b"\x89PNG\r\n\x1a\n" and chunk == b"IHDR"
@@ -125,15 +123,12 @@ def pack(folder: Path, package: Path) -> Path:
     scenario, package = checked_scenario(folder), Path(package)
     if package.exists():
         raise InputError(f"{package} already exists; name a new file.")
-    head = read_head_mesh(scenario.head)
-    skull = read_head_mesh(scenario.skull.file) if scenario.skull else None
-    volume = read_head_volume(scenario.volume) if scenario.volume else None
-    no_go = read_all_no_go(scenario.procedures)
+    files = read_files(scenario)
     partial = package.parent / f".{uuid.uuid4().hex}.partial"
     try:
         with tempfile.TemporaryDirectory() as temporary:
             clean = Path(temporary)
-            write_scenario(clean, scenario, head, skull, volume, no_go)
+            write_scenario(clean, scenario, *files)
             if scenario.preview:
                 shutil.copyfile(scenario.preview, clean / PREVIEW_NAME)
             with zipfile.ZipFile(partial, "x", zipfile.ZIP_DEFLATED) as archive:
@@ -179,8 +174,7 @@ def unpack(package: Path, library: Path, progress: Progress = no_progress) -> Pa
 def checked_scenario(folder: Path) -> Scenario:
     """Load a scenario and check its meshes, its volume and the lines of its procedures."""
     scenario = load_scenario(folder)
-    paths = [scenario.head, *([scenario.skull.file] if scenario.skull else [])]
-    for path in paths:
+    for path in [scenario.head, *([scenario.skull.file] if scenario.skull else [])]:
         mesh = read_head_mesh(path)
         if len(mesh.triangles) > MAX_TRIANGLES:
             raise InputError(
@@ -222,7 +216,15 @@ def _read_archive(package: Path, folder: Path, progress: Progress) -> None:
             left = MAX_BYTES
             for number, (name, info) in enumerate(taken.items()):
                 progress(UNPACKING, UNPACKED_SHARE * number / len(taken))
-                left = _extract_member(package, archive, info, folder / name, left)
+                path = folder / name
+                path.parent.mkdir(parents=True, exist_ok=True)
+                # The declared size is ignored.
+                with archive.open(info) as packed, path.open("xb") as file:
+                    while chunk := packed.read(_CHUNK):
+                        left -= len(chunk)
+                        if left < 0:
+                            raise _refused(package, f"holds more than {MAX_BYTES // 10**6} MB")
+                        file.write(chunk)
     except FileNotFoundError:
         raise InputError(f"There is no file {package}.") from None
     except OSError as error:
@@ -260,20 +262,6 @@ def _members(package: Path, archive: zipfile.ZipFile) -> dict[str, zipfile.ZipIn
         raise _refused(package, "holds several scenarios")
     inside = {name[len(base) :]: info for name, info in named if name.startswith(base)}
     return {name: info for name, info in inside.items() if _NAME.fullmatch(name)}
-
-
-def _extract_member(
-    package: Path, archive: zipfile.ZipFile, info: zipfile.ZipInfo, path: Path, left: int
-) -> int:
-    """Write one member and return the remaining bytes allowed; its declared size is ignored."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with archive.open(info) as packed, path.open("xb") as file:
-        while chunk := packed.read(_CHUNK):
-            left -= len(chunk)
-            if left < 0:
-                raise _refused(package, f"holds more than {MAX_BYTES // 10**6} MB")
-            file.write(chunk)
-    return left
 
 
 def _refused(package: Path, reason: str) -> InputError:

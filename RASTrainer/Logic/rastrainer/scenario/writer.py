@@ -23,7 +23,7 @@ from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
 from rastrainer.head.volume import HeadVolume, VolumeFile, read_head_volume, write_nrrd
 from rastrainer.json_checks import identifier_of, text
 from rastrainer.json_records import record_to_json
-from rastrainer.procedure.plan import NO_GO_FOLDER, POINT_DECIMALS, procedure_json
+from rastrainer.procedure.plan import NO_GO_FOLDER, POINT_DECIMALS, procedure_json, read_all_no_go
 from rastrainer.scenario.points import task_file
 from rastrainer.scenario.scenario import (
     FILE_NAME,
@@ -83,11 +83,7 @@ def write_scenario(
     structures have their meshes by file name.
     """
     (folder / "tasks").mkdir(exist_ok=True)
-    write_head_mesh(folder / HEAD_NAME, head)
-    if skull is not None:
-        write_head_mesh(folder / SKULL_NAME, skull)
-    if volume is not None:
-        write_nrrd(folder / VOLUME_NAME, volume.values, volume.ijk_to_ras)
+    volume_file = _write_files(folder, head, skull, volume)
     tasks = tuple(replace(task, file=task_file(task.name)) for task in scenario.tasks)
     for task in tasks:
         write_markups(folder / task.file, PointList(task.labels, task.fiducials))
@@ -100,13 +96,27 @@ def write_scenario(
         head=HEAD_NAME,
         tasks=tasks,
         skull=SkullFile(SKULL_NAME, kind) if skull else None,
-        volume=_volume_file(volume),
+        volume=volume_file,
         procedures=(),
     )
     content = record_to_json(written)
     if skull:
         content["procedures"] = list(map(procedure_json, scenario.procedures))
     write_json(folder / FILE_NAME, rounded(content, _DECIMALS))
+
+
+ScenarioFiles = tuple[HeadMesh, HeadMesh | None, HeadVolume | None, dict[str, HeadMesh]]
+"""Head, skull, volume, and meshes of no-go structures by file name: what `write_scenario` takes."""
+
+
+def read_files(scenario: Scenario) -> ScenarioFiles:
+    """Read the meshes and the volume of a loaded scenario."""
+    return (
+        read_head_mesh(scenario.head),
+        read_head_mesh(scenario.skull.file) if scenario.skull else None,
+        read_head_volume(scenario.volume) if scenario.volume else None,
+        read_all_no_go(scenario.procedures),
+    )
 
 
 _DECIMALS = {
@@ -122,8 +132,16 @@ _DECIMALS = {
 }
 
 
-def _volume_file(volume: HeadVolume | None) -> VolumeFile | None:
-    return VolumeFile(VOLUME_NAME, volume.window, volume.level) if volume else None
+def _write_files(
+    folder: Path, head: HeadMesh, skull: HeadMesh | None, volume: HeadVolume | None
+) -> VolumeFile | None:
+    write_head_mesh(folder / HEAD_NAME, head)
+    if skull is not None:
+        write_head_mesh(folder / SKULL_NAME, skull)
+    if volume is None:
+        return None
+    write_nrrd(folder / VOLUME_NAME, volume.values, volume.ijk_to_ras)
+    return VolumeFile(VOLUME_NAME, volume.window, volume.level)
 
 
 DRAFT_NAME = "draft.json"
@@ -155,13 +173,8 @@ class HeadDraft:
 
 
 def write_draft(folder: Path, draft: HeadDraft) -> None:
-    volume = draft.volume
-    write_head_mesh(folder / HEAD_NAME, draft.head)
-    if draft.skull is not None:
-        write_head_mesh(folder / SKULL_NAME, draft.skull)
-    if volume is not None:
-        write_nrrd(folder / VOLUME_NAME, volume.values, volume.ijk_to_ras)
-    file = DraftFile(draft.method, draft.skull_kind if draft.skull else None, _volume_file(volume))
+    volume = _write_files(folder, draft.head, draft.skull, draft.volume)
+    file = DraftFile(draft.method, draft.skull_kind if draft.skull else None, volume)
     write_json(folder / DRAFT_NAME, record_to_json(file))
 
 

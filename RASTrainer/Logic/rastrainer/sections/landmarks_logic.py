@@ -19,9 +19,8 @@ from rastrainer.files.point_list import PointList
 from rastrainer.scenario.points import Landmark
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.sections.scenario_files import ScenarioFiles
-from rastrainer.slicer.scene.nodes import Role, findNode, findOrAddNode
+from rastrainer.slicer.scene.nodes import LIST, Role, findNode, findOrAddNode, setDisplay
 from rastrainer.slicer.scene.plan_points import (
-    LIST,
     PlacedPoint,
     UndoablePoints,
     placedPoints,
@@ -74,8 +73,7 @@ class LandmarkPoints(UndoablePoints):
 
     def _list(self) -> Any:
         node = findOrAddNode(self._scene, LIST, Role.LANDMARKS, _("Landmarks"))
-        node.GetDisplayNode().SetSelectedColor(COLOR)
-        node.GetDisplayNode().SetOccludedVisibility(True)
+        setDisplay(node, SelectedColor=COLOR, OccludedVisibility=True)
         return node
 
 

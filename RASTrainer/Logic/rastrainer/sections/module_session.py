@@ -27,11 +27,10 @@ from rastrainer.sections.trainees_logic import CurriculumLogic, TraineeLogic
 from rastrainer.sections.training_logic import TrainingLogic
 from rastrainer.sections.trial_logic import TrialLogic
 from rastrainer.sections.trial_services import TrialServices
-from rastrainer.sections.trial_status import readStatus
 from rastrainer.sections.views import BorrowedLayout, SliceFollower
 from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.link.connection import ConnectorKit
-from rastrainer.slicer.link.link import REST_S, SOON_S, CallSoon, Link
+from rastrainer.slicer.link.connection import CallSoon, ConnectorKit
+from rastrainer.slicer.link.link import REST_S, SOON_S, Link
 from rastrainer.slicer.program.child_process import OwnProcess, Run
 from rastrainer.slicer.program.simulator_package import SimulatorPackage
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
@@ -60,10 +59,9 @@ class ModulePaths:
 
     Attributes:
         python: that sets the simulator up, runs it, and does long work in separate processes.
-        study: file of the study, until another is chosen.
+        study: file of the study, until another is chosen, or is at `studyAddress`.
         records: folder of the journals of the simulator that is started from here.
         library: folder of the user's own scenarios, which the simulator knows too.
-        studyAddress: of the study in PostgreSQL; None if the study is a file.
     """
 
     assets: Path
@@ -84,16 +82,14 @@ class ModuleSession:
     Attributes:
         studyFile: file of the study that is not kept at an address.
         studyPlace: where the present study is: that file, or an address.
-        task: name of the chosen task; `taskTitle` is what people read.
         procedures: names and titles of the procedures of the chosen scenario.
         methods: names of the ways in which a trial of that scenario can be registered.
         isSeen: returns whether someone may be looking at the module, at the 3D view, or (where
             asked to count them) at the slice views; the module's widget sets it.
-        taskChosen: emits nothing, whenever another task is chosen.
         scenarioMade: emits the name of a scenario that has just been made.
-        woken: emits nothing when `process` has something to do soon; perhaps from inside VTK.
-        sceneChanged: emits nothing when what the panels show of the scene may be another.
-        secondPassed: emits nothing, about once a second as long as `process` is called.
+        woken: emits when `process` has something to do soon; perhaps from inside VTK.
+        sceneChanged: emits when what the panels show of the scene may be another.
+        secondPassed: emits about once a second as long as `process` is called.
     """
 
     def __init__(
@@ -166,7 +162,7 @@ class ModuleSession:
             kept.connect(lambda trial: self.study.leadOn(trial.trainee))
         self.trials.trialScored.connect(self._takeScored)
         self.trials.abortedKept.connect(self._showTrainees)
-        self.link.stateChanged.connect(self._noticeNewTrial)
+        self.training.changed.connect(self._noticeNewTrial)
         self.replay.shown.connect(self.registration.reset)
         self.replay.procedureShown.connect(self.procedure.showOutcome)
         own = self.simulator
@@ -255,7 +251,7 @@ class ModuleSession:
         self._callSoon(self.layout.giveBack)
         self.plan.points.forget()
         self.landmarks.points.forget()
-        shown = (self.work, self.replay, self.slices, self.scenario, self.registration)
+        shown = self.work, self.replay, self.slices, self.scenario, self.registration
         for part in (*shown, self.traces, self.training):
             part.forgetScene()
 
@@ -263,7 +259,7 @@ class ModuleSession:
         """Disconnect, close the study, and end the simulator that was started from here."""
         self._watch.close()
         self.layout.giveBack()
-        listening = (self.study, self.curriculum, self.procedure, self.traces, self.training)
+        listening = self.study, self.curriculum, self.procedure, self.traces, self.training
         for part in (*listening, self.trials, self.work):
             part.close()
         self.link.disconnect()
@@ -287,8 +283,8 @@ class ModuleSession:
         self.replay.takeFeedback(record.trial_id, analysis.feedback)
         self._showTrainees()
 
-    def _noticeNewTrial(self, state: dict[str, Any]) -> None:
-        trial = readStatus(state)
+    def _noticeNewTrial(self) -> None:
+        trial = self.training.status
         if trial.trialId != self._trial and trial.phase == Phase.RUNNING.value:
             self._trial = trial.trialId
             self.registration.reset()

@@ -57,11 +57,8 @@ class NewScenarioOptions:
 
     Attributes:
         volume: the `vtkMRMLScalarVolumeNode`, a T1-weighted MRI or CT of a head.
-        threshold: value that separates air from skin; found if None.
-        cutMm: height (S) of the flat base; found if None.
-        hasVolume: whether the scenario carries the images.
-        targets: a `vtkMRMLMarkupsFiducialNode`, or None.
-        trajectory: a `vtkMRMLMarkupsLineNode` from the entry to the target, or None.
+        threshold, cutMm: as in `HeadSettings`.
+        targets, trajectory: a list of points and a line from entry to target, or None.
         isHandPlaced: whether the scene's own point lists of 15 are the tasks, in their order.
     """
 
@@ -77,6 +74,10 @@ class NewScenarioOptions:
     targets: Any = None
     trajectory: Any = None
     isHandPlaced: bool = False
+
+    @property
+    def name(self) -> str:
+        return self.title.strip() or self.volume.GetName()
 
     @property
     def headSettings(self) -> HeadSettings:
@@ -125,8 +126,7 @@ class ScenarioMaker:
         """Make a scenario, and return it with warnings."""
         warnings: list[str] = []
         scenario = self._files.add(
-            options.title.strip() or options.volume.GetName(),
-            lambda folder: warnings.extend(self._plan(options, progress, folder)),
+            options.name, lambda folder: warnings.extend(self._plan(options, progress, folder))
         )
         self._hidePreview(options.volume)
         return scenario, warnings
@@ -143,10 +143,9 @@ class ScenarioMaker:
 
         volume, settings = options.volume, options.headSettings
         image, segment = imageOfNode(volume), editedHead(volume, settings)
-        title = options.title.strip() or volume.GetName()
         source = options.source.strip() or f"The volume {volume.GetName()} in 3D Slicer."
         terms = options.license.strip() or UNKNOWN_LICENSE
-        words = [f"--title={title}", f"--source={source}", f"--license={terms}"]
+        words = [f"--title={options.name}", f"--source={source}", f"--license={terms}"]
         lists, leftOut = list[Any](), list[str]()
         if options.isHandPlaced:
             lists, leftOut = handPlacedLists(self._scene, options.targets)
@@ -249,11 +248,8 @@ def planScenario(
 ) -> list[str]:
     """Make a head, have the simulator plan on it, and return warnings, one sentence each.
 
-    Args:
-        make: makes the head with its warnings, in a worker thread.
-        folder: to be made; must be new or empty.
-        words: further arguments of `rastrainer scenario tasks`.
-        command: runs `rastrainer` of the simulator's Python.
+    `make` makes the head with its warnings, in a worker thread. `command` runs `rastrainer` of the
+    simulator's Python; its `words` follow those that name `folder`, which is new or empty.
     """
     with tempfile.TemporaryDirectory() as temporary:
 

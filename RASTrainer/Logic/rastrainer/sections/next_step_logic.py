@@ -58,17 +58,15 @@ class NextStep:
 
 @dataclass(frozen=True)
 class WorkflowState:
-    """State of a session.
+    """State of a session, with the chosen trainee.
 
     Attributes:
         isElsewhere: the simulator is to be on another computer.
         runningSentence: says that a simulator not started from here is running; empty if none is.
-        trainee: pseudonym of the chosen trainee; empty if none is.
-        hasPracticed: the chosen trainee has played before, be it the trial run alone.
-        isLearning: the chosen trainee does the tutorial before the trial run.
+        hasPracticed: the trainee has played before, be it the trial run alone.
+        isLearning: the trainee does the tutorial before the trial run.
         isUnscored: the trial that was registered last could not be kept or scored.
-        hasNewResult: a trial of the chosen trainee was scored and has not been viewed.
-        isResultShown: the score was viewed last.
+        hasNewResult: a trial of the trainee was scored and has not been viewed.
     """
 
     link: LinkStatus

@@ -25,22 +25,11 @@ from rastrainer.slicer.link.link_status import NOT_INSTALLED, LinkState
 from rastrainer.slicer.translation import _
 from rastrainer.study.protocol.steps import instruction
 from rastrainer.trial.analysis import TrialAnalysis
-from rastrainer.widgets.controls import LINK_COLORS, connectAsPressed, setEnabled, setLight, setText
+from rastrainer.widgets.controls import LINK_LOOKS, connectAsPressed, setEnabled, setLight, setText
 from rastrainer.widgets.plain_text import buttonTitle, shortName
 
 SHORTCUT = "Ctrl+Return"
 THIS_COMPUTER = ("", "127.0.0.1", "localhost", "::1")
-WORDS = {
-    LinkState.OFF: _("Not connected"),
-    LinkState.NOT_INSTALLED: _("Not installed"),
-    LinkState.LOOKING: _("Looking"),
-    LinkState.ABSENT: _("No answer"),
-    LinkState.OTHER_PROGRAM: _("No simulator"),
-    LinkState.GREETING: _("Connecting"),
-    LinkState.CONNECTED: _("Connected"),
-    LinkState.STALE: _("Silent"),
-    LinkState.WRONG_VERSION: _("Wrong version"),
-}
 
 
 class NextStepPanel(Panel):
@@ -76,10 +65,7 @@ class NextStepPanel(Panel):
             (session.trainees.changed, self._lookUp),
             (session.study.changed, self._lookUp),
             # Each section shows it in a separate turn; only then is there something to see.
-            (
-                session.trials.trialScored,
-                lambda a: session.work.later(partial(self._noteScored, a)),
-            ),
+            (session.trials.trialScored, lambda a: session.work.later(lambda: self._noteScored(a))),
             (session.trials.problemFound, lambda _sentence: self._note(isUnscored=True)),
         )
         self._lookAtSetup()
@@ -120,8 +106,9 @@ class NextStepPanel(Panel):
             total=trial.total,
             isLoading=session.training.loadings > 0,
         )
-        setLight(ui.linkLight, LINK_COLORS[now.link.state])
-        setText(ui.linkText, WORDS[now.link.state])
+        color, word = LINK_LOOKS[now.link.state]
+        setLight(ui.linkLight, color)
+        setText(ui.linkText, word)
         trainee, task = now.trainee, now.taskTitle
         if now.link.state is LinkState.CONNECTED and trial.isOpen:
             titles = {session.task: session.taskTitle, TRIAL_RUN: _("Trial run")}

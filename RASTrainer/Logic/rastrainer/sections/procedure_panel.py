@@ -102,18 +102,7 @@ class ProcedurePanel(Panel):
     def _showOutcome(self) -> None:
         ui, outcome = self._ui, self._logic.outcome
         each = () if outcome is None else outcome.analysis.trajectories
-        rows = [
-            (
-                errors.trajectory,
-                fixed(errors.target_point_error.mm, 2),
-                fixed(errors.target_point_error.by_registration_mm, 2),
-                fixed(errors.target_point_error.by_hand_mm, 2),
-                fixed(errors.entry_point_error.mm, 2),
-                fixed(errors.angular_deviation_deg, 2),
-            )
-            for errors in each
-        ]
-        fillTable(ui.procedureErrorsTable, rows, [_tip(errors) for errors in each])
+        fillTable(ui.procedureErrorsTable, map(_row, each), [_tip(errors) for errors in each])
         ui.procedureErrorsTable.visible = outcome is not None
         setText(ui.procedureScoreText, "" if outcome is None else scoreText(outcome))
 
@@ -192,6 +181,13 @@ def scoreText(outcome: ProcedureOutcome) -> str:
     if not score.acceptable:
         said.append(_("Not acceptable: an error is beyond its limit, or a structure was hit."))
     return " ".join(said)
+
+
+def _row(errors: TrajectoryErrors) -> tuple[str, ...]:
+    target, entry = errors.target_point_error, errors.entry_point_error
+    split = target.mm, target.by_registration_mm, target.by_hand_mm
+    numbers = (*split, entry.mm, errors.angular_deviation_deg)
+    return errors.trajectory, *(fixed(number, 2) for number in numbers)
 
 
 def _tip(errors: TrajectoryErrors) -> str:

@@ -36,7 +36,7 @@ from rastrainer.procedure.plan import (
 )
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.sections.scenario_files import ScenarioFiles
-from rastrainer.slicer.scene.nodes import labelsOf, worldPoints
+from rastrainer.slicer.scene.nodes import labelsOf, setValues, worldPoints
 from rastrainer.slicer.scene.plan_points import ENDS, placedPoints
 from rastrainer.slicer.scene.procedure_lines import instrumentOf, noGoNodes, planLines, showPlan
 from rastrainer.slicer.translation import _
@@ -47,13 +47,10 @@ FILE = "procedure.json"
 
 @dataclass(frozen=True)
 class PlanDescription:
-    """The parts of a plan that are not nodes of the scene.
+    """The parts of a plan that are not lines or structures in the scene.
 
-    Attributes:
-        kind: a `ProcedureKind`.
-        source: where the coordinates come from; empty says that they were placed in Slicer.
-        name: of the procedure that is changed; empty for a new one, whose name its title gives.
-        checkpoints: a list of points on the skin, or None.
+    `name` is empty for a new procedure, whose name its title gives; without a `source`, the
+    coordinates were placed in Slicer. `checkpoints` is a list of points on the skin, or None.
     """
 
     title: str
@@ -95,21 +92,17 @@ class ProcedurePlanLogic:
         if not name:
             text = _("{title} cannot be a procedure's title: it needs a Latin letter or digit.")
             raise InputError(text.format(title=title))
-        points: list[tuple[str, np.ndarray]] = []
-        if plan.checkpoints is not None:
-            places = worldPoints(plan.checkpoints)
-            points = list(zip(labelsOf(plan.checkpoints), places, strict=True))
+        node = plan.checkpoints
+        checkpoints = () if node is None else zip(labelsOf(node), worldPoints(node), strict=True)
+        structures = zip(noGo, files, strict=True)
         procedure = Procedure(
-            name=name,
-            title=title[:80],
-            kind=ProcedureKind(plan.kind),
-            source=plan.source.strip() or _("Planned in 3D Slicer."),
-            trajectories=trajectories,
-            no_go=tuple(
-                NoGoStructure(structure[:60], Path(NO_GO_FOLDER, file))
-                for structure, file in zip(noGo, files, strict=True)
-            ),
-            checkpoints=tuple(Checkpoint(label, np.array(place)) for label, place in points),
+            name,
+            title[:80],
+            ProcedureKind(plan.kind),
+            plan.source.strip() or _("Planned in 3D Slicer."),
+            trajectories,
+            tuple(NoGoStructure(each[:60], Path(NO_GO_FOLDER, file)) for each, file in structures),
+            tuple(Checkpoint(label, place) for label, place in checkpoints),
         )
         return procedure, dict(zip(files, noGo.values(), strict=True))
 
@@ -174,11 +167,7 @@ def _trajectory(line: Any) -> ProcedureTrajectory:
 
 
 def noGoMeshes(nodes: list[Any]) -> dict[str, HeadMesh]:
-    """Return the surfaces of no-go structures by name, RAS mm.
-
-    Args:
-        nodes: `vtkMRMLModelNode` or `vtkMRMLSegmentationNode`, of which each segment is one.
-    """
+    """Return the surfaces of models, and of each segment of segmentations, by name, RAS mm."""
     found: dict[str, HeadMesh] = {}
     for node in nodes:
         for name, surface in _surfaces(node):
@@ -210,12 +199,9 @@ def _mesh(name: str, surface: vtk.vtkPolyData | None, node: Any) -> HeadMesh:
     # Before anything takes long.
     check_no_go_size(surface.GetNumberOfPolys(), name)
     triangles = vtk.vtkTriangleFilter()
-    triangles.SetInputData(surface)
-    triangles.PassLinesOff()
-    triangles.PassVertsOff()
+    setValues(triangles, InputData=surface, PassLines=False, PassVerts=False)
     merged = vtk.vtkCleanPolyData()
-    merged.SetInputConnection(triangles.GetOutputPort())
-    merged.Update()
+    setValues(merged, InputConnection=triangles.GetOutputPort()).Update()
     mesh = meshOf(merged.GetOutput())
     placed = HeadMesh(transforms.apply(toWorld(node), mesh.vertices), mesh.triangles)
     check_no_go_mesh(placed, name)

@@ -13,8 +13,8 @@ from rastrainer.procedure.plan import ProcedureKind
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, chosenScenario, connectClick
 from rastrainer.sections.procedure_plan_logic import PlanDescription
-from rastrainer.slicer.scene.nodes import Role, findNode, worldPoints
-from rastrainer.slicer.scene.plan_points import LIST, startPlacing
+from rastrainer.slicer.scene.nodes import LIST, Role, findNode, worldPoints
+from rastrainer.slicer.scene.plan_points import startPlacing
 from rastrainer.slicer.scene.procedure_lines import (
     checkpointList,
     instrumentOf,
@@ -22,10 +22,8 @@ from rastrainer.slicer.scene.procedure_lines import (
     lengthMm,
     newPlanLine,
     noGoNodes,
+    placeLine,
     planLines,
-    raiseLine,
-    removeLine,
-    restoreLine,
     setInstrument,
     setNoGo,
 )
@@ -72,9 +70,8 @@ class ProcedurePlanPanel(Panel):
         ui.removeLineButton.connect("clicked()", self.removeLine)
         ui.restoreLineButton.connect("clicked()", self.restoreLine)
         ui.raiseLineButton.connect("clicked()", self.raiseLine)
-        connectClick(
-            ui.placeCheckpointButton, self.placeCheckpoint, _("No checkpoint can be placed.")
-        )
+        noPoint = _("No checkpoint can be placed.")
+        connectClick(ui.placeCheckpointButton, self.placeCheckpoint, noPoint)
         ui.linesTable.connect("itemSelectionChanged()", self._showLine)
         ui.lineNameLineEdit.connect("editingFinished()", self._renameLine)
         for box in (ui.lineDiameterSpinBox, ui.lineSafetySpinBox):
@@ -112,20 +109,22 @@ class ProcedurePlanPanel(Panel):
         """Remove the chosen line; it can be restored."""
         line = self._line()
         if line is not None:
-            self._removed.append((line, removeLine(slicer.mrmlScene, line)))
+            self._removed.append((line, self._ui.linesTable.currentRow()))
+            slicer.mrmlScene.RemoveNode(line)
         self.showState()
 
     def restoreLine(self) -> None:
         if self._removed:
-            restoreLine(slicer.mrmlScene, *self._removed.pop())
+            placeLine(slicer.mrmlScene, *self._removed.pop())
         self.showState()
 
     def raiseLine(self) -> None:
         """Move the chosen line up in the order of the procedure; it stays chosen."""
         line, table = self._line(), self._ui.linesTable
         if line is not None:
-            raiseLine(slicer.mrmlScene, line)
-            table.selectRow(max(table.currentRow() - 1, 0))
+            place = max(table.currentRow() - 1, 0)
+            placeLine(slicer.mrmlScene, line, place)
+            table.selectRow(place)
         self.showState()
 
     def placeCheckpoint(self) -> None:
@@ -197,14 +196,10 @@ class ProcedurePlanPanel(Panel):
     def _snapshot(self) -> tuple:
         """Return a value that changes whenever a measured input changes."""
         lines = planLines(slicer.mrmlScene)
-        return (
-            *(
-                (line.GetName(), instrumentOf(line), worldPoints(line).tobytes(), lengthMm(line))
-                for line in lines
-            ),
-            *((node.GetID(), node.GetMTime()) for node in noGoNodes(slicer.mrmlScene)),
-            chosenData(self._ui.scenarioComboBox),
-        )
+        named = [(line.GetName(), instrumentOf(line)) for line in lines]
+        placed = [(worldPoints(line).tobytes(), lengthMm(line)) for line in lines]
+        structures = [(node.GetID(), node.GetMTime()) for node in noGoNodes(slicer.mrmlScene)]
+        return named, placed, structures, chosenData(self._ui.scenarioComboBox)
 
     def _showLines(self, found: Sequence[LineMeasures]) -> None:
         lines, table = planLines(slicer.mrmlScene), self._ui.linesTable
@@ -241,14 +236,10 @@ class ProcedurePlanPanel(Panel):
         return lines[row] if 0 <= row < len(lines) else None
 
     def _description(self) -> PlanDescription:
-        ui = self._ui
-        return PlanDescription(
-            title=ui.procedureTitleLineEdit.text,
-            kind=chosenData(ui.procedureKindComboBox),
-            source=ui.procedureSourceLineEdit.text,
-            name=self._name,
-            checkpoints=ui.checkpointsComboBox.currentNode(),
-        )
+        ui, kind = self._ui, chosenData(self._ui.procedureKindComboBox)
+        title, source = ui.procedureTitleLineEdit.text, ui.procedureSourceLineEdit.text
+        checkpoints = ui.checkpointsComboBox.currentNode()
+        return PlanDescription(title, kind, source, self._name, checkpoints)
 
     def _showProcedures(self) -> None:
         entries = [(title, name) for name, title in self._session.procedures]

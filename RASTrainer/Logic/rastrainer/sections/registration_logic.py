@@ -23,8 +23,7 @@ from rastrainer.slicer.scene.error_colors import (
     removeHeadColors,
     showResidualArrows,
 )
-from rastrainer.slicer.scene.nodes import Role, findNode, surfaceOf, worldPoints
-from rastrainer.slicer.scene.plan_points import LIST
+from rastrainer.slicer.scene.nodes import LIST, Role, findNode, surfaceOf, worldPoints
 from rastrainer.slicer.scene.registration_input import (
     Choices,
     Pairs,
@@ -43,17 +42,15 @@ from rastrainer.slicer.signal import Signal
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """The fits of the same pairs side by side.
+    """The fits of the same pairs side by side, by kind; those that the pairs allow, rigid always.
 
     Attributes:
         shown: the fit of the wanted kind; the rigid one where the pairs do not allow that kind.
-        fits: by kind; those that the pairs allow, rigid always.
-        localizations: by kind, the error of the touches along and across the skin; None if only
-            an isotropic error is known.
-        errors: by kind, what to expect at the target; those that are known.
-        leaveOneOut: by kind, (n,) float, mm, how far each touch lies from where the other pairs
-            put it; those for which the pairs are enough.
-        remedies: the warnings, each with what one click can do.
+        localizations: the error of the touches along and across the skin; None if only an isotropic
+            error is known.
+        errors: what to expect at the target; those that are known.
+        leaveOneOut: (n,) float, mm, how far each touch lies from where the other pairs put it;
+            those for which the pairs are enough.
         headErrors: (v,) float, mm, expected at each point of the head with the shown fit; None if
             the head is not colored, or nothing is known.
     """
@@ -80,14 +77,10 @@ def compareFits(
     skin: SkinNormals | None,
     headPoints: np.ndarray | None,
 ) -> Comparison:
-    """Register pairs in all ways.
+    """Register pairs, which were chosen by `choices`, in all ways; `kind` is shown.
 
-    Args:
-        choices: by which they were chosen.
-        kind: of the fit that is shown.
-        target: (3,) float, RAS mm, the place of the reported errors; None if there is no target.
-        skin: of the head; None if there is no head.
-        headPoints: (v, 3) float, RAS mm, the points of a head that is to be colored, else None.
+    Errors are those at `target`, (3,) float, RAS mm, and at `headPoints`, (v, 3), of a head that is
+    to be colored.
     """
     fits = register_all_kinds(
         pairs.moving, pairs.fixed, pairs.labels, choices.weights(pairs.labels)
@@ -126,8 +119,7 @@ class RegistrationLogic:
 
     Attributes:
         changed: emits nothing, whenever another `comparison` or `problem` is shown.
-        comparison: the present fits; None if there are none.
-        problem: why there are none, a sentence; empty otherwise.
+        problem: why there are no fits, a sentence; empty otherwise.
         kind: of the fit that the transform and the arrows show.
         isHeadColored: the head shows the target error to expect.
     """
@@ -175,8 +167,7 @@ class RegistrationLogic:
 
     def chooseLists(self, *lists: Any | None) -> None:
         """Choose `lists`; None means the list of the trial or its task."""
-        former = self._chosen
-        self._chosen = [node.GetID() if node else "" for node in lists]
+        former, self._chosen = self._chosen, [node.GetID() if node else "" for node in lists]
         if self._chosen[:2] != former[:2]:
             self.reset()
 
@@ -188,13 +179,10 @@ class RegistrationLogic:
     def setHeadColored(self, colored: bool) -> None:
         """Color the head by the target error to expect, or not."""
         self.isHeadColored = colored
-        if colored:
-            self._compute()
-        else:
-            self._colorHead(None)
+        self._compute() if colored else self._colorHead(None)
 
     def change(self, choices: Choices) -> None:
-        """Register the pairs with these changes; `undo` reverts them."""
+        """Register the pairs with these changes."""
         if choices != self.choices:
             self._history.append(choices)
             self._compute()

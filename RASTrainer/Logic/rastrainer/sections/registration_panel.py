@@ -23,6 +23,7 @@ from rastrainer.widgets.controls import (
     chosenData,
     fillTable,
     numberOrDash,
+    replaceWidgets,
     setEnabled,
     setSilently,
     setText,
@@ -144,16 +145,11 @@ class RegistrationPanel(Panel):
         if remedies == self._remedies:
             return
         self._remedies = remedies
-        layout = self._ui.warningsWidget.layout()
-        for widget in self._remedyWidgets:
-            layout.removeWidget(widget)
-            widget.setParent(None)
-            widget.deleteLater()
-        self._remedyWidgets = []
+        widgets = []
         for number, remedy in enumerate(remedies):
             text = textLabel("⚠ " + remedy.warning.message)
             text.setObjectName(f"warning{number}Text")
-            self._remedyWidgets.append(text)
+            widgets.append(text)
             if remedy.title:
                 button = qt.QPushButton(buttonTitle(remedy.title))
                 button.setObjectName(f"remedy{number}Button")
@@ -161,9 +157,9 @@ class RegistrationPanel(Panel):
                 button.toolTip = _("Apply this change and register again. Undo reverts it.")
                 change = partial(self._logic.change, remedy.choices)
                 connectClick(button, change, _("The pairs were not changed."))
-                self._remedyWidgets.append(button)
-        for widget in self._remedyWidgets:
-            layout.addWidget(widget)
+                widgets.append(button)
+        replaceWidgets(self._ui.warningsWidget.layout(), self._remedyWidgets, widgets)
+        self._remedyWidgets = widgets
 
 
 def _summary(comparison: Comparison) -> str:

@@ -7,10 +7,9 @@ import json
 import os
 import tempfile
 from collections.abc import Callable
-from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
@@ -34,45 +33,35 @@ LONGEST_STEM = 30
 
 
 class ScenarioCache:
-    """Reads scenarios when they are needed, and again after they were rebuilt.
-
-    Call `refresh` after one is added. May be used in any thread.
-    """
+    """Reads scenarios when they are needed, and again after they were rebuilt, in any thread."""
 
     def __init__(self, *libraries: Path) -> None:
         self._libraries = libraries
         self._lines: dict[Path, tuple[tuple, ListedScenario]] = {}
-        self._listed: tuple[ListedScenario, ...] | None = None
         self._scenarios: dict[str, tuple[tuple[int, int], Scenario]] = {}
 
-    def listed(self) -> tuple[ListedScenario, ...]:
+    def listed(self) -> list[ListedScenario]:
         """Return the available scenarios; an unusable one says why."""
-        if (listed := self._listed) is None:
-            self._listed = listed = tuple(list_scenarios(self._libraries, self._listOne))
-        return listed
 
-    def _listOne(self, folder: Path) -> ListedScenario:
-        """List a scenario again, which takes long, only if one of its files has changed."""
-        stamp, line = self._lines.get(folder, ((), None))
-        present = tuple((str(path), _stamp(path)) for path in sorted(folder.rglob("*")))
-        if line is None or stamp != present:
-            line = list_folder(folder)
-            self._lines[folder] = present, line
-        return line
+        def listOne(folder: Path) -> ListedScenario:
+            # That takes long: only if one of its files has changed.
+            stamp, line = self._lines.get(folder, ((), None))
+            present = tuple((str(path), _stamp(path)) for path in sorted(folder.rglob("*")))
+            if line is None or stamp != present:
+                line = list_folder(folder)
+                self._lines[folder] = present, line
+            return line
 
-    def refresh(self) -> None:
-        """List and read again when needed next."""
-        self._listed = None
-        self._scenarios.clear()
+        return list_scenarios(self._libraries, listOne)
 
     def find(self, name: str) -> Scenario:
         """Return the scenario of that name, which may have been added since the last look."""
         stamp, scenario = self._scenarios.get(name, ((0, 0), None))
         if scenario is None or stamp != _stamp(scenario.folder / FILE_NAME):
-            self._listed = None
-            folders = {entry.name: entry.folder for entry in self.listed()}
+            listed = self.listed()
+            folders = {entry.name: entry.folder for entry in listed}
             if name not in folders:
-                usable = [entry.name for entry in self.listed() if not entry.problem]
+                usable = [entry.name for entry in listed if not entry.problem]
                 raise InputError(
                     f"The scenario {json.dumps(name)} is not here; those that are: "
                     f"{', '.join(usable) or 'none'}."
@@ -85,7 +74,6 @@ class ScenarioCache:
     def newName(self, title: str) -> str:
         """Return the name of a scenario of that title, which is not here yet."""
         name = scenario_name(title)
-        self._listed = None
         taken = {entry.name: entry.folder for entry in self.listed()}
         if name not in taken:
             return name
@@ -111,13 +99,12 @@ def _stamp(path: Path) -> tuple[int, int]:
 
 
 class ScenarioFiles:
-    """Scenarios on disk, which the simulator's program writes.
+    """Scenarios on disk, which the simulator's program writes, each into a folder of `library`.
 
     `progress` is called while it works: it may let the application draw, and may raise to cancel.
     """
 
     def __init__(self, simulator: SimulatorLogic, cache: ScenarioCache, library: Path) -> None:
-        """Scenarios come into the folder `library`, each into a separate folder."""
         self.simulator = simulator
         self._cache = cache
         self._library = library
@@ -126,19 +113,16 @@ class ScenarioFiles:
         """Return the scenario that `make` makes in the folder it is given."""
         folder = self._library / self._cache.newName(title)
         make(folder)
-        self._cache.refresh()
         return load_scenario(folder)
 
     def importScenario(self, package: Path, progress: Progress = no_progress) -> Scenario:
-        folder = inBackground(lambda report: unpack(package, self._library, report), progress)
-        self._cache.refresh()
-        return load_scenario(folder)
+        unpacked = inBackground(lambda report: unpack(package, self._library, report), progress)
+        return load_scenario(unpacked)
 
     def drawFaceRemoval(self, name: str, picture: Path, progress: Progress = no_progress) -> str:
         """Draw a head before and after its face is removed; return a sentence on the picture."""
         folder = str(self._cache.find(name).folder)
-        words = ["pack", folder, os.devnull, "--picture", str(picture)]
-        return self.run(words, progress)
+        return self.run(["pack", folder, os.devnull, "--picture", str(picture)], progress)
 
     def exportScenario(
         self,
@@ -150,10 +134,8 @@ class ScenarioFiles:
     ) -> str:
         """Write a scenario as a zip file; return a sentence about removed parts.
 
-        Args:
-            keepsFace: whether the head keeps its face and skull; otherwise the user has seen what
-                `drawFaceRemoval` has drawn.
-            keepsNames: whether title, name and source stay, which may be the patient's name.
+        Unless the head keeps its face and skull, the user has seen what `drawFaceRemoval` has
+        drawn. Title, name and source may be the patient's name.
         """
         words = ["pack", str(self._cache.find(name).folder), str(package)]
         words += ["--keep-face"] if keepsFace else ["--yes"]
@@ -197,14 +179,11 @@ def planArguments(*planned: Any | None) -> list[str]:
 LIMIT_BYTES = 1 << 20
 
 
-@dataclass(frozen=True)
-class ComparedMethod:
-    """How a method has registered the trials; lengths in mm, root mean squares over trials.
+class ComparedMethod(NamedTuple):
+    """How a method has registered the trials; mm, root mean squares over trials.
 
-    Attributes:
-        low, high: medians of the ends of the 95 % interval of the target error.
-        residual: of the points that count; it does not show the error.
-        held: share of the intervals that hold the true error.
+    `low` and `high` are medians of the ends of the 95 % interval of the target error, and `held` is
+    the share of the intervals that hold the true error.
     """
 
     name: str

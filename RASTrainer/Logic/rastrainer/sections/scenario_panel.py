@@ -50,13 +50,8 @@ class ScenarioPanel(Panel):
         shows = (self._showHeadMessage, self._showUsable, partial(showPercent, ui.otherHeadText))
         self._work = CancelableWork(ui.useHeadButton, self.useHead, failure, *shows)
         failure = _("The scenario was not saved.")
-        self._writing = CancelableWork(
-            ui.exportScenarioButton,
-            self.exportScenario,
-            failure,
-            self._showMessage,
-            show=no_progress,
-        )
+        says = (self._showMessage, self._showUsable, no_progress)
+        self._writing = CancelableWork(ui.exportScenarioButton, self.exportScenario, failure, *says)
         failure = _("The scenario was not added.")
         self._adding = CancelableWork(
             ui.importScenarioButton, self.importScenario, failure, self._showMessage
@@ -77,12 +72,12 @@ class ScenarioPanel(Panel):
             (session.files.problemFound, self._showMessage),
             (self._logic.robotShown, fitThreeDViews),
             (self._logic.problemFound, self._showMessage),
-            (
-                session.sceneChanged,
-                lambda: setSilently(ui.robotCheckBox, "checked", self._logic.isRobotShown),
-            ),
+            (session.sceneChanged, self._showRobot),
         )
         self._fill(session.settings.get(SCENARIO))
+
+    def _showRobot(self) -> None:
+        setSilently(self._ui.robotCheckBox, "checked", self._logic.isRobotShown)
 
     def show(self) -> None:
         with showErrors(_("The scenario cannot be shown.")):
@@ -187,11 +182,10 @@ class ScenarioPanel(Panel):
         ui = self._ui
         name = chosenData(ui.scenarioComboBox)
         entry = next((each for each in self._scenarios.listed() if each.name == name), None)
-        preview = None if entry is None else entry.preview
-        if preview is not None:
-            picture = qt.QPixmap(str(preview)).scaledToHeight(PICTURE_HEIGHT)
+        ui.scenarioPicture.visible = entry is not None and entry.preview is not None
+        if entry is not None and entry.preview is not None:
+            picture = qt.QPixmap(str(entry.preview)).scaledToHeight(PICTURE_HEIGHT)
             ui.scenarioPicture.setPixmap(picture)
-        ui.scenarioPicture.visible = preview is not None
         ui.taskComboBox.enabled = isUsable = entry is not None and not entry.problem
         self._showUsable()
         if not isUsable:

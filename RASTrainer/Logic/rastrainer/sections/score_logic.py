@@ -53,8 +53,8 @@ class ReplayLogic:
         self,
         services: TrialServices,
         robot: Path,
-        isTrialOpen: Callable[[], bool] = lambda: False,
-        isBeingScored: Callable[[str], bool] = lambda _trialId: False,
+        isTrialOpen: Callable[[], bool],
+        isBeingScored: Callable[[str], bool],
     ) -> None:
         """`robot` is the folder of the URDF; a trial that is being scored gets feedback by that."""
         self.feedbackFound = Signal()
@@ -64,7 +64,7 @@ class ReplayLogic:
         self._services = services
         self._robot = robot
         self._isBeingScored = isBeingScored
-        self._awaitedId = self._requestedId = ""
+        self._awaitedId = ""
         self._known: tuple[str, TrialFeedback | Exception | None] = ("", None)
         self._until: float | None = None
         self._outdated: Iterator[None] = iter(())
@@ -72,27 +72,25 @@ class ReplayLogic:
 
     def feedback(self, trial: StoredTrial) -> TrialFeedback | None:
         """Return the feedback on a trial; None while it is being prepared."""
-        trialId = trial.record.trial_id
-        if self._known[0] == trialId:
-            if isinstance(self._known[1], Exception):
-                raise self._known[1]
-            return self._known[1]
-        if self._isBeingScored(trialId):
-            self._awaitedId = trialId
-        elif self._requestedId != trialId:
-            self._requestedId = trialId
+        trialId, work = trial.record.trial_id, self._services.work
+        if self._known[0] != trialId:
+            if self._isBeingScored(trialId):
+                self._awaitedId = trialId
+                return None
+            self._known = trialId, None
 
             def take(found: TrialFeedback | Exception) -> None:
-                if self._requestedId == trialId:
+                if self._known == (trialId, None):
                     self.takeFeedback(trialId, found)
 
-            work = self._services.work
             work.do(lambda: self._judge(trial, work.checkWanted), take, take)
-        return None
+        if isinstance(self._known[1], Exception):
+            raise self._known[1]
+        return self._known[1]
 
     def takeFeedback(self, trialId: str, feedback: TrialFeedback | Exception) -> None:
         """Accept feedback on a trial that was prepared elsewhere."""
-        self._known, self._requestedId, self._awaitedId = (trialId, feedback), "", ""
+        self._known, self._awaitedId = (trialId, feedback), ""
         self.feedbackFound.emit()
 
     def retryFeedback(self) -> None:
@@ -115,7 +113,7 @@ class ReplayLogic:
     def showWorstTouch(self, trial: StoredTrial, progress: Progress = no_progress) -> None:
         """Show again how the worst touch came about; otherwise as `show`."""
         trialId = trial.record.trial_id
-        if self._known[0] != trialId:
+        if self._known[0] != trialId or self._known[1] is None:
             judged = inBackground(lambda report: self._judge(trial, report), progress)
             self.takeFeedback(trialId, judged)
         feedback = self.feedback(trial)

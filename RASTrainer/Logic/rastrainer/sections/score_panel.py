@@ -177,11 +177,12 @@ class ScorePanel(Panel):
             self._showMessage(str(error))
             return
         scores = [] if trial is None else scoreRows(trial)
-        ctps = [] if trial is None else ctpsRows(trial, cohort)
-        motion = [] if trial is None else motionRows(trial)
         rows = ((row.title, row.text, row.note) for row in scores)
         fillTable(ui.scoreTable, rows, [row.tip for row in scores])
-        fillTable(ui.ctpsTable, ((row.title, row.text) for row in ctps), [row.note for row in ctps])
+        ctps = [] if trial is None else ctpsRows(trial, cohort)
+        motion = [] if trial is None else motionRows(trial)
+        for table, parts in ((ui.ctpsTable, ctps), (ui.motionTable, motion)):
+            fillTable(table, [(row.title, row.text) for row in parts], [row.note for row in parts])
         setText(ui.ctpsText, CTPS_WARNING if ctps else "")
         comparisons = [
             (
@@ -195,8 +196,6 @@ class ScorePanel(Panel):
             for each in beside
         ]
         fillTable(ui.standingsTable, comparisons)
-        notes = [row.note for row in motion]
-        fillTable(ui.motionTable, ((row.title, row.text) for row in motion), notes)
         # Once for each trial, so that messages about an export or a report stay.
         if trialId != self._named:
             self._named = trialId

@@ -31,12 +31,9 @@ _ANY_ADDRESS = ("0.0.0.0", "::", "localhost", "")
 
 
 class RunningSimulator:
-    """Finds who records in the folder of the journals.
+    """Finds the simulator that records in the folder of the journals, its `holder`.
 
-    Attributes:
-        holder: the simulator that records there; None if none does.
-        isEnding: whether it was asked to end.
-        changed: emits nothing, whenever one of them has changed.
+    `isEnding` says whether it was asked to end; `changed` emits nothing when one of them changes.
     """
 
     def __init__(self, records: Path, link: Link) -> None:
@@ -97,14 +94,13 @@ class RunningSimulator:
         shown = _process(self.holder)
         self.look()
         # A simulator that has started since must not be ended.
-        if not self.canEnd or _process(self.holder) != shown:
-            return
-        self._signal(isAsked=True)
-        if _process(self._connected) == shown:
-            self._link.disconnect()
-        self.isEnding = True
-        self._lookAt, self._killAt = 0.0, time.monotonic() + KILL_AFTER_S
-        self.changed.emit()
+        if self.canEnd and _process(self.holder) == shown:
+            self._signal(isAsked=True)
+            if _process(self._connected) == shown:
+                self._link.disconnect()
+            self.isEnding = True
+            self._lookAt, self._killAt = 0.0, time.monotonic() + KILL_AFTER_S
+            self.changed.emit()
 
     def process(self) -> None:
         if self.holder is None or time.monotonic() < self._lookAt:
@@ -138,7 +134,6 @@ class SimulatorLogic:
     def __init__(
         self, link: Link, setup: SimulatorSetup, records: Path, settings: Settings
     ) -> None:
-        """`records` is the folder into which the simulator writes its journals."""
         self._settings = settings
         self.program = SimulatorProgram()
         self.setup = setup
@@ -146,7 +141,10 @@ class SimulatorLogic:
         self.running = RunningSimulator(records, link)
         self._records = records
         self.program.ready.connect(lambda: link.connectTo(DEFAULT_HOST, self.program.port))
-        self.program.changed.connect(self._lookAfterFailure)
+        # A simulator started in the meantime may be why this one has failed.
+        self.program.changed.connect(
+            lambda: self.program.state is ProgramState.FAILED and self.running.look()
+        )
 
     @property
     def needsSetup(self) -> bool:
@@ -160,11 +158,7 @@ class SimulatorLogic:
         return self.setup.isRunning or isInBetween or self.running.isEnding
 
     def start(self, port: int, hasWindow: bool = False, hasNetwork: bool = False) -> None:
-        """Start the simulator on this computer, or find a running one in `running`.
-
-        Where another program listens on the port, any free one is taken. By `hasNetwork` views of
-        the local network come in, by https.
-        """
+        """Start the simulator, on any port if the given one is in use, or find a running one."""
         if not self.program.isRunning and self.running.look():
             return
         arguments = ["simulator", "--port", str(freePort(port)), "--records", str(self._records)]
@@ -185,10 +179,7 @@ class SimulatorLogic:
         return self.setup.command(arguments)
 
     def run(self, arguments: Sequence[str], progress: Progress, mayFail: bool = False) -> str:
-        """Run `rastrainer` to its end and return the last line that it has written.
-
-        By `mayFail` also where it has ended with an error; `progress` may raise to cancel.
-        """
+        """Return the last line that `rastrainer` writes, by `mayFail` also after an error."""
         ended = runChild(self.command(arguments), progress)
         sentence = ended.lastLine.removeprefix("rastrainer: ")
         sentence = sentence or _("The simulator's program wrote nothing.")
@@ -202,7 +193,7 @@ class SimulatorLogic:
             self._link.disconnect()
             self.program.stop()
 
-    def startSetup(self, index: str = "", wheels: str = "") -> None:
+    def startSetup(self, index: str, wheels: str) -> None:
         """Start the set-up, from a source of `pipArguments`."""
         if self.program.isRunning or self.running.look():
             raise InputError(_("End the simulator that is running before setting it up again."))
@@ -225,20 +216,11 @@ class SimulatorLogic:
         self.setup.close()
         self.program.close()
 
-    def _lookAfterFailure(self) -> None:
-        """Look for a simulator started in the meantime, which may be the reason."""
-        if self.program.state is ProgramState.FAILED:
-            self.running.look()
-
-
-ANY = 0
-"""Asks the system for any free port."""
-
 
 def freePort(preferred: int) -> int:
-    """Return the preferred port if no program listens on it, `ANY` otherwise."""
+    """Return the preferred port; 0, for any free one, if a program listens on it."""
     try:
         socket.create_server((DEFAULT_HOST, preferred)).close()
     except OSError:
-        return ANY
+        return 0
     return preferred

@@ -14,7 +14,7 @@ from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from rastrainer.slicer.settings import HAS_NETWORK, HAS_WINDOW, HOST, INDEX, PORT, PROGRAM, WHEELS
 from rastrainer.slicer.translation import _
 from rastrainer.widgets.controls import (
-    LINK_COLORS,
+    LINK_LOOKS,
     bind,
     connectAsPressed,
     setEnabled,
@@ -88,9 +88,8 @@ class SetupPanel(Panel):
         if setup.isRunning and setup.isInstalling:
             return _("All packages are downloaded and are being installed.")
         if setup.isRunning:
-            return _("Package {number} of {count} is being downloaded.").format(
-                number=setup.fetched, count=setup.count
-            )
+            text = _("Package {number} of {count} is being downloaded.")
+            return text.format(number=setup.fetched, count=setup.count)
         if setup.isCurrent:
             size = setup.installedMB
             sentence = _("The simulator is set up in {folder}.").format(folder=setup.folder)
@@ -126,10 +125,8 @@ def costSentence(ui: Any, setup: SimulatorSetup) -> str:
     sizes = setup.package.sizesMB()
     if sizes is None:
         return where
-    size = _("About {download} MB will be downloaded, and {kept} MB kept.").format(
-        download=sizes[0], kept=sizes[1]
-    )
-    return f"{where} {size}"
+    size = _("About {download} MB will be downloaded, and {kept} MB kept.")
+    return f"{where} {size.format(download=sizes[0], kept=sizes[1])}"
 
 
 class SimulatorPanel(Panel):
@@ -148,9 +145,8 @@ class SimulatorPanel(Panel):
         connect = guardedAction(self._connect, _("The connection could not be started."))
         self.connect = connect
         ui.startSimulatorButton.connect("clicked()", self.startAndConnect)
-        connectClick(
-            ui.stopSimulatorButton, self._simulator.stop, _("The simulator could not be stopped.")
-        )
+        notStopped = _("The simulator could not be stopped.")
+        connectClick(ui.stopSimulatorButton, self._simulator.stop, notStopped)
         ui.programPathLineEdit.connect("currentPathChanged(QString)", self._showProgram)
         disconnect = guardedAction(self._link.disconnect, _("The connection could not be closed."))
         connectAsPressed(ui.connectButton, lambda: connect if self._isOff() else disconnect)
@@ -243,7 +239,7 @@ class SimulatorPanel(Panel):
             setText(ui.trainingText, "")
 
     def _showWords(self, status: LinkStatus) -> None:
-        setLight(self._ui.stateLight, LINK_COLORS[status.state])
+        setLight(self._ui.stateLight, LINK_LOOKS[status.state][0])
         setText(self._ui.stateText, status.sentence)
         setText(self._ui.remedyText, status.remedy)
 

@@ -34,12 +34,8 @@ CLOCK_STEP_S = 0.001
 """Resolution of the trial's time as the simulator sends it."""
 
 
-class PracticeMonitor:
-    """Counts by the simulator's time of the trial, in which pauses are left out.
-
-    So the simulator, which shows the same minutes to the trainee, and the study agree when they
-    are over.
-    """
+class PracticeMonitor(Listening):
+    """Counts by the simulator's time of the trial, which the trainee sees; it stops in pauses."""
 
     def __init__(
         self,
@@ -51,15 +47,14 @@ class PracticeMonitor:
         """`changed` is called with the trainee whose trial run has ended or was abandoned."""
         self._trainees = trainees
         self._training = training
-        self._link = link
         self._changed = changed
         self._run: TrialStatus | None = None
         self._kept, self._left = 0.0, KEPT_EVERY_S
         self._isFirstSight = True
-        link.stateChanged.connect(self._follow)
+        super().__init__((link.stateChanged, self._follow))
 
     def close(self) -> None:
-        self._link.stateChanged.disconnect(self._follow)
+        super().close()
         self.keep()
 
     def leaveStudy(self) -> None:
@@ -139,10 +134,8 @@ class StudyLogic(Listening):
     Everything done is in the study's file before anyone is informed, so that the trainee resumes
     there when it is opened again. The simulator is sent the next step of each trainee, chosen
     here or not, so that its menu starts nothing else. Trial runs and breaks end by themselves;
-    `process` is to be called once a second, or more often.
-
-    Attributes:
-        changed: emits nothing, whenever a step may have been done.
+    `process` is to be called once a second, or more often. `changed` emits nothing whenever a step
+    may have been done.
     """
 
     def __init__(

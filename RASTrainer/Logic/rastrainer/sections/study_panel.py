@@ -185,35 +185,25 @@ class QuestionnaireForm:
         self._key: Any = None
         self._questionnaire: Questionnaire | None = None
         self._boxes: list[Any] = []
-        self._parts: list[Any] = []
 
     def show(self, key: Any, questionnaire: Questionnaire | None) -> None:
         """Show a questionnaire, empty, unless the shown one has this key."""
         if key == self._key:
             return
         self._key, self._questionnaire = key, questionnaire
-        layout = self._widget.layout()
-        for part in self._parts:
-            layout.removeWidget(part)
-            part.setParent(None)
-            part.deleteLater()
-        self._parts, self._boxes = [], []
+        layout, self._boxes = self._widget.layout(), []
+        while layout.rowCount():
+            layout.removeRow(0)
         if questionnaire is None:
             return
         ends = {"lowest": questionnaire.lowest, "highest": questionnaire.highest}
-        head = textLabel(
-            _(
-                "{title}: {lowest} is {low}, {highest} is {high}, unless a line says otherwise. "
-                "Read the wording from its form."
-            ).format(
-                title=questionnaire.title,
-                low=questionnaire.anchors[0],
-                high=questionnaire.anchors[1],
-                **ends,
-            )
+        low, high = questionnaire.anchors
+        text = _(
+            "{title}: {lowest} is {low}, {highest} is {high}, unless a line says otherwise. "
+            "Read the wording from its form."
         )
-        layout.addRow(head)
-        self._parts.append(head)
+        text = text.format(title=questionnaire.title, low=low, high=high, **ends)
+        layout.addRow(textLabel(text))
         for number, item in enumerate(questionnaire.items, start=1):
             line = item.topic
             if item.anchors:
@@ -227,7 +217,6 @@ class QuestionnaireForm:
             for mark in questionnaire.marks:
                 box.addItem(str(mark), str(mark))
             layout.addRow(label, box)
-            self._parts += [label, box]
             self._boxes.append(box)
 
     def answers(self) -> tuple[int, ...]:
@@ -285,17 +274,11 @@ class CurriculumPanel(Panel):
             (title_of(each), short_progress_of(each), numberOrDash(each.mean, 0)) for each in rows
         ]
         fillTable(ui.assignmentsTable, assignments, tips)
-        fillTable(
-            ui.classTable,
-            (
-                (
-                    name,
-                    f"{each.reached} / {len(each.standings)}",
-                    "–" if each.next_best is None else title_of(each.next_best),
-                )
-                for name, each in everybody.items()
-            ),
-        )
+        members = []
+        for name, each in everybody.items():
+            best = "–" if each.next_best is None else title_of(each.next_best)
+            members.append((name, f"{each.reached} / {len(each.standings)}", best))
+        fillTable(ui.classTable, members)
         self._showButtons()
 
     def _showButtons(self, *_arguments: Any) -> None:

@@ -15,7 +15,8 @@ from rastrainer.igtl.client import Reply
 from rastrainer.registration.target_error import TargetError
 from rastrainer.sections.registration_logic import RegistrationLogic
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.scene.plan_points import LINE, PlanPoints, placedPoints
+from rastrainer.slicer.scene.nodes import LINE
+from rastrainer.slicer.scene.plan_points import PlanPoints, placedPoints
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.trial.analysis import TrialAnalysis
@@ -29,10 +30,8 @@ SAME_PLACE_MM = 0.01
 class PlanOnImages:
     """The plan: a target, or the entry and the target of a trajectory.
 
-    Attributes:
-        ends: (1, 3) or (2, 3) float, RAS mm; the target is the last.
-        endsWorld: of the same shape, where the registration puts them, World, mm.
-        expected: the error to expect at the target; None if the registration cannot predict it.
+    `ends`, (1, 3) or (2, 3) float, are in RAS mm, `endsWorld` where the registration puts them; the
+    target is the last. `expected` is the error there; None if it cannot be predicted.
     """
 
     name: str
@@ -49,25 +48,33 @@ class PlanOnImages:
 class PlanLogic:
     """Reads the plan, sends it to the simulator, and reports errors at the target.
 
-    Attributes:
-        changed: emits nothing, whenever the answers below have changed.
-        isReachable: whether the robot can carry the plan out; None before it is answered.
-        sentence: the last sentence about the plan.
-        trueErrorMm: how far the registration puts the target from where it is; None until
-            the simulator has revealed it.
+    `changed` emits nothing whenever the answers have changed; `sentence` is the last one about the
+    plan.
     """
 
     def __init__(self, scene: Any, link: Link, registration: RegistrationLogic) -> None:
         self.changed = Signal()
-        self.isReachable: bool | None = None
         self.sentence = ""
-        self.trueErrorMm: float | None = None
         self.points = PlanPoints(scene)
         self._link = link
         self._registration = registration
         self._headToWorld: np.ndarray | None = None
         self._sent: PlanOnImages | None = None
-        self._isAnswered = self._isRefused = False
+        self._reply: Reply | None = None
+
+    @property
+    def isReachable(self) -> bool | None:
+        """Whether the robot can carry the plan out; None before it is answered."""
+        found = self._reply.data.get("reachable") if self._reply and self._reply.ok else None
+        return found if isinstance(found, bool) else None
+
+    @property
+    def trueErrorMm(self) -> float | None:
+        """How far the registration puts the shown target from where it is, once that is known."""
+        if self._sent is None or self._headToWorld is None or not (self._reply and self._reply.ok):
+            return None
+        there = transforms.apply(self._headToWorld, self._sent.ends)
+        return float(np.linalg.norm(self._sent.endsWorld[-1] - there[-1]))
 
     def read(self, node: Any | None, row: int = -1) -> PlanOnImages:
         """Return the plan that a list of points or a line holds.
@@ -106,51 +113,40 @@ class PlanLogic:
         arguments: dict[str, Any] = {"positionMm": target, "name": plan.name}
         if entry:
             arguments["entryMm"] = entry[0]
-        self.isReachable, self.sentence = None, _("Waiting for the simulator's answer.")
-        self.trueErrorMm = None
-        self._sent, self._isAnswered, self._isRefused = plan, False, False
+        self._remember(plan, _("Waiting for the simulator's answer."))
         self._link.send(CommandName.PLAN_TARGET, arguments, lambda reply: self._take(reply, plan))
-        self.changed.emit()
 
     def follow(self, plan: PlanOnImages | None) -> None:
         """Forget the answer about any plan other than this one, which is shown now."""
         if self._sent is None or (plan is not None and self._sent.isAsGood(plan)):
             return
-        self._sent = self.isReachable = self.trueErrorMm = None
+        isRefused = self._reply is not None and not self._reply.ok
         stale = _("The plan has changed since it was shown in the simulator: show it again.")
-        self.sentence = "" if self._isRefused else stale
-        self.changed.emit()
+        self._remember(None, "" if isRefused else stale)
 
     def takeTruth(self, analysis: TrialAnalysis) -> None:
         """Accept the true pose of the trial's head, from which true errors follow."""
         self._headToWorld = None if analysis.truth is None else analysis.truth.matrix
-        self._updateTrueError()
+        self.changed.emit()
 
     def forgetTruth(self) -> None:
         """Forget the head and the plan of the former trial: another has just started."""
-        self._headToWorld = self._sent = self.isReachable = self.trueErrorMm = None
-        self.sentence = ""
+        self._headToWorld = None
+        self._remember(None, "")
+
+    def _remember(self, plan: PlanOnImages | None, sentence: str) -> None:
+        self._sent, self._reply, self.sentence = plan, None, sentence
         self.changed.emit()
 
     def _take(self, reply: Reply, plan: PlanOnImages) -> None:
         if plan is not self._sent:
             return
-        if not reply.ok:
-            self._isRefused, self.sentence = True, reply.error
-            self.changed.emit()
-            return
-        isReachable = reply.data.get("reachable")
-        self.isReachable = isReachable if isinstance(isReachable, bool) else None
-        reason = str(reply.data.get("reason", ""))
-        answer = _("The robot can carry it out.") if self.isReachable else reason
-        self.sentence = _("The simulator shows the plan. {answer}").format(answer=answer).strip()
-        self._isAnswered = True
-        self._updateTrueError()
-
-    def _updateTrueError(self) -> None:
-        if self._isAnswered and self._sent is not None and self._headToWorld is not None:
-            there = transforms.apply(self._headToWorld, self._sent.ends)
-            self.trueErrorMm = float(np.linalg.norm(self._sent.endsWorld[-1] - there[-1]))
+        self._reply, self.sentence = reply, reply.error
+        if reply.ok:
+            reason = str(reply.data.get("reason", ""))
+            answer = _("The robot can carry it out.") if self.isReachable else reason
+            shown = _("The simulator shows the plan. {answer}")
+            self.sentence = shown.format(answer=answer).strip()
         self.changed.emit()
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import slicer
@@ -38,37 +40,21 @@ class PlanPanel(Panel):
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
         self._logic = session.plan
-        failure = _("The plan was not saved.")
+        failure, points = _("The plan was not saved."), self._logic.points
         self._keeping = CancelableWork(
             ui.keepPlanButton, self.save, failure, lambda _sentence: None, self.showState
         )
-        connectClick(
-            ui.placeTargetButton,
-            lambda: self._place(self._logic.points.newTarget()),
-            _("No target can be placed."),
-        )
-        connectClick(
-            ui.placeTrajectoryButton,
-            lambda: self._place(self._logic.points.newTrajectory()),
-            _("No trajectory can be placed."),
-        )
+        noTarget, noLine = _("No target can be placed."), _("No trajectory can be placed.")
+        connectClick(ui.placeTargetButton, partial(self._place, points.newTarget), noTarget)
+        connectClick(ui.placeTrajectoryButton, partial(self._place, points.newTrajectory), noLine)
         connectClick(ui.removePlanPointButton, self.removePoint, _("The point was not removed."))
         connectClick(ui.undoPlanButton, self.undo, _("Nothing was undone."))
-        connectClick(
-            ui.sendPlanButton,
-            lambda: self._logic.send(self._ui.planComboBox.currentNode(), self._row()),
-            _("The plan was not sent."),
-        )
+        connectClick(ui.sendPlanButton, self.send, _("The plan was not sent."))
         ui.planComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._chooseNode)
         ui.planTargetComboBox.connect("activated(int)", self._chooseTarget)
-        self.showWhileOpen(
-            ui.planCollapsibleButton,
-            self.showState,
-            self._logic.changed,
-            session.registration.changed,
-            session.link.statusChanged,
-            session.sceneChanged,
-        )
+        changes = self._logic.changed, session.registration.changed, session.link.statusChanged
+        section = ui.planCollapsibleButton
+        self.showWhileOpen(section, self.showState, *changes, session.sceneChanged)
         self.showState()
 
     def removePoint(self) -> None:
@@ -79,6 +65,9 @@ class PlanPanel(Panel):
     def undo(self) -> None:
         self._logic.points.undo()
         self.showState()
+
+    def send(self) -> None:
+        self._logic.send(self._ui.planComboBox.currentNode(), self._row())
 
     def save(self) -> None:
         """Copy the scenario chosen above with this plan and use the copy."""
@@ -143,7 +132,8 @@ class PlanPanel(Panel):
         """Return which point of the chosen list is the target; the last of a line."""
         return int(chosenData(self._ui.planTargetComboBox) or -1)
 
-    def _place(self, node: Any) -> None:
+    def _place(self, newNode: Callable[[], Any]) -> None:
+        node = newNode()
         self._ui.planComboBox.setCurrentNode(node)
         startPlacing(slicer.mrmlScene, node)
         self.showState()

@@ -21,11 +21,14 @@ from rastrainer.sections.trial_status import TraceStatus, readStatus
 from rastrainer.slicer.polydata import pointCloud
 from rastrainer.slicer.scene.error_colors import colorSkin, removeHeadColors
 from rastrainer.slicer.scene.nodes import (
+    LIST,
+    MODEL,
     Role,
     drawAsPoints,
     findNode,
     findOrAddNode,
     removeNode,
+    setDisplay,
     setPoints,
     surfaceOf,
 )
@@ -51,8 +54,8 @@ Wanted = tuple[str, TraceStatus]
 class TraceLogic(Listening):
     """Asks for the trace as it grows, and shows it on the head while the trial is open.
 
-    Guidance is shown in the scene where the simulator's setting, or the study, has it shown to the
-    trainee. All of it is by the landmarks: the head's true pose stays unknown.
+    Guidance is shown where the trainee sees it, too. All of it is by the landmarks: the head's true
+    pose stays unknown.
     """
 
     def __init__(
@@ -79,17 +82,15 @@ class TraceLogic(Listening):
 
     def process(self) -> None:
         """Ask for the trace if it has changed, and a second has passed."""
-        wanted = self._wanted
-        isDue = self._clock() - self._asked >= PERIOD_S
-        if wanted is None or wanted == self._shown or self._isAsking or not isDue:
+        wanted, services = self._wanted, self._services
+        isDue = not self._isAsking and self._clock() - self._asked >= PERIOD_S
+        if wanted is None or wanted == self._shown or not isDue or not services.link.seen.isOpen:
             return
-        if self._scenario is None or not self._services.link.seen.isOpen:
-            return
-        if requestedFile(findNode(self._services.scene, MODEL, Role.HEAD_MODEL)):
-            # The head that is to be colored is still being read.
-            return
-        self._isAsking, self._asked = True, self._clock()
-        self._services.converse(self._updating(self._scenario, wanted))
+        # The head that is to be colored may still be being read.
+        isReading = requestedFile(findNode(services.scene, MODEL, Role.HEAD_MODEL))
+        if self._scenario is not None and not isReading:
+            self._isAsking, self._asked = True, self._clock()
+            services.converse(self._updating(self._scenario, wanted))
 
     def _follow(self, state: Mapping[str, Any]) -> None:
         trial, wasShown = readStatus(state), self._wanted is not None
@@ -127,48 +128,36 @@ class TraceLogic(Listening):
             self._isAsking = False
 
 
-MODEL, MARKUPS = "vtkMRMLModelNode", "vtkMRMLMarkupsFiducialNode"
 DISTANCE_SCALARS = "distance to the trace (mm)"
 FARTHEST_MM = 20.0
 """Skin farther from the trace has the color of this distance."""
-NEXT_COLOR = (0.75, 0.0, 0.5)
+NEXT_LOOK = {"SelectedColor": (0.75, 0.0, 0.5), "GlyphScale": 4.0, "TextScale": 3.5}
 """Far from the trace, the head is yellow."""
 
 
 def showTrace(scene: Any, trace: FollowedTrace, isGuided: bool) -> None:
-    """Show a trace on the head, RAS mm.
-
-    Where the trainee is guided, the head is colored by the distance to the trace, and the place to
-    draw next is marked.
-    """
+    """Show a trace on the head; to guide, color the distance to it, and mark where to draw next."""
     node = findOrAddNode(scene, MODEL, Role.TRACED_POINTS, _("Traced points"))
     drawAsPoints(node)
     node.SetAndObservePolyData(pointCloud(trace.places))
     head = findNode(scene, MODEL, Role.HEAD_MODEL)
-    if head is None:
-        pass
-    elif not (isGuided and len(trace.places)):
+    if head is not None and not (isGuided and len(trace.places)):
         removeHeadColors(head, DISTANCE_SCALARS)
-    # Another head may have been shown meanwhile.
-    elif surfaceOf(head) and head.GetPolyData().GetNumberOfPoints() == len(trace.away_mm):
+    elif head is not None:
         near = np.minimum(trace.away_mm, FARTHEST_MM)
         colorSkin(head, DISTANCE_SCALARS, near, (0.0, FARTHEST_MM), _("To trace (mm)"))
     if trace.next_place is None or not isGuided:
-        removeNode(scene, MARKUPS, Role.NEXT_PLACE)
+        removeNode(scene, LIST, Role.NEXT_PLACE)
         return
-    node = findOrAddNode(scene, MARKUPS, Role.NEXT_PLACE, _("Draw here next"))
+    node = findOrAddNode(scene, LIST, Role.NEXT_PLACE, _("Draw here next"))
     setPoints(node, (_("Next"),), trace.next_place[None])
     node.SetLocked(True)
-    display = node.GetDisplayNode()
-    display.SetSelectedColor(NEXT_COLOR)
-    display.SetGlyphScale(4.0)
-    display.SetTextScale(3.5)
-    display.SetOccludedVisibility(True)
+    setDisplay(node, **NEXT_LOOK, OccludedVisibility=True)
 
 
 def forgetTrace(scene: Any) -> None:
     removeNode(scene, MODEL, Role.TRACED_POINTS)
-    removeNode(scene, MARKUPS, Role.NEXT_PLACE)
+    removeNode(scene, LIST, Role.NEXT_PLACE)
     head = findNode(scene, MODEL, Role.HEAD_MODEL)
     if head is not None and surfaceOf(head):
         removeHeadColors(head, DISTANCE_SCALARS)

@@ -35,9 +35,8 @@ LOOK_EVERY_S = 1.0
 class TraineeLogic:
     """Trainees of a study, which is opened when it is first needed.
 
-    Attributes:
-        changed: emits nothing, whenever trainees or their trials may have changed.
-        chosen: pseudonym of the chosen trainee; empty if none is.
+    `changed` emits nothing whenever trainees or their trials may have changed. `chosen` is the
+    pseudonym of the chosen trainee, empty if none is.
     """
 
     def __init__(
@@ -91,8 +90,8 @@ class TraineeLogic:
         return version is not None and version != before
 
     def trainees(self, archived: bool = False) -> tuple[Trainee, ...]:
-        listed = self.study.trainees()
-        return (*listed, *self.study.trainees(archived=True)) if archived else listed
+        others = self.study.trainees(archived=True) if archived else ()
+        return (*self.study.trainees(), *others)
 
     def choose(self, pseudonym: str) -> None:
         if pseudonym != self.chosen:
@@ -168,9 +167,6 @@ class CurriculumLogic(Listening):
 
     The simulator is sent each trainee's progress, also of those not chosen here, whenever that is
     new; everything is computed from the study, so that nothing is lost when either side ends.
-
-    Attributes:
-        changed: emits nothing, whenever a curriculum or a standing may be another.
     """
 
     def __init__(self, trainees: TraineeLogic, link: Link) -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -19,8 +20,10 @@ from rastrainer.slicer.scene.tables import showCalibration, showLearningCurve
 from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS, Setting
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.database import EXAMPLE, study_place
-from rastrainer.study.database.values import StoredAbortedTrial, StoredTrial, Trainee, day_of
+from rastrainer.study.database.study import Study
+from rastrainer.study.database.values import StoredTrial, Trainee, day_of
 from rastrainer.study.outcomes import short_mode_title, task_title
+from rastrainer.trial.record import AbortedTrial
 from rastrainer.widgets.controls import (
     CancelableWork,
     chosenData,
@@ -61,11 +64,14 @@ class TraineesPanel(Panel):
             ui.archiveButton,
             lambda: partial(self.setArchived, not (self._trainee and self._trainee.archived)),
         )
+        curve, target = ui.learningCurveButton, ui.calibrationButton
+        self._plots = {CURVE: (curve, self._curve), CALIBRATION: (target, self._calibration)}
+        plotCurve, plotTarget = (partial(self._plot, purpose) for purpose in self._plots)
         for button, action, failure in (
             (ui.exportTraineeButton, self.exportTrainee, _("The trainee was not exported.")),
             (ui.exportHistoryButton, self.exportHistory, _("The history was not exported.")),
-            (ui.learningCurveButton, self.showCurve, _("The learning curve cannot be shown.")),
-            (ui.calibrationButton, self.showCalibration, _("The target errors cannot be shown.")),
+            (curve, plotCurve, _("The learning curve cannot be shown.")),
+            (target, plotTarget, _("The target errors cannot be shown.")),
         ):
             connectClick(button, action, failure)
         self.listen((self._logic.changed, self._show), (session.sceneChanged, self._showPlots))
@@ -150,23 +156,24 @@ class TraineesPanel(Panel):
     def exportTrainee(self) -> None:
         from rastrainer.study.trainee_data import export_trainee
 
-        chosen = self._logic.chosen
-        path = askWhereToSave(_("Export the trainee"), f"{chosen}.json", "JSON (*.json)")
-        if path is not None:
-            self._showWritten(export_trainee(self._logic.study, chosen, path), path)
+        self._export(_("Export the trainee"), "JSON", export_trainee)
 
     def exportHistory(self) -> None:
         """Write the trials of the chosen trainee as a table, and aborted trials as another."""
         from rastrainer.study.tidy_csv import write_history
 
-        chosen = self._logic.chosen
-        path = askWhereToSave(_("Export the history"), f"{chosen}.csv", "CSV (*.csv)")
-        if path is not None:
-            self._showWritten(write_history(self._logic.study, [chosen], path), path)
+        def write(study: Study, name: str, path: Path) -> int:
+            return write_history(study, [name], path)
 
-    def _showWritten(self, count: int, path: Path) -> None:
-        text = _("{count} trials were written to {path}.")
-        self._showMessage(text.format(count=count, path=path))
+        self._export(_("Export the history"), "CSV", write)
+
+    def _export(self, caption: str, kind: str, write: Callable[[Study, str, Path], int]) -> None:
+        chosen, suffix = self._logic.chosen, kind.lower()
+        path = askWhereToSave(caption, f"{chosen}.{suffix}", f"{kind} (*.{suffix})")
+        if path is not None:
+            count = write(self._logic.study, chosen, path)
+            text = _("{count} trials were written to {path}.")
+            self._showMessage(text.format(count=count, path=path))
 
     def deleteTrainee(self) -> None:
         name, trials = self._logic.chosen, len(self._logic.history())
@@ -207,32 +214,30 @@ class TraineesPanel(Panel):
             reason = _("Choose a trainee first.")
             setEnabled(ui.deleteTraineeButton, self._trainee is not None, reason)
 
-    def showCurve(self) -> None:
-        if not self._ui.learningCurveButton.checked:
-            self._session.layout.giveBack(CURVE)
-            return
-        chart = showLearningCurve(slicer.mrmlScene, self._logic.chosen, self._logic.history())
-        showChart(self._session.layout, chart)
+    def _plot(self, purpose: str) -> None:
+        """Show the plot of a pressed button, or the user's layout."""
+        button, chart = self._plots[purpose]
+        if button.checked:
+            showChart(self._session.layout, chart(), purpose)
+        else:
+            self._session.layout.giveBack(purpose)
 
-    def showCalibration(self) -> None:
-        """Plot true over expected TRE of the study's trials, or restore the user's layout."""
-        if not self._ui.calibrationButton.checked:
-            self._session.layout.giveBack(CALIBRATION)
-            return
+    def _curve(self) -> Any:
+        return showLearningCurve(slicer.mrmlScene, self._logic.chosen, self._logic.history())
+
+    def _calibration(self) -> Any:
+        """Return a plot of true over expected TRE of the study's trials."""
         found = self._logic.inStudy(calibration)
-        chart = showCalibration(slicer.mrmlScene, found)
-        showChart(self._session.layout, chart, CALIBRATION)
         self._showMessage(" ".join(found.sentences()))
+        return showCalibration(slicer.mrmlScene, found)
 
     def _showPlots(self) -> None:
-        purpose = self._session.layout.purpose
-        setSilently(self._ui.learningCurveButton, "checked", purpose == CURVE)
-        setSilently(self._ui.calibrationButton, "checked", purpose == CALIBRATION)
+        for purpose, (button, _chart) in self._plots.items():
+            setSilently(button, "checked", self._session.layout.purpose == purpose)
 
     def _fold(self, isFolded: bool) -> None:
-        if isFolded:
-            self._session.layout.giveBack(CURVE)
-            self._session.layout.giveBack(CALIBRATION)
+        for purpose in self._plots if isFolded else ():
+            self._session.layout.giveBack(purpose)
 
     def _show(self, *_arguments: Any) -> None:
         ui = self._ui
@@ -245,14 +250,10 @@ class TraineesPanel(Panel):
             return
         self._trainee = trainee
         archived = _("{name} (archived)")
-        entries = [
-            (
-                archived.format(name=each.pseudonym) if each.archived else each.pseudonym,
-                each.pseudonym,
-            )
-            for each in trainees
-        ]
-        entries.insert(0, (_("Choose a trainee"), ""))
+        entries = [(_("Choose a trainee"), "")]
+        for each in trainees:
+            title = archived if each.archived else "{name}"
+            entries.append((title.format(name=each.pseudonym), each.pseudonym))
         ui.pseudonymLineEdit.placeholderText = self._logic.study.next_pseudonym()
         fillComboBox(ui.traineeComboBox, entries, trainee.pseudonym if trainee else "")
         setSilently(ui.consentCheckBox, "checked", trainee is not None and trainee.consent)
@@ -267,21 +268,15 @@ class TraineesPanel(Panel):
         for button in (ui.learningCurveButton, ui.exportHistoryButton):
             setEnabled(button, bool(history), nothing)
         if trainee is not None:
-            text = _("{name}, since {day}. Trials: {count}. {aborted}").format(
-                name=trainee.pseudonym,
-                count=len(history),
-                day=day_of(trainee.created_utc),
-                aborted=_aborted(aborted),
-            )
+            name, day, count = trainee.pseudonym, day_of(trainee.created_utc), len(history)
+            text = _("{name}, since {day}. Trials: {count}. {aborted}")
+            text = text.format(name=name, day=day, count=count, aborted=_aborted(aborted))
             self._showMessage(text, isState=True)
         elif self._isStateShown or not ui.traineeText.text:
             text = _("Choose who is training, or create a new trainee.")
             self._showMessage(text, isState=True)
-        fillTable(
-            ui.historyTable,
-            (_historyRow(number, trial) for number, trial in enumerate(history, start=1)),
-            [trial.record.started_utc for trial in history],
-        )
+        rows = itertools.starmap(_historyRow, enumerate(history, start=1))
+        fillTable(ui.historyTable, rows, [trial.record.started_utc for trial in history])
 
     def _showMessage(self, sentence: str, isState: bool = False) -> None:
         """Show a sentence; one about the present state, until there is another state."""
@@ -289,9 +284,9 @@ class TraineesPanel(Panel):
         setText(self._ui.traineeText, sentence.rstrip())
 
 
-def _aborted(aborted: Sequence[StoredAbortedTrial]) -> str:
+def _aborted(aborted: Sequence[AbortedTrial]) -> str:
     """Return how many trials were aborted, trial runs counted separately; "" for none."""
-    records = [stored.record for stored in aborted if stored.record.task != TRIAL_RUN]
+    records = [record for record in aborted if record.task != TRIAL_RUN]
     runs = len(aborted) - len(records)
     if not aborted:
         return ""

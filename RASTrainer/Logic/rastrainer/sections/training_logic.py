@@ -39,7 +39,7 @@ class TrainingLogic(Listening):
         changed: emits nothing, whenever `status` has changed in more than its time.
         answered: emits the error of each command, empty if it was accepted.
         sceneShown: emits the `Scenario` of an open trial whose head and fiducials are now shown.
-        learner: pseudonym of the trainee doing the tutorial before the trial run; empty if none.
+        learner: the trainee doing the tutorial before the trial run; empty if none.
         loadings: how many scenarios the simulator is loading for Slicer; it refuses trials then.
     """
 
@@ -91,31 +91,25 @@ class TrainingLogic(Listening):
         method: str = "",
         skin: Mapping[str, float] | None = None,
     ) -> None:
-        """Start a trial, which continues with a procedure of the scenario if one is named.
+        """Start a trial, by fiducials and without a procedure unless others are named.
 
-        It is registered by a `RegistrationMethod`, by fiducials if none is named. Its skin shifts
-        by `skin`, or as the scenario says.
-
-        With `isTutorialFirst`, the simulator opens the tutorial instead of a trial run for trainees
-        who have not done it yet with the device in use, unless the study or the simulator's setting
-        does without it. The trial run can be started after it.
+        Its skin shifts by `skin`, or as the scenario says. With `isTutorialFirst`, the simulator
+        may open the tutorial instead of a trial run, which can be started after it.
         """
         if not trainee:
             raise InputError(_("Choose a trainee in the section Trainees first."))
         if not task:
             raise InputError(_("Choose a task first."))
+        who = {"trainee": trainee, "mode": mode}
         if task == TRIAL_RUN and isTutorialFirst:
-            who = {"trainee": trainee, "mode": mode}
             self._link.send(
                 CommandName.START_TUTORIAL, who, lambda reply: self._startUnlessTutorial(reply, who)
             )
         else:
-            wanted = {"task": task, "trainee": trainee, "mode": mode}
             isMarked = method == RegistrationMethod.FIDUCIALS.value
             others = {"procedure": procedure, "method": "" if isMarked else method, "skin": skin}
-            self.command(
-                CommandName.START_TASK, wanted | {key: each for key, each in others.items() if each}
-            )
+            given = {key: each for key, each in others.items() if each}
+            self.command(CommandName.START_TASK, {"task": task, **who, **given})
 
     def command(self, name: str, arguments: Mapping[str, Any] | None = None) -> None:
         self._link.send(name, arguments, lambda reply: self.answered.emit(reply.error))

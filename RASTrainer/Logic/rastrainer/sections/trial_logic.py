@@ -36,20 +36,18 @@ from rastrainer.study.database.study import DeletedTrialError, Study
 from rastrainer.study.delivered_trial import (
     REGISTER,
     SCORE,
-    DeliveredTrial,
     checks_journals,
     score_references,
     store_delivered,
     with_progress,
 )
-from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.analysis import (
     RevealedTruth,
     TrialAnalysis,
     score_arguments,
 )
-from rastrainer.trial.ctps import Trial
-from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.record import AbortedTrial, TrialRecord
+from rastrainer.trial.trial_row import TrialRow
 
 Delivery = Mapping[str, Any]
 """The record of a trial as it was delivered, not yet checked."""
@@ -77,14 +75,13 @@ class TrialLogic(Listening):
 
     Attributes:
         problemFound: emits a sentence about a trial that was not stored, or not scored.
-        trialKept: emits each received `TrialRecord` when it is in the study.
-        abortedKept: emits each received `AbortedTrial` when it is in the study; nothing is stored
-            of a trial in which nothing was done.
+        trialKept, abortedKept: emit each received `TrialRecord` or `AbortedTrial` when it is in the
+            study; nothing is stored of a trial in which nothing was done.
         trialScored: emits each `TrialAnalysis` with truth and score, when they are in the study.
         received: UUIDs of the received trials that are in the study, in their order.
     """
 
-    def __init__(self, services: TrialServices, cohort: Sequence[Trial] = ()) -> None:
+    def __init__(self, services: TrialServices, cohort: Sequence[TrialRow] = ()) -> None:
         """Begin to listen; `cohort` are the trials that CTPS compares with."""
         link = services.link
         super().__init__(
@@ -172,7 +169,7 @@ class TrialLogic(Listening):
         else:
             acknowledge()
             if not isAborted:
-                self._accept(stored)
+                self._accept(*stored)
             elif stored.is_kept:
                 self.abortedKept.emit(stored)
         finally:
@@ -196,21 +193,20 @@ class TrialLogic(Listening):
         self._refused.clear()
         self._services.converse(self._resuming())
 
-    def _store(self, delivery: Delivery) -> DeliveredTrial:
+    def _store(self, delivery: Delivery) -> tuple[TrialRecord, TrialAnalysis | InputError | None]:
         isUnderWay = str(delivery.get("trialId")) in self._beingScored
         return self._services.inStudy(
             lambda s: store_delivered(delivery, s, self._analyze, isUnderWay)
         )
 
-    def _accept(self, stored: DeliveredTrial) -> None:
+    def _accept(self, record: TrialRecord, analysis: TrialAnalysis | InputError | None) -> None:
         """Score a trial that is stored and acknowledged."""
-        record, analysis = stored.record, stored.analysis
-        if stored.problem:
-            self._reportUnscored(stored.problem)
+        if isinstance(analysis, InputError):
+            self._reportUnscored(analysis)
         if record.trial_id not in self.received:
             self.received.append(record.trial_id)
             self.trialKept.emit(record)
-        if analysis is not None and record.trial_id not in self._beingScored:
+        if isinstance(analysis, TrialAnalysis) and record.trial_id not in self._beingScored:
             self._services.converse(self._scoring(analysis, self.report))
             self._services.work.later(lambda: self._show(analysis))
 

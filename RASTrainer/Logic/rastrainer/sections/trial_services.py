@@ -36,11 +36,9 @@ result, or raises its error. All else runs on the main thread."""
 class TrialServices:
     """Services for the logic of trials.
 
-    Attributes:
-        findScenario: gives the scenario of a name, in any thread.
-        openStudy: opens the study, in any thread; it may wait for a lock there.
-        records: folder of the simulator's journals, if it is on this computer.
-        run: runs the functions that register and score trials, and read journals.
+    Scenarios are found and the study is opened, which may wait for a lock, in any thread. `records`
+    is the folder of the simulator's journals, if it is on this computer; `run` runs the functions
+    that register and score trials, and read journals.
     """
 
     scene: Any

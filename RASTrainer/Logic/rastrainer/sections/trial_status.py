@@ -43,12 +43,7 @@ class ProcedureStatus:
 
 @dataclass(frozen=True)
 class TraceStatus:
-    """State of the trace over the skin.
-
-    Attributes:
-        kept: number of its points.
-        on: whether it is being drawn.
-    """
+    """State of the trace over the skin: the number of its points, and whether it is being drawn."""
 
     kept: int = 0
     strokes: int = 0
@@ -60,11 +55,7 @@ class TraceStatus:
 class TrialStatus:
     """State of the simulator's trial; without one, its phase is `idle`.
 
-    Attributes:
-        touched: how many points are kept.
-        total: how many there are to touch.
-        instruction: what the trainee reads.
-        trace: None if the trial has none.
+    `touched` of `total` points are kept; the trainee reads `instruction`.
     """
 
     trialId: str = ""

@@ -42,63 +42,6 @@ def jumpTo(scene: Any, position: Sequence[float], later: CallLater = callNow) ->
         later(partial(view.JumpSliceByOffsetting, *position))
 
 
-PROBES_EYE, IN_LINE, ACROSS = "Red", "Green", "Yellow"
-"""Names of the slice views that show the plane across an instrument, and the two along it."""
-LEAST_ACROSS = 0.3
-"""An instrument that goes along the patient's left-right axis leaves less of it across itself."""
-
-
-class AlongInstrument:
-    """Slice views that are temporarily aligned with an instrument, and then restored.
-
-    Attributes:
-        former: how the aligned views were before, by the ID of their nodes.
-    """
-
-    def __init__(self, scene: Any) -> None:
-        self.former: dict[str, np.ndarray] = {}
-        self._scene = scene
-
-    def show(self, tip: np.ndarray, direction: np.ndarray) -> None:
-        """Align the views with an instrument, through its tip.
-
-        The probe's-eye view is across it, seen from outside, the other two are along it, with the
-        instrument coming from above; as far as possible, the patient's right is on the left.
-
-        Args:
-            tip: (3,) float, RAS mm.
-            direction: (3,) float, RAS, unit vector into the head.
-        """
-        outward, left, front = -direction, np.array([-1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
-        across = left - (left @ outward) * outward
-        if np.linalg.norm(across) < LEAST_ACROSS:
-            across = front - (front @ outward) * outward
-        across /= np.linalg.norm(across)
-        upward = np.cross(across, outward)
-        # Right, up and normal of the view, with the handedness of Slicer's axial, coronal and
-        # sagittal views.
-        axes = {
-            PROBES_EYE: (across, upward, outward),
-            IN_LINE: (across, outward, upward),
-            ACROSS: (-upward, outward, across),
-        }
-        for view in nodesOfClass(self._scene, "vtkMRMLSliceNode"):
-            if view.GetName() in axes:
-                matrix = view.GetSliceToRAS()
-                self.former.setdefault(view.GetID(), slicer.util.arrayFromVTKMatrix(matrix))
-                aligned = transforms.rigid(np.column_stack(axes[view.GetName()]), tip)
-                slicer.util.updateVTKMatrixFromArray(matrix, aligned)
-                view.UpdateMatrices()
-
-    def giveBack(self) -> None:
-        for viewId, former in self.former.items():
-            view = self._scene.GetNodeByID(viewId)
-            if view is not None:
-                slicer.util.updateVTKMatrixFromArray(view.GetSliceToRAS(), former)
-                view.UpdateMatrices()
-        self.former.clear()
-
-
 class BorrowedLayout:
     """Tables and plots are visible only in a layout that has a view for them."""
 
@@ -144,6 +87,10 @@ PERIOD_S = 0.09
 """Shortest time between two jumps after the tool: each renders all slice views."""
 LEAST_TURN = 0.01
 """Smallest turn of the tool, in rad, that the views along it follow."""
+PROBES_EYE, IN_LINE, ACROSS = "Red", "Green", "Yellow"
+"""Names of the slice views that show the plane across an instrument, and the two along it."""
+LEAST_ACROSS = 0.3
+"""An instrument that goes along the patient's left-right axis leaves less of it across itself."""
 DEVICES = {
     Phase.ALIGNING.value: DeviceName.TOOL_TIP_TO_WORLD,
     Phase.DRILLING.value: DeviceName.INSTRUMENT_TIP_TO_WORLD,
@@ -155,11 +102,9 @@ DEVICES = {
 class SliceFollower:
     """Moves the slices just enough to go through a point; their orientation stays.
 
-    While the guide of a procedure is aligned, and drill and instrument are in it, they may lie
-    along it instead: one across the instrument (probe's-eye view), two along it.
-
-    By the settings, they jump to each point that is to be touched next, stay at the tip of the tool
-    instead, and lie along the instrument of a procedure.
+    By the settings, they jump to each point that is to be touched next, or stay at the tip of the
+    tool. In a procedure they may lie along guide, drill and instrument, until these are done: one
+    across the instrument (probe's-eye view), two along it.
     """
 
     def __init__(
@@ -172,14 +117,14 @@ class SliceFollower:
     ) -> None:
         """`later` has the views moved one after the other, where they need not follow the tool."""
         self.settings = settings
-        self._along = AlongInstrument(scene)
-        self._pose: np.ndarray | None = None
         self._scene = scene
         self._training = training
         self._clock = clock
         self._later = later
         self._shownPoint: tuple[str, ...] = ()
         self._place: np.ndarray | None = None
+        self._pose: np.ndarray | None = None
+        self._unaligned: dict[str, np.ndarray] = {}
         self._lastJump = -PERIOD_S
 
     def show(self, place: ArrayLike) -> None:
@@ -197,7 +142,7 @@ class SliceFollower:
 
     def forgetScene(self) -> None:
         self._shownPoint, self._place, self._pose = (), None, None
-        self._along.former.clear()
+        self._unaligned.clear()
 
     @property
     def needsPoses(self) -> bool:
@@ -211,39 +156,69 @@ class SliceFollower:
 
     def process(self) -> None:
         device = self._device
-        if device is None and self._along.former:
+        if device is None and self._unaligned:
             if self._training.status.phase == Phase.PAUSED.value:
                 return
-            self._along.giveBack()
-            self._pose = None
+            self._restoreViews()
             self.showAgain()
         if device is not None or self.settings.get(SLICES_FOLLOW_TOOL):
             self._shownPoint = ()
             pose = poseOnHead(self._scene, device or DeviceName.TOOL_TIP_TO_WORLD)
-            if pose is not None and self._clock() >= self._lastJump + PERIOD_S:
-                self._follow(pose, isAlong=device is not None)
+            if pose is None or self._clock() < self._lastJump + PERIOD_S:
+                return
+            if device is not None:
+                self._alignViews(pose)
+            elif _distance(pose[:3, 3], self._place) >= LEAST_MOVE_MM:
+                self._jump(pose[:3, 3])
         elif self.settings.get(SLICES_SHOW_NEXT_POINT):
             self._showNextPoint()
 
-    def _follow(self, pose: np.ndarray, isAlong: bool) -> None:
-        tip, axis = pose[:3, 3], pose[:3, 2]
-        if not isAlong:
-            if self._place is None or np.linalg.norm(tip - self._place) >= LEAST_MOVE_MM:
-                self._jump(tip)
+    def _alignViews(self, pose: np.ndarray) -> None:
+        """Align the views with an instrument, through its tip, where it has moved.
+
+        The probe's-eye view is across it, seen from outside, the other two are along it, with the
+        instrument coming from above; as far as possible, the patient's right is on the left.
+        """
+        former, tip, outward = self._pose, pose[:3, 3], -pose[:3, 2]
+        if (
+            former is not None
+            and _distance(tip, former[:3, 3]) < LEAST_MOVE_MM
+            and _distance(outward, -former[:3, 2]) < LEAST_TURN
+        ):
             return
-        if self._pose is not None:
-            moved = float(np.linalg.norm(tip - self._pose[:3, 3]))
-            turned = float(np.linalg.norm(axis - self._pose[:3, 2]))
-            if moved < LEAST_MOVE_MM and turned < LEAST_TURN:
-                return
         self._pose, self._lastJump = pose, self._clock()
-        self._along.show(tip, axis)
+        left, front = np.array([-1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
+        across = left - (left @ outward) * outward
+        if np.linalg.norm(across) < LEAST_ACROSS:
+            across = front - (front @ outward) * outward
+        across /= np.linalg.norm(across)
+        upward = np.cross(across, outward)
+        # Right, up and normal of the view, with the handedness of Slicer's axial, coronal and
+        # sagittal views.
+        axes = {
+            PROBES_EYE: (across, upward, outward),
+            IN_LINE: (across, outward, upward),
+            ACROSS: (-upward, outward, across),
+        }
+        for view in nodesOfClass(self._scene, "vtkMRMLSliceNode"):
+            if view.GetName() in axes:
+                matrix = view.GetSliceToRAS()
+                self._unaligned.setdefault(view.GetID(), slicer.util.arrayFromVTKMatrix(matrix))
+                aligned = transforms.rigid(np.column_stack(axes[view.GetName()]), tip)
+                slicer.util.updateVTKMatrixFromArray(matrix, aligned)
+                view.UpdateMatrices()
+
+    def _restoreViews(self) -> None:
+        for view in filter(None, map(self._scene.GetNodeByID, self._unaligned)):
+            former = self._unaligned[view.GetID()]
+            slicer.util.updateVTKMatrixFromArray(view.GetSliceToRAS(), former)
+            view.UpdateMatrices()
+        self._unaligned.clear()
+        self._pose = None
 
     def _showNextPoint(self) -> None:
-        status, fixed = (
-            self._training.status,
-            findNode(self._scene, FIDUCIALS, Role.FIXED_FIDUCIALS),
-        )
+        status = self._training.status
+        fixed = findNode(self._scene, FIDUCIALS, Role.FIXED_FIDUCIALS)
         point: tuple[str, ...] = ()
         task = "" if fixed is None else fixed.GetAttribute(TASK_ATTRIBUTE) or ""
         # The fiducials of a trial that has just started come a moment later than its first point.
@@ -254,6 +229,10 @@ class SliceFollower:
         self._shownPoint = point
         if point and status.nextPoint in labelsOf(fixed):
             self.show(worldPoints(fixed)[labelsOf(fixed).index(status.nextPoint)])
+
+
+def _distance(point: np.ndarray, other: np.ndarray | None) -> float:
+    return np.inf if other is None else float(np.linalg.norm(point - other))
 
 
 def poseOnHead(scene: Any, device: str) -> np.ndarray | None:

@@ -105,8 +105,7 @@ _Refuse = Callable[[Exception], None]
 class BackgroundWork:
     """Runs one job after the other; `process` delivers the results in this order.
 
-    Attributes:
-        began: emits nothing when there is work after there was none.
+    `began` emits nothing whenever there is more to do.
     """
 
     def __init__(self) -> None:
@@ -135,19 +134,15 @@ class BackgroundWork:
         than `InputError` are then raised by `process`, too: they are bugs.
         """
         if not self._isClosed:
-            wasBusy = self.isBusy
             self._waiting.append((work, take, refuse))
             self._startNext()
-            if not wasBusy:
-                self.began.emit()
+            self.began.emit()
 
     def later(self, slice_: Callable[[], object]) -> None:
         """Have a later `process` call a function on the main thread, one each time."""
         if not self._isClosed:
-            wasBusy = self.isBusy
             self._slices.append(slice_)
-            if not wasBusy:
-                self.began.emit()
+            self.began.emit()
 
     def changeScene(self, change: Callable[[], object]) -> None:
         """Have a change made as by `later`, unless the scene is cleared before."""

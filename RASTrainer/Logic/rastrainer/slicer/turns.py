@@ -13,8 +13,7 @@ _OURS = re.compile(r"^from (rastrainer[\w.]*) import", re.MULTILINE)
 class Turns:
     """Runs the steps of an iterator, each in a later turn; it may be finished at once.
 
-    Attributes:
-        isOver: whether all steps are done; set it, and none will follow.
+    Once `isOver` is set, no step follows.
     """
 
     def __init__(

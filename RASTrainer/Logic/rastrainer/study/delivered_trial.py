@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -22,26 +22,14 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.journal_check import check_journal
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import pass_mark_of
-from rastrainer.trial import ctps
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
 from rastrainer.trial.procedure_outcome import ProcedureOutcome, procedure_outcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import ScoreReference
 from rastrainer.trial.touch_registration import GivenPoints, TouchRegistration, register_trial
-from rastrainer.trial.trial_feedback import PastTrial, progress_of
+from rastrainer.trial.trial_feedback import progress_of
+from rastrainer.trial.trial_row import TrialRow
 from rastrainer.work_progress import Progress
-
-
-@dataclass(frozen=True)
-class DeliveredTrial:
-    """A trial that is stored in the study; not analyzed if it is not to be scored now.
-
-    The problem is why it cannot be registered.
-    """
-
-    record: TrialRecord
-    analysis: TrialAnalysis | None = None
-    problem: str = ""
 
 
 def store_delivered(
@@ -49,30 +37,29 @@ def store_delivered(
     study: Study,
     analyze: Callable[[TrialRecord], TrialAnalysis],
     is_being_scored: bool = False,
-) -> DeliveredTrial:
-    """Store a trial with its registration, once; known trials are not scored again.
+) -> tuple[TrialRecord, TrialAnalysis | InputError | None]:
+    """Store a trial with its registration, once; `DeletedTrialError` if it was deleted.
 
-    `DeletedTrialError` if it was deleted.
-
-    Args:
-        analyze: registers a record; may raise `InputError`.
-        is_being_scored: whether its registration or score is being sent to the simulator.
+    Return its record and its registration, or why it cannot be registered. A known trial is not
+    registered again (None) if it was scored, or its score is being sent to the simulator.
     """
     record = record_from_json(TrialRecord, value)
-    is_new = study.check_trial(record)
-    if not is_new and (is_being_scored or study.is_revealed(record.trial_id)):
-        return DeliveredTrial(record)
+    trial_id = record.trial_id
+    if study.has("trials", trial_id) or study.is_deleted(trial_id):
+        # Refused if it was deleted, or is another one.
+        study.add_trial(record)
+        if is_being_scored or study.is_revealed(trial_id):
+            return record, None
     try:
         analysis = analyze(record)
     except InputError as error:
         study.add_trial(record, delivered=value)
-        return DeliveredTrial(record, problem=str(error))
+        return record, error
     study.add_trial(record, analysis.fits.values(), analysis.target_errors, delivered=value)
-    return DeliveredTrial(record, analysis)
+    return record, analysis
 
 
 def score_references(study: Study) -> Mapping[str, ScoreReference] | None:
-    """Return the score's references by task, as a study's protocol sets them; None without one."""
     protocol = StudyProgress(study).protocol()
     return None if protocol is None else protocol.references
 
@@ -111,7 +98,7 @@ def with_progress(analysis: TrialAnalysis, study: Study) -> TrialAnalysis:
 
 
 def with_progress_among(
-    analysis: TrialAnalysis, attempts: Sequence[PastTrial], pass_mark: float | None
+    analysis: TrialAnalysis, attempts: Sequence[TrialRow], pass_mark: float | None
 ) -> TrialAnalysis:
     """Return the analysis of a scored trial, with its place among these attempts, itself included.
 
@@ -132,9 +119,8 @@ _READING = "Reading the journal"
 
 
 def register(
-    record: TrialRecord, scenario: Scenario, cohort: Sequence[ctps.Trial], progress: Progress
+    record: TrialRecord, scenario: Scenario, cohort: Sequence[TrialRow], progress: Progress
 ) -> TrialAnalysis:
-    """Return the registration of a trial; its journal, which takes long to read, is not needed."""
     progress("Registering", 0.0)
     return analyze_trial(record, scenario, cohort)
 
@@ -166,7 +152,6 @@ def score(
 def explain(
     record: TrialRecord, scenario: Scenario, records: Path, progress: Progress
 ) -> TrialAnalysis:
-    """Return the registration of a trial, with the touches explained by its journal."""
     progress(_READING, 0.0)
     return analyze_trial(record, scenario, trajectory=read_trajectory(records, record.trial_id))
 

@@ -111,7 +111,6 @@ def _check_record(
 
 
 def _check_touches(record: TrialRecord, lines: Sequence[Line]) -> None:
-    """Check the points that registered the trial, their times, and that the tip was there."""
     header = lines[0].entry
     assert isinstance(header, JournalHeader)
     kept = _Measured.of(lines).trajectory()

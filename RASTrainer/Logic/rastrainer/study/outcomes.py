@@ -26,7 +26,6 @@ class Outcome:
     """An outcome of a trial.
 
     Attributes:
-        name: Key in a trial's values, with the unit at its end where it has one.
         definition: Of a motion metric, one sentence with every threshold; else "".
         better: -1 if less is better, 1 if more is, 0 if neither.
     """

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,16 +16,17 @@ from rastrainer.study.curriculum.standing import CurriculumStanding
 from rastrainer.study.database.cohort_store import CohortStore, IncompleteStudyError
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import StoredAbortedTrial, StoredTrial, TrialRow
+from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.protocol.steps import objections_to
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers, StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.ratings import Rating, RatingStore
 from rastrainer.study_messages import StudyStep
-from rastrainer.trial.ctps import StudyNotes, Trial, read_notes, read_trials
+from rastrainer.trial.ctps import StudyNotes, read_notes, read_trials
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
-from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.record import AbortedTrial, TrialRecord
 from rastrainer.trial.scoring import TrialScore
+from rastrainer.trial.trial_row import TrialRow
 
 
 @dataclass(frozen=True)
@@ -36,9 +37,7 @@ class StudyData:
         trials: Without trial runs; for trainees in a protocol, only trials of its steps.
         mean_ct_s: Mean completion times for CTPS instead of the trials' own, by mode.
         skipped: Trainee, step and reason of each skipped step.
-        outside_protocol: Number of trials outside the protocol, which are left out.
-        objections: Trainee, trial and reasons, for each of these that broke a rule of the protocol.
-        versions: Of the programs that made the records, name → different versions.
+        objections: Trainee, trial and reasons, for each trial that broke a rule of the protocol.
         aborted: Including trial runs, by trainee in order.
         undelivered: First and last numbers of trials that never arrived, by their simulator's
             series.
@@ -58,7 +57,7 @@ class StudyData:
     versions: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     has_order: bool = False
     gap: str = ""
-    aborted: tuple[StoredAbortedTrial, ...] = ()
+    aborted: tuple[AbortedTrial, ...] = ()
     undelivered: Mapping[str, tuple[tuple[int, int], ...]] = field(default_factory=dict)
     ratings: tuple[Rating, ...] = ()
     standings: Mapping[str, CurriculumStanding] = field(default_factory=dict)
@@ -69,7 +68,6 @@ class StudyData:
 
     @property
     def trainees(self) -> tuple[str, ...]:
-        """Pseudonyms in the order of their first trial."""
         return tuple(dict.fromkeys(trial.trainee for trial in self.trials))
 
     @property
@@ -80,13 +78,8 @@ class StudyData:
     def of_mode(self, mode: str) -> list[TrialRow]:
         return [trial for trial in self.trials if trial.mode == mode]
 
-    def ctps_trials(self, mode: str) -> list[Trial]:
-        """Return the registered trials of a mode for CTPS."""
-        return [
-            Trial(t.mode, t.trainee, t.task, t.values["completion_time_s"], t.values["rmse_mm"])
-            for t in self.of_mode(mode)
-            if "rmse_mm" in t.values
-        ]
+    def ctps_trials(self, mode: str) -> list[TrialRow]:
+        return [trial for trial in self.of_mode(mode) if "rmse_mm" in trial.values]
 
 
 def read_study_data(place: StudyPlace, allow_incomplete: bool = False) -> StudyData:
@@ -116,16 +109,9 @@ def read_study_data(place: StudyPlace, allow_incomplete: bool = False) -> StudyD
 
 def _from_csv(path: Path) -> StudyData:
     notes = read_notes(path.with_suffix(".json"))
-    counts: dict[tuple[str, str], int] = defaultdict(int)
-    rows = []
-    for trial in read_trials(path):
-        counts[trial.mode, trial.subject] += 1
-        values = {"completion_time_s": trial.completion_time_s, "rmse_mm": trial.rmse_mm}
-        number = counts[trial.mode, trial.subject]
-        rows.append(TrialRow(trial.subject, trial.mode, trial.task, number, values))
     return StudyData(
         title=notes.title if notes else path.stem,
-        trials=tuple(rows),
+        trials=tuple(read_trials(path)),
         mean_ct_s=notes.mean_ct_s if notes else {},
         notes=notes,
     )
@@ -136,11 +122,11 @@ def _from_database(place: StudyPlace) -> StudyData:
         progress = StudyProgress(study)
         protocol = progress.protocol()
         everyone = study.trainees(archived=None)
-        consenting = {trainee.pseudonym for trainee in everyone if trainee.consent}
+        consenting = sorted(trainee.pseudonym for trainee in everyone if trainee.consent)
         played = {name: progress.played(name) for name in progress.enrolled() if name in consenting}
         trials, versions, beside, objections = [], defaultdict(set), 0, []
         rateable: set[str] = set()
-        for pseudonym in sorted(consenting):
+        for pseudonym in consenting:
             history = [t for t in study.history(pseudonym) if t.record.task != TRIAL_RUN]
             rateable |= {trial.record.trial_id for trial in history}
             own = played.get(pseudonym)
@@ -169,21 +155,18 @@ def _from_database(place: StudyPlace) -> StudyData:
             versions={name: tuple(sorted(found)) for name, found in sorted(versions.items())},
             has_order=True,
             gap=CohortStore(study).gap(),
-            aborted=tuple(stored for name in sorted(consenting) for stored in study.aborted(name)),
+            aborted=tuple(stored for name in consenting for stored in study.aborted(name)),
             undelivered=study.undelivered(),
             standings={
-                name: standing
-                for name, standing in CurriculumStore(study).standings().items()
+                name: each
+                for name, each in CurriculumStore(study).standings().items()
                 if name in consenting
             },
-            ratings=tuple(
-                rating for rating in RatingStore(study).ratings() if rating.trial_id in rateable
-            ),
+            ratings=tuple(r for r in RatingStore(study).ratings() if r.trial_id in rateable),
         )
 
 
 def _objected(record: TrialRecord, steps: Iterable[StudyStep]) -> tuple[str, str, str] | None:
-    """Return why a trial was no valid trial of the step with its task and mode; None if it was."""
     of_task = (s for s in steps if (s.task, s.mode) == (record.task, record.mode))
     step = next(of_task, None)
     reasons = () if step is None else objections_to(step, record)
@@ -192,13 +175,11 @@ def _objected(record: TrialRecord, steps: Iterable[StudyStep]) -> tuple[str, str
 
 
 def values_of(trials: Iterable[TrialRow], name: str) -> list[float]:
-    """Return a measurement of those trials that have it."""
     return [trial.values[name] for trial in trials if name in trial.values]
 
 
 def trial_rows(history: Iterable[StoredTrial]) -> list[TrialRow]:
-    """Return the trials of one trainee, in order, as rows."""
-    counts: dict[str, int] = defaultdict(int)
+    counts: Counter[str] = Counter()
     rows = []
     for stored in history:
         is_run = stored.record.task == TRIAL_RUN
@@ -233,20 +214,14 @@ def _trial_row(stored: StoredTrial, number: int) -> TrialRow:
         values["skin_indentation_mm"] = record.skin.indentation_mm
     if stored.procedure is not None:
         values |= _procedure_values(stored.procedure)
-    return TrialRow(
-        trainee=record.trainee,
-        mode=record.mode,
-        task=record.task,
+    return TrialRow.of(
+        record,
         number=number,
         values=values,
-        trial_id=record.trial_id,
-        started_utc=record.started_utc,
-        scenario=record.scenario,
         score_version="" if score is None else score.version,
         acceptable=score is not None and score.acceptable,
         completed_utc=record.completed_utc,
         procedure=stored.procedure,
-        method=record.method.value,
     )
 
 

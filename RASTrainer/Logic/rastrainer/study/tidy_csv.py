@@ -13,12 +13,13 @@ from rastrainer.procedure.errors import SplitError, TrajectoryErrors
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.registration.fits import RIGID
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import StoredAbortedTrial, StoredTrial
+from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers
-from rastrainer.study.study_data import StudyData, TrialRow, trial_rows
-from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.study.study_data import StudyData, trial_rows
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
+from rastrainer.trial.record import AbortedTrial
+from rastrainer.trial.trial_row import TrialRow
 
 FIRST_COLUMNS = (
     *("trainee", "mode", "task", "number", "trial_id", "started_utc"),
@@ -92,26 +93,24 @@ def trials_csv(trials: Sequence[TrialRow]) -> str:
     return csv_text([*FIRST_COLUMNS, *names], rows)
 
 
-def aborted_csv(trials: Iterable[StoredAbortedTrial]) -> str:
-    """Return aborted trials as CSV, with the reasons of repeated steps."""
+def aborted_csv(trials: Iterable[AbortedTrial]) -> str:
     rows = []
-    for stored in trials:
-        record = stored.record
+    for record in trials:
         when = record.started_utc, record.aborted_utc
         end = int(record.task == TRIAL_RUN), record.phase, record.reason, record.elapsed_s
         touches = len(record.points), record.rejected_touches, record.undone_touches
-        repeat = int(record.counts_as_failed), stored.step, stored.repeat_reason
+        repeat = int(record.counts_as_failed), record.step, record.repeat_reason
         method = record.method.value, record.traced
         first = *_who(record), record.trial_id, *when, record.scenario
         rows.append([*first, *end, *touches, *repeat, *method])
     return csv_text(ABORTED_COLUMNS, rows)
 
 
-def aborted_touches_csv(trials: Iterable[StoredAbortedTrial]) -> str:
+def aborted_touches_csv(trials: Iterable[AbortedTrial]) -> str:
     """Return the kept touches of aborted trials, like `touches_csv`."""
     rows = [
         [*_who(trial), trial.trial_id, point.label, point.sim_time_s, *point.position_mm]
-        for trial in (stored.record for stored in trials)
+        for trial in trials
         for point in trial.points
     ]
     return csv_text(ABORTED_TOUCH_COLUMNS, rows)
@@ -158,7 +157,6 @@ def _procedure_cells(
     nearest = min(errors.kept_mm, key=errors.kept_mm.__getitem__, default="")
 
     def by_whom(others: float) -> list[float | None]:
-        """Return the cells of the hand and of the robot."""
         return [None, others] if errors.self_aligned else [others, None]
 
     def parts(error: SplitError) -> list[float | None]:
@@ -188,7 +186,6 @@ def _procedure_cells(
 
 
 def scores_csv(data: StudyData) -> str:
-    """Return questionnaire scores as CSV, one per row."""
     rows = [
         [*_step_cells(answered), scale, score]
         for answered in data.answers
@@ -198,7 +195,6 @@ def scores_csv(data: StudyData) -> str:
 
 
 def answers_csv(data: StudyData) -> str:
-    """Return questionnaire answers as CSV, one item per row."""
     rows = [
         [*_step_cells(answered), item.name, answer]
         for answered in data.answers
@@ -210,7 +206,6 @@ def answers_csv(data: StudyData) -> str:
 
 
 def ratings_csv(data: StudyData) -> str:
-    """Return the marks of raters as CSV, one domain per row."""
     rows = [
         [rating.trial_id, rating.rater, rating.form, domain, mark]
         for rating in data.ratings

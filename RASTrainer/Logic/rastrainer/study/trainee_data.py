@@ -17,7 +17,6 @@ FORMAT = "RASTrainer trainee 1"
 
 
 def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
-    """Write all data of a trainee as one JSON file and return the number of finished trials."""
     trainee, trials = study.trainee(pseudonym), study.history(pseudonym)
     progress, protocol = StudyProgress(study), None
     place = progress.enrolled().get(pseudonym)
@@ -30,7 +29,14 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
         "trainee": record_to_json(trainee),
         "protocol": protocol,
         "trials": [record_to_json(trial, with_defaults=True) for trial in trials],
-        "abortedTrials": [record_to_json(stored, with_defaults=True) for stored in aborted],
+        "abortedTrials": [
+            {
+                "record": record_to_json(record, with_defaults=True),
+                "step": record.step,
+                "repeatReason": record.repeat_reason,
+            }
+            for record in aborted
+        ],
         "curricula": [
             {
                 "curriculum": None if curriculum is None else curriculum.to_json(),
@@ -64,7 +70,6 @@ class Erasure:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """One sentence for each kind of data that may remain."""
         sentences = []
         if self.missing:
             names = ", ".join(f"*_{trial_id}{SUFFIX}" for trial_id in self.missing)
@@ -86,7 +91,7 @@ def erase_trainee(study: Study, pseudonym: str, records: Path | None) -> Erasure
     must be deleted by the lab.
     """
     ids = [trial.record.trial_id for trial in study.history(pseudonym)]
-    ids += [aborted.record.trial_id for aborted in study.aborted(pseudonym)]
+    ids += [aborted.trial_id for aborted in study.aborted(pseudonym)]
     erased, unreadable = ((), ()) if records is None else erase_journals(records, pseudonym, ids)
     names = [path.name for path in erased if path.suffix == SUFFIX]
     missing = [one for one in ids if not any(name.endswith(f"_{one}{SUFFIX}") for name in names)]

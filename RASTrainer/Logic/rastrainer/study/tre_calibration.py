@@ -15,7 +15,7 @@ import numpy as np
 
 from rastrainer.number_text import fixed, percent
 from rastrainer.protocol import TRIAL_RUN
-from rastrainer.study.study_data import TrialRow
+from rastrainer.trial.trial_row import TrialRow
 
 MIN_SHARE_TRIALS = 5
 """Fewer trials have no meaningful share."""
@@ -48,11 +48,7 @@ def proportion(count: int, total: int) -> Proportion:
 
 @dataclass(frozen=True)
 class CalibrationPoint:
-    """One trial, errors at the scenario's target in mm.
-
-    Attributes:
-        expected_mm: RMS; `interval_mm` is its 95 % interval.
-    """
+    """One trial: its true error at the scenario's target, the expected RMS and 95 % interval."""
 
     trainee: str
     mode: str
@@ -68,12 +64,7 @@ class CalibrationPoint:
 
 @dataclass(frozen=True)
 class TreCalibration:
-    """All trials of a study.
-
-    Attributes:
-        points: Trials with both errors, by expected TRE.
-        without_truth: Number of trials that lack only the true error.
-    """
+    """The trials of a study with both errors, by expected TRE, and how many lack one of them."""
 
     points: tuple[CalibrationPoint, ...]
     without_truth: int = 0
@@ -81,7 +72,6 @@ class TreCalibration:
 
     @property
     def inside(self) -> Proportion | None:
-        """The share inside the interval; None without trials."""
         if not self.points:
             return None
         return proportion(sum(point.is_inside for point in self.points), len(self.points))

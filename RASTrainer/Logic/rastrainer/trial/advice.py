@@ -39,11 +39,11 @@ class TouchFinding:
     """The analysis of one touch.
 
     Attributes:
-        depth_mm: Part along the skin's outward normal, positive off the skin; None without skin.
-        aside_mm: Part along the skin; None likewise.
+        depth_mm, aside_mm: Parts along the skin's outward normal, positive off the skin, and along
+            the skin; None without skin.
         share: Of the squared registration error, 0 to 1.
         dwell_s: How long the tip had been within 2 mm; None without a recording.
-        reasons: The main one first; may be empty.
+        reasons: The main one first.
         replay_s: Start and end for a replay, in trial time; None without a recording.
     """
 
@@ -102,19 +102,9 @@ def touch_findings(
         if trajectory is not None and label in touches:
             dwell, replay, how = _touched(trajectory, touches[label])
             reasons += how
-        findings.append(
-            TouchFinding(
-                label,
-                residual,
-                depth,
-                aside,
-                share,
-                dwell,
-                is_outlier,
-                tuple(reasons) if is_outlier else (),
-                replay,
-            )
-        )
+        why = tuple(reasons) if is_outlier else ()
+        known = label, residual, depth, aside, share, dwell
+        findings.append(TouchFinding(*known, is_outlier, why, replay))
     return tuple(findings)
 
 

@@ -14,11 +14,7 @@ from rastrainer.json_checks import number, numbers
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.fits import RIGID
-from rastrainer.registration.target_error import (
-    CommonBias,
-    common_bias,
-    true_touch_errors,
-)
+from rastrainer.registration.target_error import CommonBias, common_bias, true_touch_errors
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial import ctps
 from rastrainer.trial.advice import advise
@@ -35,6 +31,7 @@ from rastrainer.trial.touch_registration import (
     unshifted_tre_mm,
 )
 from rastrainer.trial.trial_feedback import TrialFeedback, trial_feedback
+from rastrainer.trial.trial_row import TrialRow
 from rastrainer.trial.wording import Sentence
 
 
@@ -125,7 +122,6 @@ class TrialAnalysis(TouchRegistration):
     def scored_as(
         self, score: TrialScore | None, scenario: Scenario, truth: RevealedTruth | None
     ) -> TrialAnalysis:
-        """Return the analysis with a stored score and the stored truth."""
         bias = None if truth is None else self._common_bias(scenario, truth)
         advice = advise(score, self.feedback.touches, self.record.motion, bias)
         skin: tuple[Sentence, ...] = ()
@@ -152,7 +148,7 @@ class TrialAnalysis(TouchRegistration):
 def analyze_trial(
     record: TrialRecord,
     scenario: Scenario,
-    cohort: Sequence[ctps.Trial] = (),
+    cohort: Sequence[TrialRow] = (),
     references: Mapping[str, ScoreReference] | None = None,
     trajectory: Trajectory | None = None,
     truth: RevealedTruth | None = None,
@@ -160,13 +156,9 @@ def analyze_trial(
 ) -> TrialAnalysis:
     """Register a trial by its method, its touches paired by label; score it by its truth.
 
-    Args:
-        cohort: trials that CTPS compares with, if they have the trial's mode.
-        references: of the score, by task, as a study's protocol sets them; other tasks have the
-            scenario's.
-        trajectory: of the trial, from its journal; it explains why a touch was off.
-        truth: what the simulator has revealed; without it there is no score.
-        pause: called between the steps, every 10 ms or so; a worker may wait in it.
+    CTPS compares with the trials of the cohort in the same mode. The references of the score, by
+    task, are those of a study's protocol; other tasks have the scenario's. The trajectory explains
+    why a touch was off. `pause` is called every 10 ms or so; a worker may wait in it.
     """
     registered = register_trial(GivenPoints.of_record(record), scenario, pause)
     rigid = registered.rigid
@@ -188,7 +180,7 @@ def analyze_trial(
 
 
 def published_score(
-    record: TrialRecord, fre_mm: float, cohort: Sequence[ctps.Trial]
+    record: TrialRecord, fre_mm: float, cohort: Sequence[TrialRow]
 ) -> PublishedScore | None:
     """Return the CTPS of a trial with this FRE, or None without a reference."""
     try:
@@ -200,7 +192,6 @@ def published_score(
 
 
 def score_arguments(analysis: TrialAnalysis) -> dict[str, Any]:
-    """Return the arguments of TrialScored for a trial with truth and score, ready for JSON."""
     score, progress = analysis.score, analysis.feedback.progress
     procedure = {} if analysis.procedure is None else {"procedure": analysis.procedure.summary()}
     # An analysis with the truth has a score.

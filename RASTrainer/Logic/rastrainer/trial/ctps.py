@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 import os
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,7 +24,10 @@ from rastrainer.errors import InputError
 from rastrainer.files.csv_table import number_in, read_table
 from rastrainer.files.reading import read_record
 from rastrainer.json_checks import list_of, number, one_of, text
+from rastrainer.trial.trial_row import TrialRow
 
+TIME, RMSE = "completion_time_s", "rmse_mm"
+"""What CTPS is computed from: a trial's time, and the fiducial registration error of its fit."""
 PUBLISHED_STUDY = ("studies", "published.csv")
 """Place among the assets of the published study's trials, with which CTPS compares."""
 
@@ -31,17 +35,6 @@ CTPS_WARNING = (
     "CTPS rises with a slower completion, depends on who else is in the cohort and has no bounds; "
     "it is shown because it is published, not to judge a trainee."
 )
-
-
-@dataclass(frozen=True)
-class Trial:
-    """One trial of a cohort; its RMSE is the fiducial registration error of the rigid fit."""
-
-    mode: str
-    subject: str
-    task: str
-    completion_time_s: float
-    rmse_mm: float
 
 
 @dataclass(frozen=True)
@@ -58,13 +51,12 @@ class CohortReference:
             raise InputError("CTPS divides by the best RMSE, which must be above 0 mm.")
 
     @classmethod
-    def of(cls, trials: Sequence[Trial], mean_ct_s: float | None = None) -> CohortReference:
-        """Return the reference of a cohort; a printed mean CT replaces the computed mean."""
+    def of(cls, trials: Sequence[TrialRow], mean_ct_s: float | None = None) -> CohortReference:
         if not trials:
             raise InputError("CTPS needs at least one trial.")
         if mean_ct_s is None:
-            mean_ct_s = float(np.mean([trial.completion_time_s for trial in trials]))
-        return cls(mean_ct_s, min(trial.rmse_mm for trial in trials))
+            mean_ct_s = float(np.mean([trial.values[TIME] for trial in trials]))
+        return cls(mean_ct_s, min(trial.values[RMSE] for trial in trials))
 
 
 @dataclass(frozen=True)
@@ -72,12 +64,9 @@ class CohortScores:
     """CTPS of one mode as the paper tabulates it; where too few trials define a value it is None.
 
     Attributes:
-        trials: Published CTPS of each trial, in the order given.
-        tasks: Mean published CTPS of each task ("Task Perf.").
-        subjects: Mean published CTPS of each subject ("User Perf.").
-        equation_3_overall: The same by equation 3: half of it.
-        sd_population: Standard deviation of `trials`, divided by n.
-        sd_sample: Standard deviation of `trials`, divided by n − 1.
+        trials: Published CTPS of each trial, in the order given; the means of tasks and subjects
+            are "Task Perf." and "User Perf.".
+        sd_population, sd_sample: Standard deviations of `trials`, divided by n and by n − 1.
         pearson_r: Correlation of task number and mean CT of the task, which the paper calls R².
     """
 
@@ -100,19 +89,19 @@ def published_ctps(completion_time_s: float, rmse_mm: float, reference: CohortRe
     return 100 * (ct_score - rmse_penalty)
 
 
-def score_cohort(trials: Sequence[Trial], mean_ct_s: float | None = None) -> CohortScores:
+def score_cohort(trials: Sequence[TrialRow], mean_ct_s: float | None = None) -> CohortScores:
     """Return the CTPS table of the trials of one mode.
 
     A mean CT can be given instead of the trials' own; the paper used a rounded one.
     """
     reference = CohortReference.of(trials, mean_ct_s)
-    scores = [published_ctps(t.completion_time_s, t.rmse_mm, reference) for t in trials]
+    scores = [published_ctps(t.values[TIME], t.values[RMSE], reference) for t in trials]
     r = _task_correlation(trials)
     return CohortScores(
         reference=reference,
         trials=tuple(scores),
         tasks=_means(trials, scores, lambda trial: trial.task),
-        subjects=_means(trials, scores, lambda trial: trial.subject),
+        subjects=_means(trials, scores, lambda trial: trial.trainee),
         overall=float(np.mean(scores)),
         equation_3_overall=float(np.mean(scores)) / 2,
         sd_population=float(np.std(scores)),
@@ -122,16 +111,15 @@ def score_cohort(trials: Sequence[Trial], mean_ct_s: float | None = None) -> Coh
     )
 
 
-def trials_by_mode(trials: Iterable[Trial]) -> dict[str, list[Trial]]:
-    """Return the trials of each mode, modes in the order of their first trial."""
-    modes: dict[str, list[Trial]] = {}
+def trials_by_mode(trials: Iterable[TrialRow]) -> dict[str, list[TrialRow]]:
+    modes: dict[str, list[TrialRow]] = {}
     for trial in trials:
         modes.setdefault(trial.mode, []).append(trial)
     return modes
 
 
 def _means(
-    trials: Sequence[Trial], values: Sequence[float], key: Callable[[Trial], str]
+    trials: Sequence[TrialRow], values: Sequence[float], key: Callable[[TrialRow], str]
 ) -> dict[str, float]:
     groups: dict[str, list[float]] = {}
     for trial, value in zip(trials, values, strict=True):
@@ -145,12 +133,12 @@ def task_number(task: str) -> int | None:
     return int(match.group()) if match else None
 
 
-def _task_correlation(trials: Sequence[Trial]) -> float | None:
+def _task_correlation(trials: Sequence[TrialRow]) -> float | None:
     """Return Pearson's r of task number and task-mean CT; tasks without a number do not count.
 
     None if there are fewer than three, or none takes longer than another.
     """
-    times = [trial.completion_time_s for trial in trials]
+    times = [trial.values[TIME] for trial in trials]
     means = {
         number: mean
         for task, mean in _means(trials, times, lambda trial: trial.task).items()
@@ -165,9 +153,10 @@ TEXT_LIMIT = 64
 NUMBER_LIMIT = 1e6
 
 
-def read_trials(path: str | os.PathLike[str]) -> list[Trial]:
+def read_trials(path: str | os.PathLike[str]) -> list[TrialRow]:
     """Return the trials of a file, one a row: `ct` in s above 0, `rmse` in mm, 0 or above."""
-    trials = []
+    trials: list[TrialRow] = []
+    counts: Counter[tuple[str, str]] = Counter()
     for line, cells in read_table(path).rows(("mode", "subject", "task", "ct", "rmse")):
         for column in ("mode", "subject", "task"):
             if not 1 <= len(cells[column]) <= TEXT_LIMIT or not cells[column].isprintable():
@@ -179,7 +168,10 @@ def read_trials(path: str | os.PathLike[str]) -> list[Trial]:
         if time_s == 0:
             raise InputError(f"Line {line} of {path}: ct must be above 0 s.")
         rmse_mm = number_in(path, line, cells, "rmse", 0, NUMBER_LIMIT)
-        trials.append(Trial(cells["mode"], cells["subject"], cells["task"], time_s, rmse_mm))
+        mode, who = cells["mode"], cells["subject"]
+        counts[mode, who] += 1
+        values = {TIME: time_s, RMSE: rmse_mm}
+        trials.append(TrialRow(who, mode, cells["task"], counts[mode, who], values))
     return trials
 
 

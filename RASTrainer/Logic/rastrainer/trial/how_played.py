@@ -97,7 +97,6 @@ class HowPlayed:
         return self.way_mm.get(MovedBy.COMMANDS.value, 0.0) / way if way else 0.0
 
     def objections(self, mode: str, allows: Collection[str]) -> tuple[str, ...]:
-        """Return the reasons why a step of a study does not accept the trial, in words."""
         return tuple(why for what, why in self._objections(mode) if what.value not in allows)
 
     def _objections(self, mode: str) -> Iterator[tuple[Allowance, str]]:

@@ -65,8 +65,7 @@ class ProcedureMeasures:
             error.
         plunge_mm: the deepest that the drill was past an inner table.
         intrusion_mm: how far an instrument is within its safety distance to a no-go structure.
-        hits: how many times an instrument and a no-go structure meet.
-        missed_bone: how many instruments do not go through the skull.
+        hits, missed_bone: how many instruments meet a no-go structure, and miss the skull.
     """
 
     duration_s: _Measure
@@ -83,7 +82,6 @@ class ProcedureMeasures:
 
     @classmethod
     def of(cls, analysis: ProcedureAnalysis, procedure: Procedure) -> ProcedureMeasures:
-        """Return the measures of an analyzed procedure, as it was planned."""
         each = analysis.trajectories
         intrusions = [
             max(0.0, plan.safety_mm - min(errors.kept_mm.values(), default=math.inf))
@@ -210,7 +208,6 @@ class ProcedureOutcome:
     score: ProcedureScore
 
     def summary(self) -> dict[str, Any]:
-        """Return the feedback for the trainee, ready for JSON: few numbers for each trajectory."""
         analysis, score = self.analysis, self.score
         return {
             "score": score.score,

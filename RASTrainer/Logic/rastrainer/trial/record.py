@@ -1,4 +1,4 @@
-"""The record of a finished trial, as delivered by the simulator and stored in the study."""
+"""The records of finished and aborted trials, as delivered by the simulator and stored."""
 
 from __future__ import annotations
 
@@ -15,17 +15,22 @@ import numpy as np
 from rastrainer import json_checks
 from rastrainer.errors import InputError
 from rastrainer.head.trial_head import UNMOVED, SkinShift
+from rastrainer.json_records import NOT_IN_JSON
 from rastrainer.procedure.record import TIME_LIMIT_S, ProcedureRecord, Seconds, WorldPoint
 from rastrainer.protocol import (
     COARSE_LANDMARKS,
     FIDUCIAL_COUNT,
     MAX_TRACE_POINTS,
+    MIN_ABORTED_S,
     MIN_TRACE_POINTS,
     NUMBER_LIMIT,
+    OPEN_PHASES,
     PLAYED_METHODS,
     TRACED_METHODS,
+    TRIAL_RUN,
     WORLD_LIMIT_MM,
     Mode,
+    Phase,
     RegistrationMethod,
     TouchRule,
 )
@@ -203,15 +208,62 @@ class TrialRecord(AnyTrial):
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """Labels of the touched points, in the order of touching."""
         return tuple(point.label for point in self.points)
 
     @property
     def positions_mm(self) -> np.ndarray:
-        """Touched points in `World`, (n, 3) float, in mm."""
         return np.array([point.position_mm for point in self.points], dtype=float)
 
     @property
     def trace_mm(self) -> np.ndarray:
-        """Traced points in `World`, (n, 3) float, in mm."""
         return np.array(self.trace, dtype=float).reshape(-1, 4)[:, :3]
+
+
+@dataclass(frozen=True, kw_only=True)
+class AbortedTrial(AnyTrial):
+    """A trial that was started and never registered.
+
+    With touches it counts as an attempt: aborting bad trials helps no one to pass.
+
+    Attributes:
+        elapsed_s: simulated time from the start to the end, or to the last touch where all were
+            made; without pauses.
+        phase: in which it was aborted: `running`, `paused`, or `complete` after all touches.
+        reason: an `AbortReason`, or a later version's reason.
+        step: of a study that was repeated because of it, for the `repeat_reason`.
+    """
+
+    aborted_utc: Utc
+    elapsed_s: Seconds
+    phase: Annotated[str, json_checks.one_of(*(phase.value for phase in OPEN_PHASES))]
+    reason: str
+    traced: Annotated[int, json_checks.whole_number(0, MAX_TRACE_POINTS)] = 0
+    step: str = field(default="", metadata=NOT_IN_JSON)
+    repeat_reason: str = field(default="", metadata=NOT_IN_JSON)
+
+    @property
+    def done(self) -> str:
+        """How far the trainee came, such as "3 of 15 points touched"."""
+        touched = len(self.points)
+        if self.method is RegistrationMethod.FIDUCIALS:
+            return f"{touched} of {FIDUCIAL_COUNT} points touched"
+        landmarks = f"{touched} landmark{'' if touched == 1 else 's'} touched"
+        if self.method not in TRACED_METHODS:
+            return landmarks
+        return f"{landmarks} and {self.traced} points traced"
+
+    @property
+    def is_after_all_touches(self) -> bool:
+        """Whether all fiducials were touched and only Register was missing."""
+        return self.phase == Phase.COMPLETE.value
+
+    @property
+    def is_kept(self) -> bool:
+        """Whether a study stores it: it has a touch, even a refused one, or took some time."""
+        touches = len(self.points) + self.rejected_touches + self.undone_touches
+        return touches > 0 or self.elapsed_s > MIN_ABORTED_S
+
+    @property
+    def counts_as_failed(self) -> bool:
+        """Whether it counts as not passed: a scored task with a kept or undone touch."""
+        return self.task != TRIAL_RUN and len(self.points) + self.undone_touches > 0

@@ -63,7 +63,6 @@ def head_of(scenario: Scenario) -> HeadMesh:
 
 
 def _head_file(scenario: Scenario) -> tuple[Path, int]:
-    """Return the file of a scenario's head, and when it was changed."""
     path = scenario.head
     return path, path.stat().st_mtime_ns if path.is_file() else 0
 

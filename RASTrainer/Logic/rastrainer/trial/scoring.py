@@ -94,7 +94,6 @@ class ScoreMeasures:
         common_bias_mm: float | None,
         motion: Mapping[str, float],
     ) -> ScoreMeasures:
-        """Return the measures of a trial with these motion metrics."""
         try:
             time_s, path_mm, depth_mm = (float(motion[name]) for name in SAFETY_METRICS)
         except KeyError as error:
@@ -141,7 +140,6 @@ class TrialScore:
 
     @property
     def parts(self) -> dict[str, float]:
-        """The desirability of each part whose product is scored, 0 to 1, by its name."""
         parts = {"time": self.time_desirability, "accuracy": self.accuracy_desirability}
         if self.measures.common_bias_mm is not None:
             trueness = _trueness(self.measures.common_bias_mm)

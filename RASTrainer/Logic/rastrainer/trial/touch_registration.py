@@ -34,11 +34,7 @@ from rastrainer.protocol import (
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.localization_error import error_along_surface, isotropic_error
 from rastrainer.registration.registration import Registration, register, register_all_kinds
-from rastrainer.registration.surface_error import (
-    TraceGuide,
-    knowledge_of,
-    surface_target_error,
-)
+from rastrainer.registration.surface_error import TraceGuide, knowledge_of, surface_target_error
 from rastrainer.registration.surface_match import SurfaceMatch, match_surface
 from rastrainer.registration.target_error import TargetError, target_error, true_errors
 from rastrainer.scenario.scenario import Scenario, task_by_method
@@ -155,11 +151,9 @@ class TouchRegistration:
 
     @property
     def rigid(self) -> Registration:
-        """The registration that is used and scored."""
         return self.fits[RIGID]
 
     def arguments(self, trial_id: str) -> dict[str, Any]:
-        """Return the arguments of UseRegistration or SubmitRegistration, ready for JSON."""
         return {
             "trialId": trial_id,
             "matrix": [float(value) for value in self.rigid.matrix.ravel()],

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.number_text import fixed
-from rastrainer.protocol import PROCEDURE_PHASES, RegistrationMethod
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import CommonBias
-from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.advice import Advice, TouchFinding, advise, touch_findings
 from rastrainer.trial.lc_cusum import LcCusum, lc_cusum, lc_cusum_limit
-from rastrainer.trial.procedure_outcome import ProcedureScore
-from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import (
     COMMON_BIAS_LIMIT_MM,
     CONTACT_LIMIT_S,
@@ -27,6 +23,7 @@ from rastrainer.trial.scoring import (
     TrialScore,
     passes,
 )
+from rastrainer.trial.trial_row import TrialRow
 from rastrainer.trial.wording import Sentence, say
 
 ADEQUATE_FAILURES, INADEQUATE_FAILURES = 0.05, 0.4
@@ -37,91 +34,20 @@ the risk of the trials that there really are."""
 
 
 @dataclass(frozen=True)
-class PastTrial:
-    """A trial as a trainee's progress, and standing in a curriculum, are computed from it.
-
-    Attributes:
-        score: The latest, above 0 up to 100; 0 of an aborted trial.
-        is_aborted: Whether it was aborted after a touch, or can have no score: not passed, without
-            time or score.
-        method: By which it was registered, or would have been; only trials by the same method are
-            compared.
-        parts: Desirability of each part of the score, 0 to 1.
-        procedure: That it continued with; "" for touches alone, and for aborted trials, which do
-            not say which.
-    """
-
-    trial_id: str
-    task: str
-    mode: str
-    completion_time_s: float
-    score: float
-    acceptable: bool
-    is_aborted: bool = False
-    method: RegistrationMethod = RegistrationMethod.FIDUCIALS
-    scenario: str = ""
-    started_utc: str = ""
-    parts: Mapping[str, float] = field(default_factory=dict, hash=False)
-    procedure: str = ""
-    procedure_score: ProcedureScore | None = None
-    is_in_procedure: bool = False
-
-    @classmethod
-    def scored(cls, record: TrialRecord, score: float, acceptable: bool) -> PastTrial:
-        return cls(
-            record.trial_id,
-            record.task,
-            record.mode,
-            record.completion_time_s,
-            score,
-            acceptable,
-            method=record.method,
-        )
-
-    @classmethod
-    def failed(cls, record: AbortedTrial | TrialRecord) -> PastTrial:
-        """Return a trial without a score that counts as not passed."""
-        seconds = record.elapsed_s if isinstance(record, AbortedTrial) else record.completion_time_s
-        return cls(
-            record.trial_id,
-            record.task,
-            record.mode,
-            seconds,
-            score=0.0,
-            acceptable=False,
-            is_aborted=True,
-            method=record.method,
-            scenario=record.scenario,
-            started_utc=record.started_utc,
-            is_in_procedure=isinstance(record, AbortedTrial) and record.phase in PROCEDURE_PHASES,
-        )
-
-
-@dataclass(frozen=True)
 class TraineeProgress:
-    """A trainee's progress including this trial.
+    """A trainee's progress including this trial; the mark is None without one for its method."""
 
-    Attributes:
-        scores: Of the trials of this task in this mode, in order; like competence, of the trial's
-            method of registration alone.
-        pass_mark: Score that passes; None without one for this method.
-        competence: LC-CUSUM over the trainee's trials of all tasks in this mode; aborted trials are
-            not passed. None without a pass mark.
-    """
-
-    scores: tuple[float, ...]
     pass_mark: float | None
-    competence: LcCusum | None
     sentences: tuple[Sentence, ...]
 
 
 def progress_of(
-    past: Sequence[PastTrial], trial_id: str, pass_mark: float | None
+    past: Sequence[TrialRow], trial_id: str, pass_mark: float | None
 ) -> TraineeProgress:
-    """Return the progress at a trial.
+    """Return the progress at a trial, compared with trials of its task, mode and method.
 
     `past` has all scored trials of the trainee without trial runs, and aborted trials that are not
-    passed, in order; later trials are ignored.
+    passed, in order; later trials are ignored. Competence is that in all tasks of the mode.
     """
     ids = ["" if other.is_aborted else other.trial_id for other in past]
     if trial_id not in ids:
@@ -129,9 +55,7 @@ def progress_of(
     until = past[: ids.index(trial_id) + 1]
     trial = until[-1]
     in_mode = [other for other in until if (other.mode, other.method) == (trial.mode, trial.method)]
-    scores = tuple(
-        other.score for other in in_mode if other.task == trial.task and not other.is_aborted
-    )
+    scores = [each.score for each in in_mode if each.task == trial.task and not each.is_aborted]
     has_others = any(
         (other.mode, other.task) == (trial.mode, trial.task) and not other.is_aborted
         for other in until[:-1]
@@ -146,11 +70,10 @@ def progress_of(
     else:
         about_mark = say("not passed", points=pass_mark - trial.score, mark=pass_mark)
     if pass_mark is None:
-        return TraineeProgress(scores, None, None, (about_scores, about_mark))
+        return TraineeProgress(None, (about_scores, about_mark))
     failures = [not passes(other.score, other.acceptable, pass_mark) for other in in_mode]
-    competence = competence_of(failures)
-    sentences = (about_scores, about_mark, _about_competence(competence, len(failures)))
-    return TraineeProgress(scores, pass_mark, competence, sentences)
+    about_competence = _about_competence(competence_of(failures), len(failures))
+    return TraineeProgress(pass_mark, (about_scores, about_mark, about_competence))
 
 
 def competence_of(failures: Sequence[bool]) -> LcCusum:
@@ -191,7 +114,6 @@ class TrialFeedback:
     """The feedback shown to a trainee after a trial.
 
     Attributes:
-        score: With its parts; None if the trial has none.
         worst: The touch with the largest error; its `replay_s` is what to look at again.
         paused_s: How long the trial was paused in all, as far as that is known.
         skin: How the skin had shifted, and what that did; empty if it had not.

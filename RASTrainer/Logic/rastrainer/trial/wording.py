@@ -89,7 +89,6 @@ class Sentence(str):
     values: Mapping[str, Any]
 
     def to_json(self) -> dict[str, Any]:
-        """Return key, values and English text, recursively."""
         values = {
             name: value.to_json() if isinstance(value, Sentence) else value
             for name, value in self.values.items()

@@ -19,17 +19,18 @@ from rastrainer.widgets.shown_errors import guardedAction
 from rastrainer.work_progress import Progress
 
 GREEN, YELLOW, RED, GRAY = "#2e9e44", "#c98a00", "#d03030", "#888888"
-LINK_COLORS = {
-    LinkState.OFF: GRAY,
-    LinkState.NOT_INSTALLED: RED,
-    LinkState.LOOKING: YELLOW,
-    LinkState.ABSENT: RED,
-    LinkState.OTHER_PROGRAM: RED,
-    LinkState.GREETING: YELLOW,
-    LinkState.CONNECTED: GREEN,
-    LinkState.STALE: YELLOW,
-    LinkState.WRONG_VERSION: RED,
+LINK_LOOKS = {
+    LinkState.OFF: (GRAY, _("Not connected")),
+    LinkState.NOT_INSTALLED: (RED, _("Not installed")),
+    LinkState.LOOKING: (YELLOW, _("Looking")),
+    LinkState.ABSENT: (RED, _("No answer")),
+    LinkState.OTHER_PROGRAM: (RED, _("No simulator")),
+    LinkState.GREETING: (YELLOW, _("Connecting")),
+    LinkState.CONNECTED: (GREEN, _("Connected")),
+    LinkState.STALE: (YELLOW, _("Silent")),
+    LinkState.WRONG_VERSION: (RED, _("Wrong version")),
 }
+"""Color and word of each state of the link."""
 
 
 def setProperty(widget: Any, name: str, value: Any) -> None:
@@ -59,6 +60,16 @@ def setText(label: Any, text: str, tip: str = "") -> None:
 def showPercent(label: Any, step: str, share: float) -> None:
     if step:
         setText(label, f"{step}: {100 * share:.0f} %")
+
+
+def replaceWidgets(layout: Any, former: Iterable[Any], new: Iterable[Any]) -> None:
+    """Show widgets in a box layout in place of others, which are deleted."""
+    for widget in former:
+        layout.removeWidget(widget)
+        widget.setParent(None)
+        widget.deleteLater()
+    for widget in new:
+        layout.addWidget(widget)
 
 
 def textLabel(text: str) -> Any:
@@ -186,15 +197,11 @@ T = TypeVar("T")
 
 
 class _CanceledError(Exception):
-    """The user has pressed Cancel."""
+    pass
 
 
 class CancelableWork:
-    """Runs one piece of work at a time; meanwhile its button says Cancel, and does that.
-
-    Attributes:
-        isUnderWay: whether it runs.
-    """
+    """Runs one piece of work at a time; meanwhile its button says Cancel, and does that."""
 
     def __init__(
         self,
@@ -205,13 +212,10 @@ class CancelableWork:
         showUsable: Callable[[], None] = lambda: None,
         show: Progress | None = None,
     ) -> None:
-        """Have a click start or cancel the work.
+        """Have a click call `start`, which calls `run`, or cancel the work.
 
-        Args:
-            start: calls `run`; `failure` is shown if that fails.
-            showSentence: shows a sentence, an empty one where the work has failed.
-            showUsable: called when work begins and ends.
-            show: shows a step and the share of the work done; None shows the step as a sentence.
+        `showSentence` shows a sentence, an empty one where the work has failed; `showUsable` is
+        called when it begins and ends. Without `show`, each step is shown as a sentence.
         """
         self.isUnderWay = self._isCanceled = False
         self._button = button

@@ -29,10 +29,9 @@ from rastrainer.journal.journal_file import (
 from rastrainer.json_checks import is_number
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import TRIAL_RUN, AbortReason, Phase, RegistrationMethod
-from rastrainer.trial.aborted_trial import AbortedTrial
-from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.record import AbortedTrial, TrialRecord
 from rastrainer.trial.scoring import PASS_MARK, passes
-from rastrainer.trial.trial_feedback import PastTrial
+from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 
@@ -61,7 +60,7 @@ _START = re.compile(
 class OwnTrial:
     """A scored or failed trial, as its trainee finds it again."""
 
-    past: PastTrial
+    past: TrialRow
     scenario: str
     started_utc: str
     is_passed: bool | None
@@ -147,7 +146,7 @@ class TraineeHistory:
         found = (self._own[path] for path in paths)
         return tuple(trial for trial in found if trial is not None)
 
-    def of(self, trainee: str) -> tuple[PastTrial, ...]:
+    def of(self, trainee: str) -> tuple[TrialRow, ...]:
         return tuple(trial.past for trial in self.own(trainee))
 
     def best(self, trainee: str, task: str) -> tuple[Path, ...]:
@@ -157,7 +156,7 @@ class TraineeHistory:
             for own in self.own(trainee)
             if own.past.task == task
             and own.past.acceptable
-            and own.past.method is RegistrationMethod.FIDUCIALS
+            and own.past.method == RegistrationMethod.FIDUCIALS
         ]
         found.sort(key=lambda own: -own.past.score)
         return tuple(own.journal for own in found)
@@ -203,7 +202,7 @@ def _own_trial(journal: Path) -> OwnTrial | None:
         last = {entry["kind"]: entry for entry in entries}
         if "attempt" in last:
             aborted = record_from_json(AbortedTrial, last["attempt"]["record"])
-            failed = PastTrial.failed(aborted)
+            failed = TrialRow.of(aborted)
             own = OwnTrial(failed, aborted.scenario, aborted.started_utc, False, journal)
             return own if aborted.counts_as_failed else None
         if "registered" not in last or "scored" not in last:
@@ -215,7 +214,7 @@ def _own_trial(journal: Path) -> OwnTrial | None:
             return None
         score = float(scored["score"])
         acceptable = details["isAccurate"] is True and not beyond_limits(details)
-        past = PastTrial.scored(record, score, acceptable)
+        past = TrialRow.of(record, values={"score": score}, acceptable=acceptable)
         verdict = is_passed(record.task, score, details)
         return OwnTrial(past, record.scenario, record.started_utc, verdict, journal)
     except (OSError, DamagedLineError, InputError, KeyError, TypeError, ValueError):

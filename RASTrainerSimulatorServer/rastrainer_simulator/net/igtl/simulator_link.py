@@ -34,8 +34,7 @@ from rastrainer.json_records import record_to_json
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName, Rate
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.steps import StepAnswers
-from rastrainer.trial.aborted_trial import AbortedTrial
-from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.record import AbortedTrial, TrialRecord
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
 from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher, told
 from rastrainer_simulator.net.igtl.registration_check import (

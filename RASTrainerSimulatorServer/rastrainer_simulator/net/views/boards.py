@@ -14,57 +14,22 @@ from aiohttp import web
 from rastrainer.errors import InputError
 from rastrainer.number_text import with_units
 from rastrainer.protocol import OPEN_PHASES
-from rastrainer_simulator.loop.timing import Pacer
 from rastrainer_simulator.net.views.access_control import ROLE, fresh_json, read_body, refuse_for
-from rastrainer_simulator.net.views.view_socket import ViewSocket
 from rastrainer_simulator.ops.instructor_pin import InstructorPin
 from rastrainer_simulator.presentation.messages import (
-    PROTOCOL,
     OrderRequest,
     Seat,
     SeatNews,
     ViewRole,
-    WelcomeNews,
     message_text,
 )
 from rastrainer_simulator.presentation.presenter import Presenter
 from rastrainer_simulator.state import SimulationState
 
-NEWS_HZ = 5.0
 ONLY_BOARDS = "Only a teacher's board may instruct: pair as one."
 NO_PIN = "This seat takes no orders: set a PIN there with rastrainer instructor-pin."
 WRONG_PIN = "This is not the PIN of this seat."
 TOO_MANY = "There were too many wrong PINs: wait."
-
-
-class Boards:
-    """The joined boards; all receive the same, and only when it has changed."""
-
-    def __init__(self) -> None:
-        self.joined: dict[int, ViewSocket] = {}
-        self._seat = ""
-        self.pacer = Pacer(NEWS_HZ)
-
-    async def serve(self, board: ViewSocket, now: SimulationState, seat: Seat) -> None:
-        """Send a board everything, and then each change until it leaves."""
-        # First the others: then all know the same, and the new one receives nothing twice.
-        self.tell(now, seat)
-        self.joined[board.number] = board
-        try:
-            welcome = WelcomeNews(PROTOCOL, board.number, ())
-            board.outbox.put_latest(WelcomeNews.type, message_text(welcome))
-            board.outbox.put_latest(SeatNews.type, self._seat)
-            await board.serve()
-        finally:
-            del self.joined[board.number]
-
-    def tell(self, now: SimulationState, seat: Seat) -> None:
-        """Send all boards the state of the seat, if it has changed."""
-        text = seat_text(now, seat)
-        if text != self._seat:
-            self._seat = text
-            for board in self.joined.values():
-                board.outbox.put_latest(SeatNews.type, text)
 
 
 def seat_text(now: SimulationState, seat: Seat) -> str:

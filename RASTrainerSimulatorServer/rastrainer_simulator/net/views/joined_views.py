@@ -16,7 +16,7 @@ from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.loop.results import StateSource
 from rastrainer_simulator.loop.timing import Pacer
 from rastrainer_simulator.net.limits import ViewLimits
-from rastrainer_simulator.net.views.boards import Boards
+from rastrainer_simulator.net.views.boards import seat_text
 from rastrainer_simulator.net.views.outgoing import (
     BODIES,
     TraceUpdate,
@@ -35,6 +35,7 @@ from rastrainer_simulator.presentation.messages import (
     PairingNews,
     SceneNews,
     ScreenNews,
+    SeatNews,
     StateNews,
     WelcomeNews,
     message_text,
@@ -50,7 +51,7 @@ from rastrainer_simulator.viewpoint.view_control import Pictures
 
 _log = logging.getLogger(__name__)
 
-STATE_HZ = 60.0
+STATE_HZ, SEAT_HZ = 60.0, 5.0
 _WATCH_PERIOD_S = 0.05
 _BEFORE_BUILDING_AHEAD_S = 3.0
 ENDING = "The simulator has been stopped."
@@ -67,7 +68,9 @@ class JoinedViews:
         self._scenes = scenes
         self._limits = limits
         self._views: dict[int, ViewSocket] = {}
-        self._boards = Boards()
+        self._boards: dict[int, ViewSocket] = {}
+        self._seat = ""
+        self._seat_pacer = Pacer(SEAT_HZ)
         self._numbers = itertools.count(1)
         self._pacer = Pacer(STATE_HZ)
         self._setup: SimulationSetup | None = None
@@ -84,7 +87,16 @@ class JoinedViews:
         """Have a view take part, or a spectator or a board watch, until it leaves."""
         view = ViewSocket(next(self._numbers), stream, hello, self._presenter, is_local)
         if hello.kind == "board":
-            await self._boards.serve(view, self._source.latest, self._presenter.seat())
+            # First the others: then all know the same, and the new one receives nothing twice.
+            self._tell_boards(self._source.latest)
+            self._boards[view.number] = view
+            try:
+                welcome = WelcomeNews(PROTOCOL, view.number, ())
+                view.outbox.put_latest(WelcomeNews.type, message_text(welcome))
+                view.outbox.put_latest(SeatNews.type, self._seat)
+                await view.serve()
+            finally:
+                del self._boards[view.number]
             return
         self._views[view.number] = view
         try:
@@ -111,18 +123,17 @@ class JoinedViews:
         tasks = [task for task in (self._loading, self._watching) if task is not None]
         for task in tasks:
             task.cancel()
-        everyone = (*self._views.values(), *self._boards.joined.values())
+        everyone = (*self._views.values(), *self._boards.values())
         closings = [view.close(WSCloseCode.GOING_AWAY, ENDING) for view in everyone]
         await asyncio.gather(*tasks, *closings, return_exceptions=True)
 
     def is_due(self, _state: SimulationState) -> bool:
-        has_joined = bool(self._views or self._boards.joined)
-        return has_joined and self._pacer.is_due(time.monotonic())
+        return bool(self._views or self._boards) and self._pacer.is_due(time.monotonic())
 
     def tell(self, now: SimulationState) -> None:
         """Send the moving bodies, and check whether another scene is needed."""
-        if self._boards.joined and self._boards.pacer.is_due(time.monotonic()):
-            self._boards.tell(now, self._presenter.seat())
+        if self._boards and self._seat_pacer.is_due(time.monotonic()):
+            self._tell_boards(now)
         if not self._views:
             return
         self._look_for_scene(now)
@@ -132,6 +143,14 @@ class JoinedViews:
             text = message_text(news)
             for view in self._views.values():
                 view.outbox.put_event(text)
+
+    def _tell_boards(self, now: SimulationState) -> None:
+        """Send all boards the state of the seat, if it has changed."""
+        text = seat_text(now, self._presenter.seat())
+        if text != self._seat:
+            self._seat = text
+            for board in self._boards.values():
+                board.outbox.put_latest(SeatNews.type, text)
 
     def _send_all(self, view: ViewSocket) -> None:
         """Send a view that has just joined the present state."""
@@ -252,9 +271,7 @@ class JoinedViews:
         while True:
             await asyncio.sleep(_WATCH_PERIOD_S)
             for view in tuple(self._views.values()):
-                view.release_if_silent(self._limits.silent_s)
-                if view.has_fallen_silent(self._limits.lost_s):
-                    self._presenter.receive(view.number, "silence")
+                view.check_silence(self._limits.silent_s, self._limits.lost_s)
 
 
 def _put_control(view: ViewSocket, control: Control) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from itertools import takewhile
 
 import numpy as np
 
@@ -124,18 +123,13 @@ def _procedure(now: SimulationState, pictures: Pictures) -> ProcedureNews | None
         return None
     seen = None
     if alignment is not None and line is not None and now.tool is Tool.GUIDE:
-        beside = aim(now.guide_axis, line, pictures)
+        entry, target = aim(now.guide_axis, line, pictures)
         seen = GuideAim(
-            _millimeters(*beside.entry),
-            _millimeters(*beside.target),
+            *((round(MM_PER_M * x, 2), round(MM_PER_M * y, 2)) for x, y in (entry, target)),
             round(MM_PER_M * alignment.entry_distance, 2),
             round(math.degrees(alignment.angle), 2),
         )
     return ProcedureNews(procedure.name, now.tool, round(MM_PER_M * now.feed, 3), seen)
-
-
-def _millimeters(right: float, up: float) -> tuple[float, float]:
-    return round(MM_PER_M * right, 2), round(MM_PER_M * up, 2)
 
 
 def _rounded(pose: CameraPose) -> CameraPose:
@@ -192,7 +186,9 @@ class TraceUpdate:
         is_known = points is self._points or points == self._points
         if (is_known and wanted == self._guidance) or not self._pacer.is_due(time_s):
             return None
-        known = sum(1 for _ in takewhile(_is_same, zip(self._points, points, strict=False)))
+        pairs = enumerate(zip(self._points, points, strict=False))
+        changed = (number for number, (old, new) in pairs if old is not new and old != new)
+        known = next(changed, min(len(self._points), len(points)))
         new = _in_head([point.seen for point in points[known:]], now.head_to_world)
         self._points, self._guidance = points, wanted
         self._places = (*self._places[:known], *new)
@@ -204,10 +200,6 @@ class TraceUpdate:
             return None
         guidance = self._guidance
         return TraceNews(0, self._places, guidance.covered_mm, guidance.next_place)
-
-
-def _is_same(pair: tuple[TracedPoint, TracedPoint]) -> bool:
-    return pair[0] is pair[1] or pair[0] == pair[1]
 
 
 def _in_head(places: Sequence[Sequence[float]], head_to_world: np.ndarray) -> tuple[Vector, ...]:

@@ -7,7 +7,8 @@ import contextlib
 import dataclasses
 import logging
 from collections import deque
-from collections.abc import Sequence
+from functools import partial
+from typing import Any
 
 from aiohttp import WSCloseCode, WSMsgType, web
 
@@ -69,6 +70,8 @@ class ViewSocket:
         self.number = number
         self.hello = hello
         self.is_local = is_local
+        self.is_spectator = hello.kind in WATCHING_KINDS
+        """Whether it only watches: the flow, which counts who sees a trial, never hears of it."""
         self.outbox = Outbox()
         self.held = HeldInput(number, presenter)
         self.headset_pose: HeadsetPose | None = None
@@ -78,11 +81,6 @@ class ViewSocket:
         self._clock = asyncio.get_running_loop().time
         self._last_message = self._clock()
         self._has_reported_frames = False
-
-    @property
-    def is_spectator(self) -> bool:
-        """Whether it only watches: the flow, which counts who sees a trial, never hears of it."""
-        return self.hello.kind in WATCHING_KINDS
 
     async def serve(self) -> None:
         """Send and receive until either side ends it."""
@@ -97,16 +95,17 @@ class ViewSocket:
             with contextlib.suppress(asyncio.CancelledError):
                 await sending
 
-    def release_if_silent(self, silent_s: float) -> None:
-        if self._clock() - self._last_message > silent_s:
-            self.held.release(is_silent=True)
+    def check_silence(self, silent_s: float, lost_s: float) -> None:
+        """Release the inputs of a view that has not been heard for `silent_s`.
 
-    def has_fallen_silent(self, lost_s: float) -> bool:
-        """Return, once, whether a view that reports its frames has not been heard for `lost_s`."""
-        is_silent = self._has_reported_frames and self._clock() - self._last_message > lost_s
-        if is_silent:
+        Report, once, a view that reported its frames and has not been heard for `lost_s`.
+        """
+        silence_s = self._clock() - self._last_message
+        if silence_s > silent_s:
+            self.held.release(is_silent=True)
+        if silence_s > lost_s and self._has_reported_frames:
             self._has_reported_frames = False
-        return is_silent
+            self._presenter.receive(self.number, "silence")
 
     async def _send(self) -> None:
         with contextlib.suppress(ConnectionError):
@@ -135,7 +134,7 @@ class ViewSocket:
         if self.is_spectator:
             raise InputError(ONLY_WATCHES)
         if isinstance(message, (KeyInput, PadInput, SticksInput)):
-            getattr(self.held, message.type)(*values)
+            self.held.take(message.type, *values)
         elif isinstance(message, HeadsetInput) and self.hello.kind == "headset":
             self.headset_pose = message if message.eyes is not None else None
         elif isinstance(message, (HeadsetInput, Hello)):
@@ -157,58 +156,51 @@ class HeldInput:
     """Passes a view's keys, pads and sticks on to the presenter and can release them all."""
 
     def __init__(self, view: int, presenter: Presenter) -> None:
-        self._view = view
-        self._presenter = presenter
+        self._receive = partial(presenter.receive, view)
         self._keys: dict[str, None] = {}
         self._held_in_silence: set[str] = set()
-        self._pad: tuple[int, int] | None = None
-        self._has_sticks = False
+        # What held sticks, or a pad, send once they are let go.
+        self._released: dict[str, tuple[Any, ...]] = {}
 
-    def key(self, code: str, is_down: bool, text: str) -> None:
-        """Process a key; no hand holds more than a few, so further keys are ignored.
+    def take(self, kind: str, *values: Any) -> None:
+        """Process a message of a pad, of sticks, or of a key.
 
-        A Shift key that was down when the view fell silent, and has not come up since, stays held:
-        the next key must not move the arm fast because a computer draws slowly.
+        No hand holds more than a few keys, so further ones are ignored. A Shift key that was down
+        when the view fell silent, and has not come up since, stays held: the next key must not
+        move the arm fast because a computer draws slowly.
         """
-        self._held_in_silence.discard(code)
-        if is_down and self._held_in_silence:
-            self.key(self._held_in_silence.pop(), True, "")
-        if not is_down:
-            self._keys.pop(code, None)
-        elif code in self._keys or len(self._keys) < MAX_KEYS:
-            self._keys[code] = None
+        if kind == KeyInput.type:
+            code, is_down, _text = values
+            self._held_in_silence.discard(code)
+            if is_down and self._held_in_silence:
+                self.take(kind, self._held_in_silence.pop(), True, "")
+            if not is_down:
+                self._keys.pop(code, None)
+            elif code in self._keys or len(self._keys) < MAX_KEYS:
+                self._keys[code] = None
+            else:
+                return
         else:
-            return
-        self._presenter.receive(self._view, "key", code, is_down, text)
-
-    def pad(self, axes: Sequence[float], buttons: Sequence[float]) -> None:
-        self._pad = (len(axes), len(buttons)) if any(axes) or any(buttons) else None
-        self._presenter.receive(self._view, "pad", axes, buttons)
-
-    def sticks(
-        self,
-        translation: tuple[float, float, float],
-        rotation: tuple[float, float],
-        is_fine: bool,
-        yaw_deg: float,
-    ) -> None:
-        self._has_sticks = any(translation) or any(rotation) or is_fine
-        values = translation, rotation, is_fine, yaw_deg
-        self._presenter.receive(self._view, "sticks", *values)
+            # The angle at which a headset looks holds nothing.
+            held = (any(each) if isinstance(each, tuple) else each for each in values[:3])
+            self._released.pop(kind, None)
+            if any(held):
+                self._released[kind] = tuple(
+                    (0.0,) * len(each) if isinstance(each, tuple) else type(each)()
+                    for each in values
+                )
+        self._receive(kind, *values)
 
     def release(self, is_silent: bool = False) -> None:
         """Release everything that is held, since the view has left or is silent."""
-        if not (self._keys or self._pad or self._has_sticks):
+        if not (self._keys or self._released):
             return
         shifts = set(SHIFT_KEYS.intersection(self._keys)) if is_silent else set()
         for code in tuple(self._keys):
-            self.key(code, False, "")
+            self.take(KeyInput.type, code, False, "")
         self._held_in_silence = shifts
-        if self._pad is not None:
-            axes, buttons = self._pad
-            self.pad((0.0,) * axes, (0.0,) * buttons)
-        if self._has_sticks:
-            self.sticks((0.0, 0.0, 0.0), (0.0, 0.0), False, 0.0)
+        for kind, values in tuple(self._released.items()):
+            self.take(kind, *values)
 
 
 class Outbox:

@@ -104,7 +104,9 @@ function factsOf(facts: readonly Fact[]): HTMLElement {
   for (const fact of facts) {
     const value = element("dd", fact.value);
     value.dataset.tone = fact.tone;
-    table.append(element("dt", fact.label), value);
+    const line = element("div", "");
+    line.append(element("dt", fact.label), value);
+    table.append(line);
   }
   return table;
 }

@@ -88,7 +88,7 @@ def exchange(reference_client, loop_thread, request):
     [
         ("Reference", Transform((0, 1, 0, -1, 0, 0, 0, 0, 1, 10.5, -20.25, 300.125))),
         ("Note", String("touch point 3")),
-        ("Points", Points((Point("7", (1.5, -2, 3.25), (1, 2, 3, 255), "Fiducial"),))),
+        ("Points", Points((Point("7", (1.5, -2, 3.25), (1, 2, 3, 255)),))),
         ("Device", Status(1, 42, "none", "well")),
         ("command", Command(4711, "Hello", '{"protocolVersion": 1, "client": "reference"}')),
     ],

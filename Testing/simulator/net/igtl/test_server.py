@@ -4,7 +4,6 @@ import asyncio
 import contextlib
 import logging
 import math
-import random
 import socket
 import struct
 from itertools import pairwise
@@ -16,7 +15,6 @@ from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Command, Point, Points, Status, String, Transform
 from rastrainer.igtl.message import MAX_BODY_BYTES, Message, crc64, pack
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
-from Testing.free_port import free_port
 from Testing.simulator.net.igtl.servers import HOST, LinkServer, LoopThread, PlainServer
 
 PROBE = Message("Probe", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 4, 5, 6)), timestamp=1)
@@ -77,19 +75,6 @@ def test_every_type_reaches_every_client(plain_server):
                 assert client.wait_for(message.device) == message
 
 
-def test_client_that_speaks_header_version_1_is_answered_in_it(link_server):
-    with connect(link_server.port) as peer, peer.makefile("rb") as stream:
-        peer.sendall(pack(Message("Echo", PROBE.content, version=1)))
-        while True:
-            version, kind, device, *_rest, size, _crc = struct.unpack(
-                ">H12s20sIIQQ", stream.read(58)
-            )
-            body = stream.read(size)
-            if device.startswith(b"Echo"):
-                break
-        assert (version, kind.rstrip(b"\0"), body) == (1, b"TRANSFORM", PROBE.content.pack())
-
-
 def of_version_1(content: bytes, checksum: int | None = None, kind: bytes = b"TRANSFORM") -> bytes:
     checksum = crc64(content) if checksum is None else checksum
     return struct.pack(">H12s20sIIQQ", 1, kind, b"", 0, 0, len(content), checksum) + content
@@ -134,15 +119,6 @@ def test_bad_message_disturbs_no_other_client(link_server, bad):
         peer.sendall(bad)
 
 
-@pytest.mark.parametrize(
-    "bad", [header(b"TRANSFORM", 48) + bytes(48), header(b"IMAGE", 300_000) + bytes(300_000)]
-)
-def test_bad_message_does_not_end_the_connection(plain_server, bad):
-    with connect(plain_server.port) as peer:
-        peer.sendall(bad + pack(PROBE))
-        assert plain_server.handler.wait_for_messages(1) == [PROBE]
-
-
 def test_claimed_body_above_16_mib_ends_the_connection(plain_server):
     with connect(plain_server.port) as peer:
         peer.sendall(header(b"STRING", MAX_BODY_BYTES + 1))
@@ -179,25 +155,6 @@ def test_state_of_a_slowly_reading_client_is_replaced_instead_of_piling_up(start
         assert read == sorted(read)
 
 
-def test_half_sent_message_ends_the_connection(start):
-    server = start(PlainServer, half_message_s=0.1)
-    with connect(server.port) as peer:
-        peer.sendall(pack(PROBE)[:70])
-        assert read_to_end(peer) == b""
-
-
-def test_client_beyond_the_limit_is_turned_away(start):
-    server = start(PlainServer, clients=2)
-    with connect(server.port) as first, connect(server.port) as second:
-        for peer in (first, second):
-            peer.sendall(pack(PROBE))
-        server.handler.wait_for_messages(2)
-        with connect(server.port) as third:
-            assert read_to_end(third) == b""
-        first.sendall(pack(PROBE))
-        server.handler.wait_for_messages(3)
-
-
 def test_the_oldest_silent_client_is_dropped_when_its_slot_is_needed(start):
     server = start(PlainServer, clients=3)
     with connect(server.port) as talking, contextlib.ExitStack() as stack:
@@ -213,28 +170,6 @@ def test_the_oldest_silent_client_is_dropped_when_its_slot_is_needed(start):
         talking.sendall(pack(PROBE))
         server.handler.wait_for_messages(4)
         assert len(server.server.clients) == 3
-
-
-def test_fifty_clients_get_their_echo(link_server):
-    with contextlib.ExitStack() as stack:
-        clients = [stack.enter_context(Client(port=link_server.port)) for _ in range(50)]
-        for client in clients:
-            client.send(PROBE)
-        for client in clients:
-            assert client.wait_for("Probe").content == PROBE.content
-
-
-def test_mutated_messages_end_at_worst_their_own_connection(link_server):
-    generator = random.Random(5)
-    seeds = [pack(message) for message in EVERY_MESSAGE]
-    with good_client(link_server):
-        for _ in range(30):
-            with connect(link_server.port) as peer, contextlib.suppress(OSError):
-                for _ in range(100):
-                    data = bytearray(generator.choice(seeds))
-                    for _ in range(generator.randint(1, 5)):
-                        data[generator.randrange(len(data))] = generator.randrange(256)
-                    peer.sendall(data)
 
 
 def test_problems_are_logged_at_most_once_a_second(plain_server, caplog):
@@ -266,18 +201,3 @@ def test_server_connects_to_a_listening_slicer_and_reconnects(start, loop_thread
             with accepted:
                 assert accepted.recv(2) == b"\x00\x02"
         task.cancel()
-
-
-def test_slicer_that_does_not_listen_is_reported_once(start, loop_thread: LoopThread, caplog):
-    server = start(LinkServer, reconnect_s=0.01)
-    port = free_port()
-    attempts = server.server.keep_connected_to(HOST, port)
-    with caplog.at_level(logging.WARNING, "rastrainer.igtl"):
-        task = asyncio.run_coroutine_threadsafe(attempts, loop_thread.loop)
-        while not caplog.records:
-            loop_thread.run(asyncio.sleep(0.01))
-        loop_thread.run(asyncio.sleep(0.2))
-        task.cancel()
-    assert [record.getMessage() for record in caplog.records] == [
-        f"1 × Nothing listens at {HOST}:{port} yet."
-    ]

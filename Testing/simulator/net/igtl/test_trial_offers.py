@@ -8,7 +8,7 @@ import pytest
 from rastrainer.igtl.client import Client
 from rastrainer.json_records import record_from_json
 from rastrainer.protocol import PROTOCOL_VERSION, Phase
-from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.record import AbortedTrial
 from rastrainer_simulator.net.igtl.simulator_link import OFFERS_AT_ONCE
 from rastrainer_simulator.state import TrainingState
 from Testing.domain.trial.trial_records import make_aborted
@@ -89,26 +89,9 @@ def test_trial_is_offered_again_until_it_is_acknowledged(collector, link_server)
     assert collector.after(link_server.link.offers.repeat) == []
 
 
-def test_every_client_is_offered_the_trial(collector, link_server):
-    link_server.simulated.unacknowledged = (record("a"),)
-    with Collector(link_server) as other:
-        assert other.after(link_server.link.offers.repeat) == ["a"]
-    assert collector.after(lambda: None) == ["a"]
-
-
 def test_trials_that_nobody_acknowledges_do_not_hold_up_the_others(collector, link_server):
     names = [str(i) for i in range(OFFERS_AT_ONCE * 2 + 3)]
     link_server.simulated.unacknowledged = tuple(record(name) for name in names)
     offered = [collector.after(link_server.link.offers.repeat) for _ in range(3)]
     assert {name for names in offered for name in names} == set(names)
     assert max(map(len, offered)) == OFFERS_AT_ONCE
-
-
-def test_an_aborted_trial_is_offered_as_such(link_server):
-    aborted = record_from_json(AbortedTrial, make_aborted())
-    link_server.simulated.unacknowledged = (aborted,)
-    with Collector(link_server, "TrialAborted") as collector:
-        collector.server.thread.call(link_server.link.offers.repeat)
-        collector.send_command("ListTasks")
-        (offer,) = collector.offers
-    assert record_from_json(AbortedTrial, json.loads(offer.body)) == aborted

@@ -71,25 +71,6 @@ def test_a_view_that_sends_nothing_is_sent_everything_over_tls_too(serve, certif
     assert ticks == sorted(set(ticks))
 
 
-def test_plain_http_gets_no_answer_from_the_local_network_port(port):
-    with socket.create_connection((HOST, port), 60) as browser:
-        browser.sendall(REQUEST)
-        answer = b""
-        try:
-            while piece := browser.recv(1000):
-                answer += piece
-        except ConnectionResetError:
-            pass
-    assert b"HTTP" not in answer
-
-
-def test_the_displayed_fingerprint_is_that_of_the_served_certificate(port, certificates):
-    with connected(port, ssl.TLSVersion.TLSv1_3) as browser:
-        shown = browser.getpeercert(binary_form=True)
-    displayed = own_certificate(certificates).fingerprint
-    assert bytes.fromhex(displayed.replace(":", "")) == hashlib.sha256(shown).digest()
-
-
 def test_a_certificate_is_kept_and_a_truncated_one_is_replaced(tmp_path):
     first = own_certificate(tmp_path).fingerprint
     assert own_certificate(tmp_path).fingerprint == first

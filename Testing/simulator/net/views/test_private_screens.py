@@ -89,13 +89,6 @@ def test_only_the_operators_views_are_sent_items_focus_and_clicks(served, seat, 
         assert events == (["focus"] if name in readers else []), name
 
 
-def test_a_view_that_joins_meanwhile_is_sent_nothing_of_it(served, seat, connect):
-    tell(served, Control("page", seat["page"][1]))
-    late = connect(served)
-    late.join(kind="page")
-    assert is_bare(late.next("screen")["screen"]["menu"])
-
-
 def test_the_view_that_takes_control_is_sent_the_whole_menu_and_the_one_that_lost_it_none(
     served, seat
 ):

@@ -65,11 +65,3 @@ def _usual_port_taken():
         except OSError:
             assert time.monotonic() < give_up, "another program keeps port 18945"
             time.sleep(0.05)
-
-
-@pytest.mark.parametrize(
-    "arguments", [("--view-port", "65536"), ("--view-port", "1", "--no-views")]
-)
-def test_unusable_ports_are_refused_in_one_sentence(tmp_path, arguments):
-    with pytest.raises(AssertionError, match=r"rastrainer: .*--view-port"):
-        SimulatorProcess(tmp_path / "records", *arguments)

@@ -74,13 +74,6 @@ def test_quaternions_agree_with_another_library_for_any_rotation():
         assert np.hypot(np.hypot(x, y), np.hypot(z, w)) == pytest.approx(1.0)
 
 
-def test_states_keep_arriving_with_rising_ticks(served, connect):
-    view = connect(served)
-    view.join()
-    ticks = [view.next("state")["tick"] for _ in range(20)]
-    assert ticks == sorted(set(ticks))
-
-
 def test_the_scene_is_named_after_its_content_and_fits_the_scenario(served, connect, scenario):
     view = connect(served)
     view.join()
@@ -110,11 +103,6 @@ def test_a_scene_is_half_as_large_with_gzip_and_announces_its_size(served, conne
     assert int(headers["Content-Length"]) < 0.6 * len(whole)
 
 
-def test_an_unknown_scene_is_not_found(served):
-    headers = {"Authorization": f"Bearer {served.new_key()}"}
-    assert request(served.url, f"/scene/{'0' * 64}.glb", headers=headers)[0] == 404
-
-
 def test_every_view_gets_each_event_once_and_in_order(served, connect):
     views = [connect(served) for _ in range(3)]
     for view in views:
@@ -134,18 +122,6 @@ def test_every_view_gets_each_event_once_and_in_order(served, connect):
         "rumble": 0.5,
         "rumbleMs": 120,
     }
-
-
-def test_a_view_that_joins_later_does_not_get_past_events(served, connect):
-    first = connect(served)
-    first.join()
-    served.tell(feedback(1))
-    assert first.next("event")["number"] == 1
-    late = connect(served)
-    late.join()
-    late.next("state")
-    served.tell(feedback(2))
-    assert late.next("event")["number"] == 2
 
 
 def test_a_view_that_falls_behind_gets_the_latest_screen_and_not_all_before_it(serve, connect):
@@ -221,14 +197,6 @@ def test_no_more_views_than_allowed_can_join_until_one_leaves(serve, connect):
     first.leave()
     served.wait_for_call("view_left", number)
     assert connect(served).join()["view"] == number + 1
-
-
-def test_views_are_told_when_the_simulator_ends(serve, connect):
-    served = serve()
-    view = connect(served)
-    view.join()
-    served.close()
-    assert view.closing() == (1001, "The simulator has been stopped.")
 
 
 def test_a_scenarios_picture_is_served_to_views_by_name_and_nothing_else_is(served, tmp_path):

@@ -129,12 +129,3 @@ def test_guidance_comes_with_the_trace_and_disappears_when_the_trial_ends(traced
     traced.trial.must(CommandName.REGISTER)
     last = traced.news(view)
     assert (last["known"], last["points"], last["coveredMm"], last["next"]) == (0, [], 0.0, None)
-
-
-def test_a_trial_by_fiducials_has_no_trace(served, connect):
-    served.presenter.guidance = GUIDED
-    view = connect(served)
-    view.join()
-    kinds = {view.next()["type"] for _ in range(60)}
-    assert "state" in kinds
-    assert "trace" not in kinds

@@ -195,10 +195,6 @@ class ctkCollapsibleGroupBox(QtWidgets.QGroupBox):
         return self.fontMetrics().height() + MARGIN
 
 
-class ctkPushButton(QtWidgets.QPushButton):
-    """A push button."""
-
-
 def _draw_arrow(
     widget: QtWidgets.QWidget,
     painter: QtWidgets.QStylePainter,

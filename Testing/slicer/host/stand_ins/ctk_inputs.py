@@ -1,4 +1,4 @@
-"""CTK's inputs."""
+"""CTK's input of a path."""
 
 from __future__ import annotations
 
@@ -8,17 +8,6 @@ from Testing.slicer.host.stand_ins.dialogs import QFileDialog
 
 PATH_FRAME = 60
 """Pixels around the path: its combo box's frame and arrow, and the button to browse."""
-
-
-class ctkComboBox(QtWidgets.QComboBox):
-    """A combo box that shows a text while nothing is chosen."""
-
-    def setDefaultText(self, text: str) -> None:
-        self.setPlaceholderText(text)
-
-    defaultText = QtCore.Property(
-        str, QtWidgets.QComboBox.placeholderText, QtWidgets.QComboBox.setPlaceholderText
-    )
 
 
 class ctkPathLineEdit(QtWidgets.QWidget):
@@ -59,110 +48,17 @@ class ctkPathLineEdit(QtWidgets.QWidget):
         if path:
             self._edit.setText(path)
 
-    def _path(self) -> str:
-        return self._edit.text()
-
     def setCurrentPath(self, path: str) -> None:
         self._edit.setText(path)
 
-    currentPath = QtCore.Property(str, _path, setCurrentPath)
-
-    def _get_filters(self) -> int:
-        return self._filters
+    currentPath = QtCore.Property(str, lambda self: self._edit.text(), setCurrentPath)
 
     def _set_filters(self, filters: int) -> None:
         self._filters = filters
 
-    filters = QtCore.Property(int, _get_filters, _set_filters)
-
-    def _get_name_filters(self) -> list[str]:
-        return self._nameFilters
+    filters = QtCore.Property(int, lambda self: self._filters, _set_filters)
 
     def _set_name_filters(self, filters: list[str]) -> None:
         self._nameFilters = filters
 
-    nameFilters = QtCore.Property("QStringList", _get_name_filters, _set_name_filters)
-
-
-class ctkDirectoryButton(QtWidgets.QWidget):
-    """A button that shows a folder, and browses for another."""
-
-    directoryChanged = QtCore.Signal(str)
-    directorySelected = QtCore.Signal(str)
-
-    def __init__(self, parent: QtWidgets.QWidget | None = None) -> None:
-        super().__init__(parent)
-        self._button = QtWidgets.QPushButton()
-        self._button.clicked.connect(self.browse)
-        row = QtWidgets.QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.addWidget(self._button)
-
-    def browse(self) -> None:
-        path = QFileDialog.getExistingDirectory(self, "", self._directory())
-        if path:
-            self.setDirectory(path)
-            self.directorySelected.emit(path)
-
-    def _directory(self) -> str:
-        return self._button.text()
-
-    def setDirectory(self, path: str) -> None:
-        if path != self._directory():
-            self._button.setText(path)
-            self.directoryChanged.emit(path)
-
-    directory = QtCore.Property(str, _directory, setDirectory)
-
-
-class ctkSliderWidget(QtWidgets.QWidget):
-    """A slider and a spin box of one value."""
-
-    valueChanged = QtCore.Signal(float)
-    valueIsChanging = QtCore.Signal(float)
-
-    def __init__(self, parent: QtWidgets.QWidget | None = None) -> None:
-        super().__init__(parent)
-        self._spin = QtWidgets.QDoubleSpinBox()
-        self._slider = QtWidgets.QSlider(QtCore.Qt.Orientation.Horizontal)
-        self._slider.setRange(0, 1000)
-        row = QtWidgets.QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.addWidget(self._slider)
-        row.addWidget(self._spin)
-        self._slider.sliderMoved.connect(self._move)
-        self._spin.valueChanged.connect(self._follow)
-
-    def _move(self, step: int) -> None:
-        spin = self._spin
-        spin.setValue(spin.minimum() + step / 1000 * (spin.maximum() - spin.minimum()))
-
-    def _follow(self, value: float) -> None:
-        spin = self._spin
-        span = (spin.maximum() - spin.minimum()) or 1.0
-        self._slider.setValue(round(1000 * (value - spin.minimum()) / span))
-        self.valueChanged.emit(value)
-
-    value = QtCore.Property(
-        float, lambda self: self._spin.value(), lambda self, value: self._spin.setValue(value)
-    )
-    minimum = QtCore.Property(
-        float, lambda self: self._spin.minimum(), lambda self, value: self._spin.setMinimum(value)
-    )
-    maximum = QtCore.Property(
-        float, lambda self: self._spin.maximum(), lambda self, value: self._spin.setMaximum(value)
-    )
-    singleStep = QtCore.Property(
-        float,
-        lambda self: self._spin.singleStep(),
-        lambda self, value: self._spin.setSingleStep(value),
-    )
-    decimals = QtCore.Property(
-        int, lambda self: self._spin.decimals(), lambda self, value: self._spin.setDecimals(value)
-    )
-    suffix = QtCore.Property(
-        str, lambda self: self._spin.suffix(), lambda self, value: self._spin.setSuffix(value)
-    )
-
-    def setValue(self, value: float) -> None:
-        self._spin.setValue(value)
+    nameFilters = QtCore.Property("QStringList", lambda self: self._nameFilters, _set_name_filters)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from PySide6 import QtCore, QtGui, QtWidgets
 
 from Testing.slicer.host.answers import ANSWERS, Message
@@ -57,21 +55,7 @@ class QMessageBox(QtWidgets.QMessageBox):
 
 
 class ctkMessageBox(QMessageBox):
-    """A message box with a choice not to show it again."""
-
-
-class QDialog(QtWidgets.QDialog):
-    """One of the module's own dialogs: the answer is a function that presses its buttons."""
-
-    def exec(self) -> int:
-        play: Callable[[QtWidgets.QDialog], None] | None = ANSWERS.take(self.windowTitle())
-        if play is None:
-            FAILURES.add(f"No answer was prepared for the dialog “{self.windowTitle()}”.")
-            return 0
-        self.show()
-        play(self)
-        self.hide()
-        return self.result()
+    """A message box with a choice not to show it again; `slicer.util` uses it."""
 
 
 class QFileDialog(QtWidgets.QFileDialog):
@@ -121,10 +105,6 @@ class QInputDialog(QtWidgets.QInputDialog):
         # The text that the field begins with is the message's details.
         ANSWERS.messages.append(Message(title, label, text, answer or ""))
         return answer or ""
-
-    @staticmethod
-    def getItem(parent: object, title: str, label: str, *_more: object) -> str:
-        return QInputDialog.getText(parent, title, label)
 
 
 class QDesktopServices(QtGui.QDesktopServices):

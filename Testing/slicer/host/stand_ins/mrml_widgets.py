@@ -5,10 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import vtk
 from PySide6 import QtCore, QtGui, QtWidgets
-
-from Testing.slicer.host.stand_ins.observing import weakly
 
 
 class qMRMLWidget(QtWidgets.QWidget):
@@ -68,45 +65,3 @@ class qSlicerMainWindow(QtWidgets.QMainWindow):
 
     def moduleSelector(self) -> Any:
         return self._selector
-
-
-class qMRMLTableView(QtWidgets.QTableView):
-    """Shows a table node, and follows its changes."""
-
-    mrmlSceneChanged = QtCore.Signal(object)
-
-    def __init__(self, parent: QtWidgets.QWidget | None = None) -> None:
-        super().__init__(parent)
-        self._scene: Any = None
-        self._node: Any = None
-        self._tag = 0
-        self.setEditTriggers(QtWidgets.QAbstractItemView.EditTrigger.NoEditTriggers)
-
-    def mrmlScene(self) -> Any:
-        return self._scene
-
-    def setMRMLScene(self, scene: Any) -> None:
-        self._scene = scene
-        self.mrmlSceneChanged.emit(scene)
-
-    def mrmlTableNode(self) -> Any:
-        return self._node
-
-    def setMRMLTableNode(self, node: Any) -> None:
-        if self._node is not None:
-            self._node.RemoveObserver(self._tag)
-        self._node = node
-        if node is not None:
-            self._tag = node.AddObserver(vtk.vtkCommand.ModifiedEvent, weakly(self._show))
-        self._show()
-
-    def _show(self, _event: str = "", _data: Any = None) -> None:
-        node = self._node
-        model = QtGui.QStandardItemModel(self)
-        if node is not None:
-            columns = range(node.GetNumberOfColumns())
-            model.setHorizontalHeaderLabels([node.GetColumnName(column) for column in columns])
-            for row in range(node.GetNumberOfRows()):
-                texts = (node.GetCellText(row, column) for column in columns)
-                model.appendRow([QtGui.QStandardItem(text) for text in texts])
-        self.setModel(model)

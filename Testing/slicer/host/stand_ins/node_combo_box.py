@@ -108,9 +108,6 @@ class qMRMLNodeComboBox(QtWidgets.QWidget):
     def setCurrentNode(self, node: Any) -> None:
         self.setCurrentNodeID(node.GetID() if node is not None else "")
 
-    def setCurrentNodeIndex(self, index: int) -> None:
-        self.setCurrentNode(self.nodeFromIndex(index))
-
     def setCurrentNodeID(self, node_id: str) -> None:
         ids = [node.GetID() for node in self.nodes()]
         wanted = node_id if node_id in ids else ""
@@ -130,17 +127,6 @@ class qMRMLNodeComboBox(QtWidgets.QWidget):
             self.setCurrentNode(made)
         self.nodeAddedByUser.emit(made)
         return made
-
-    def removeCurrentNode(self) -> None:
-        node = self.currentNode()
-        if node is not None:
-            self._scene.RemoveNode(node)
-
-    def setNodeTypeLabel(self, _label: str, _node_type: str) -> None:
-        """The label is in the menu only."""
-
-    def addAttribute(self, _node_type: str, _name: str, _value: Any = None) -> None:
-        raise NotImplementedError("The host does not filter by attributes yet.")
 
     def _follow(self, event: str, node: Any) -> None:
         if node is not None and not any(node.IsA(name) for name in self._values["nodeTypes"]):
@@ -166,10 +152,7 @@ class qMRMLNodeComboBox(QtWidgets.QWidget):
         self.setCurrentNodeID(self._combo.itemData(index))
         self.nodeActivated.emit(self.currentNode())
 
-    def _get_current_id(self) -> str:
-        return self._current
-
-    currentNodeID = QtCore.Property(str, _get_current_id, setCurrentNodeID)
+    currentNodeID = QtCore.Property(str, lambda self: self._current, setCurrentNodeID)
     nodeTypes = _stored("nodeTypes", "QStringList")
     showHidden = _stored("showHidden", bool)
     showChildNodeTypes = _stored("showChildNodeTypes", bool)

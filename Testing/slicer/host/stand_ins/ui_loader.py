@@ -8,17 +8,11 @@ import xml.etree.ElementTree as ElementTree
 from PySide6 import QtCore, QtUiTools, QtWidgets
 
 from Testing.slicer.host.members import members_of, module_of
-from Testing.slicer.host.stand_ins import (
-    ctk_buttons,
-    ctk_inputs,
-    mrml_widgets,
-    node_combo_box,
-    plot_view,
-)
+from Testing.slicer.host.stand_ins import ctk_buttons, ctk_inputs, mrml_widgets, node_combo_box
 
 WIDGETS = {
     name: kind
-    for module in (ctk_buttons, ctk_inputs, mrml_widgets, node_combo_box, plot_view)
+    for module in (ctk_buttons, ctk_inputs, mrml_widgets, node_combo_box)
     for name, kind in vars(module).items()
     if name.startswith(("ctk", "qMRML", "qSlicer"))
 }
@@ -76,11 +70,7 @@ def _checked(content: bytes) -> tuple[bytes, dict[str, tuple[str, int]], list[di
 
 
 def check_widget(element: ElementTree.Element) -> None:
-    """Check one widget of a `.ui` file.
-
-    Raises:
-        AttributeError: its class, or one of its properties, is not in Slicer.
-    """
+    """Check one widget of a `.ui` file."""
     class_name, name = element.get("class"), element.get("name")
     if class_name == "Line":  # Designer's name for a QFrame.
         return
@@ -106,11 +96,7 @@ def _take_enumerations(element: ElementTree.Element) -> dict[str, tuple[str, int
 
 
 def _connect(widget: QtWidgets.QWidget, connection: dict[str, str]) -> None:
-    """Make one connection of the file.
-
-    Raises:
-        AttributeError: Slicer has no such signal or slot.
-    """
+    """Make one connection of the file."""
     sender, receiver = (_named(widget, connection[end]) for end in ("sender", "receiver"))
     signal, slot = connection["signal"], connection["slot"]
     slot_name = slot.partition("(")[0]

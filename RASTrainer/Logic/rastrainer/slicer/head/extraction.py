@@ -92,16 +92,13 @@ def continued(level: np.ndarray, margin: int) -> np.ndarray:
 
 def _continueEnd(level: np.ndarray, axis: int, margin: int) -> np.ndarray:
     slices = np.moveaxis(level, axis, 0)
-    outline = _signedDistance(slices[-1])
-    if outline is None:
-        beyond = np.full((margin, *slices.shape[1:]), -1.0, level.dtype)
-        return np.concatenate([level, np.moveaxis(beyond, 0, axis)], axis=axis)
-    earlier = _signedDistance(slices[-1 - TREND_LENGTH])
-    trend = (outline - earlier) / TREND_LENGTH if earlier is not None else np.zeros_like(outline)
-    trend = np.clip(ndimage.gaussian_filter(trend, 2.0), -FASTEST_TREND, 0.0)
-    steps = np.arange(1, margin + 1)[:, None, None]
-    distance = outline + steps * trend - ROUNDING * steps**2
-    beyond = np.clip(distance, -1.0, 1.0).astype(level.dtype)
+    outline, earlier = _signedDistance(slices[-1]), _signedDistance(slices[-1 - TREND_LENGTH])
+    beyond = np.full((margin, *slices.shape[1:]), -1.0, level.dtype)
+    if outline is not None:
+        trend = np.zeros_like(outline) if earlier is None else (outline - earlier) / TREND_LENGTH
+        trend = np.clip(ndimage.gaussian_filter(trend, 2.0), -FASTEST_TREND, 0.0)
+        steps = np.arange(1, margin + 1)[:, None, None]
+        beyond[:] = np.clip(outline + steps * trend - ROUNDING * steps**2, -1.0, 1.0)
     return np.concatenate([level, np.moveaxis(beyond, 0, axis)], axis=axis)
 
 
@@ -121,7 +118,11 @@ def _signedDistance(sliceLevel: np.ndarray) -> np.ndarray | None:
 MARGIN = 14
 """Voxels added around the image, in which the nose and the ears may close."""
 
-MAX_TRIANGLES = 60_000
+CAVITY_DEPTH_MM = 4.0
+"""Cavities so deep below the skin are filled: airways, sinuses, ear canals."""
+
+TRIANGLES, MAX_TRIANGLES = 55_000, 60_000
+"""How many are aimed at, to which the flat base adds a few; and most."""
 MAX_DECIMATIONS, BASE_RESERVE = 3, 500
 LONGEST_HEAD_MM = 200.0
 """Measured down from the crown: neck and shoulders below are cut off."""
@@ -153,19 +154,19 @@ def findHead(volume: Volume, settings: HeadSettings, progress: Progress) -> Head
     around = slice(*spans[0]), slice(*spans[1]), slice(below, spans[2][1])
     level = continued(found.level[around], MARGIN)
     progress("Filling cavities", 0.3)
-    body = _body(level > 0, settings, progress)
+    body = _body(level > 0, settings.openingMm, progress)
     first = np.array([part.start for part in around])
     origin = grid.ijkToRas[:3, 3] + (first - MARGIN) * SPACING_MM
     return HeadBody(level, body, origin, base, found.threshold, found.isCt)
 
 
-def skinOf(head: HeadBody, settings: HeadSettings, progress: Progress) -> HeadMesh:
+def skinOf(head: HeadBody, progress: Progress) -> HeadMesh:
     """Return the skin as one closed surface of genus 0 with a flat base."""
     progress("Making the surface", 0.8)
     # Changed only in voxels that disagree with the body.
     level = np.where(head.body, np.maximum(head.level, 0.05), np.minimum(head.level, -0.05))
     skin = surface.surfaceOf(level, head.origin, SPACING_MM)
-    skin, wanted = surface.smoothed(skin), settings.triangles
+    skin, wanted = surface.smoothed(skin), TRIANGLES
     for _ in range(MAX_DECIMATIONS):
         mesh = surface.meshOf(surface.decimated(skin, wanted, head.baseMm))
         if mesh.is_closed:
@@ -188,15 +189,15 @@ def skinOf(head: HeadBody, settings: HeadSettings, progress: Progress) -> HeadMe
     )
 
 
-def _body(inside: np.ndarray, settings: HeadSettings, progress: Progress) -> np.ndarray:
+def _body(inside: np.ndarray, openingMm: float, progress: Progress) -> np.ndarray:
     """Return the head without cavities and tunnels, as little filled as possible."""
-    hull = mask.withoutCavities(mask.closedByBall(inside, settings.openingMm / 2))
+    hull = mask.withoutCavities(mask.closedByBall(inside, openingMm / 2))
     progress("Filling cavities", 0.45)
-    depth = settings.cavityDepthMm / SPACING_MM
+    depth = CAVITY_DEPTH_MM / SPACING_MM
     deep = mask.depthInside(hull, depth) > depth
     wanted = mask.withoutCavities(inside | deep)
     progress("Closing tunnels", 0.55)
-    for radius in settings.openingMm * np.array([0.5, 1.0, 2.0, 4.0]):
+    for radius in openingMm * np.array([0.5, 1.0, 2.0, 4.0]):
         body = mask.withoutCavities(mask.closedByBall(wanted, radius / SPACING_MM))
         contour = surface.meshOf(surface.surfaceOf(np.where(body, 1.0, -1.0), np.zeros(3), 1.0))
         if contour.euler_characteristic == 2:

@@ -63,19 +63,18 @@ def makeDraft(
     draft = HeadDraft(mesh, method)
     if hasVolume:
         progress("Preparing the images", 0.8)
-        images, method = imageOf(volume, found)
-        draft = replace(draft, method=f"{draft.method} {method}", volume=images)
+        images, how = imageOf(volume, found)
+        draft = replace(draft, method=f"{draft.method} {how}", volume=images)
     headMade(draft, warnings)
     if hasSkull:
         progress("Making the skull", 0.85)
         shell = f"a shell from {SCALP_MM:g} to {SCALP_MM + BONE_MM:g} mm below the skin"
-        method = f"Skull: an approximation, {shell}; MRI shows no bone."
+        how = f"Skull: an approximation, {shell}; MRI shows no bone."
+        bone = SkullKind.APPROXIMATION
         if found.isCt:
-            method = "Skull: bone of the CT."
-        method = f"{draft.method} {method}"
-        skull = skullOf(volume, found)
-        kind = SkullKind.BONE if found.isCt else SkullKind.APPROXIMATION
-        draft = replace(draft, method=method, skull=skull, skull_kind=kind)
+            how, bone = "Skull: bone of the CT.", SkullKind.BONE
+        skull, method = skullOf(volume, found), f"{draft.method} {how}"
+        draft = replace(draft, method=method, skull=skull, skull_kind=bone)
     progress("Done", 1.0)
     return draft, warnings
 
@@ -104,7 +103,7 @@ def _findSkin(
         if settings.threshold is not None:
             settings = replace(settings, threshold=settings.threshold + offset)
         found = findHead(volume, settings, progress)
-    mesh = skinOf(found, settings, progress)
+    mesh = skinOf(found, progress)
     checkHead(mesh)
     return volume, found, mesh, warnings + more + skullWarnings(volume, found)
 

@@ -132,24 +132,16 @@ BELOW_BASE_MM = 3.0
 
 @dataclass(frozen=True)
 class HeadSettings:
-    """Settings of the extraction.
-
-    Attributes:
-        threshold: value that parts air from skin; None finds it (Otsu; −475 HU of a CT).
-        baseMm: height (S) of the flat base; None for just above the image's lower edge, or the
-            neck.
-        noiseMm: standard deviation of the smoothing of the image.
-        cavityDepthMm: cavities so deep below the skin are filled: airways, sinuses, ear canals.
-        openingMm: openings up to this width do not count as part of the skin's outside.
-        triangles: how many are aimed at; the flat base adds a few.
-    """
+    """Settings of the extraction."""
 
     threshold: float | None = None
+    """Value that parts air from skin; None finds it (Otsu; −475 HU of a CT)."""
     baseMm: float | None = None
+    """Height (S) of the flat base; None for just above the image's lower edge, or the neck."""
     noiseMm: float = 1.0
-    cavityDepthMm: float = 4.0
+    """Standard deviation of the smoothing of the image."""
     openingMm: float = 12.0
-    triangles: int = 55_000
+    """Openings up to this width do not count as part of the skin's outside."""
 
 
 @dataclass(frozen=True)
@@ -178,7 +170,6 @@ class HeadBody:
 SEGMENT_NAME = "Head"
 BASE_TAG = "RASTrainer.baseMm"
 EDITED_NOISE_MM = 0.8
-
 _HALF = 0.5
 _AIR = 2
 
@@ -211,11 +202,9 @@ def showSegment(node: Any, head: HeadBody) -> str:
 
 @dataclass(frozen=True)
 class SegmentImage:
-    """A segment as it is in the scene.
+    """A segment as it is in the scene: `labels`, 0 outside, end where the segment does.
 
-    Attributes:
-        labels: 0 outside; its image ends where the segment does.
-        baseMm: height (S) of the base that was shown with it, −∞ where none was.
+    `baseMm` is the height (S) of the base that was shown with it, −∞ where none was.
     """
 
     labels: Volume

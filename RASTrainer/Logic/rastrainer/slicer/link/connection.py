@@ -1,4 +1,4 @@
-"""Keeps one connector in the scene and connected, and knows the state of the simulator.
+"""Keeps one connector in the scene and connected, and has each command answered exactly once.
 
 The scene may be cleared of the connector, the simulator restarted, or the line cut silently:
 `followConnection` notices and reconnects; it is to be called a second after the last time at the
@@ -7,21 +7,35 @@ latest, and soon after each event of the connector.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import json
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import slicer
+import vtk
 
+from rastrainer.commands import check_arguments, decode_answer_object
+from rastrainer.errors import InputError
+from rastrainer.igtl.client import Reply
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 from rastrainer.slicer.link.link_status import (
     RECONNECT_AFTER_S,
     LinkObservation,
+    LinkState,
     Peer,
     ProbeResult,
+    judge,
 )
 from rastrainer.slicer.link.probe import Probe
-from rastrainer.slicer.scene.nodes import ORIGINAL_NAME
-from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.scene.nodes import ORIGINAL_NAME, decodedText, shownText
+from rastrainer.slicer.signal import ErrorGuard, Signal
+from rastrainer.slicer.translation import _
+
+CallSoon = Callable[[Callable[[], None]], None]
+"""Calls a function in the host's next turn."""
+OnReply = Callable[[Reply], None]
 
 
 class ConnectorKit(NamedTuple):
@@ -37,6 +51,18 @@ def desktopKit() -> ConnectorKit | None:
     return ConnectorKit(slicer.vtkMRMLIGTLConnectorNode, slicer.vtkSlicerOpenIGTLinkCommand)
 
 
+@dataclass
+class Request:
+    """A command that is to be sent: `content` is JSON; the last two are set once it is sent."""
+
+    name: str
+    content: str
+    timeoutS: float
+    onReply: OnReply
+    command: Any = None
+    deadline: float = 0.0
+
+
 RETRY_S = 1.0
 RETRY_OTHER_S = 5.0
 """Seconds until the next question: soon where a simulator may just be starting, later where
@@ -50,13 +76,20 @@ CONNECT_WITHIN_S = 1.0
 LONGEST_LOOK_S = 1.5
 """At most so much of the time since the last look counts as silence: while Slicer itself is held
 up, such as by loading a volume, it hears no one."""
+MAX_AT_ONCE = 16
+"""Most commands without an answer; the simulator carries out as many at once."""
+MAX_KEPT = 256
+"""Most arrived commands that may wait. The sender has to repeat further ones, as the simulator does
+with trials and answers until they are acknowledged."""
+_LOST = Reply(False, _("The connection to the simulator was lost."))
 
 
 class SimulatorConnection:
-    """One connection to a simulator, restored until `endConnection`.
+    """One connection to a simulator, restored until `disconnect`.
 
     The connector is started only when a simulator has just answered, as anything else might end
-    Slicer: see `rastrainer.slicer.link.probe`.
+    Slicer: see `rastrainer.slicer.link.probe`. Its events come from inside VTK: they only note what
+    has come, and have `processArrivals` called in another turn.
 
     Attributes:
         connector: the connector in the scene; None while there is no simulator to connect to.
@@ -67,8 +100,8 @@ class SimulatorConnection:
         self,
         scene: Any,
         findKit: Callable[[], ConnectorKit | None],
-        onCommandReceived: Callable[[Any, str, Any], None],
         clock: Callable[[], float],
+        callSoon: CallSoon,
     ) -> None:
         self.findKit = findKit
         self.connector: Any | None = None
@@ -76,21 +109,115 @@ class SimulatorConnection:
         self.woken = Signal()
         self._scene = scene
         self._clock = clock
-        self._onCommandReceived = onCommandReceived
+        self._callSoon = callSoon
+        self._isCallDue = False
+        self._guard = ErrorGuard()
         self._kit: ConnectorKit | None = None
         self._address = ("", 0)
         self._probe: Probe | None = None
         self._observerTags: list[int] = []
         self._nextProbe = self._connectsUntil = self._lastLook = 0.0
         self._heartbeatTime: int | None = None
+        self._arrived: deque[tuple[str | bytes, str | bytes]] = deque()
+        self._waiting: deque[Request] = deque()
+        self._sent: list[Request] = []
+        self._abandoned: list[Any] = []
+        self._refused: list[tuple[OnReply, Reply]] = []
 
-    def beginConnection(self, address: tuple[str, int]) -> None:
-        self.endConnection()
-        self._kit = self.findKit()
-        self._address = address
-        self.seen = LinkObservation(f"{address[0]}:{address[1]}", isInstalled=self._kit is not None)
+    def processArrivals(self) -> None:
+        """Deliver replies and commands."""
+        raise NotImplementedError
 
-    def endConnection(self) -> None:
+    def send(
+        self,
+        name: str,
+        arguments: Mapping[str, Any] | None = None,
+        onReply: OnReply = lambda _reply: None,
+        timeoutS: float = 5.0,
+    ) -> None:
+        """Send a command; `onReply` is called in a later turn, exactly once."""
+        check_arguments(name, arguments or {})
+        status = judge(self.seen)
+        if not self.seen.isOpen or status.state is LinkState.WRONG_VERSION:
+            self._refused.append((onReply, Reply(False, status.sentence)))
+            self._processSoon()
+            return
+        content = json.dumps(dict(arguments or {}), allow_nan=False)
+        self._waiting.append(Request(name, content, timeoutS, onReply))
+        self._sendSome()
+
+    def _sendSome(self) -> None:
+        while self._waiting and len(self._sent) < MAX_AT_ONCE:
+            # Commands wait over an open connection only.
+            assert self._kit is not None
+            assert self.connector is not None
+            request = self._waiting.popleft()
+            request.command = command = self._kit.makeCommand()
+            command.SetName(request.name)
+            command.SetCommandContent(request.content)
+            command.SetTimeoutSec(request.timeoutS)
+            self.connector.SendCommand(command)
+            command.AddObserver(command.CommandCompletedEvent, self._processSoon)
+            request.deadline = self._clock() + request.timeoutS
+            self._sent.append(request)
+
+    def _deliverReplies(self) -> None:
+        """Deliver replies that have come or will never come; send waiting commands.
+
+        The connector's own time-out is not enough: without a connection it neither sends a command
+        nor lets one expire.
+        """
+        replies, self._refused = self._refused, []
+        sent, self._sent = self._sent, []
+        for request in sent:
+            reply = self._replyTo(request)
+            if reply is None:
+                self._sent.append(request)
+            else:
+                replies.append((request.onReply, reply))
+                self._abandoned.append(request.command)
+        # The connector may still report on an abandoned one: it must live until then.
+        self._abandoned = [command for command in self._abandoned if command.IsInProgress()]
+        if self.seen.isOpen:
+            self._sendSome()
+        else:
+            replies += [(request.onReply, _LOST) for request in self._waiting]
+            self._waiting.clear()
+        for onReply, reply in replies:
+            self._guard.run("The reply to a command", onReply, reply)
+
+    def _replyTo(self, request: Request) -> Reply | None:
+        command = request.command
+        if command.GetCommandStatus() == command.CommandResponseReceived:
+            if not command.GetSuccessful():
+                sentence = shownText(command.GetErrorMessage())
+                return Reply(False, sentence or _("The simulator refused without giving a reason."))
+            try:
+                data = decode_answer_object(decodedText(command.GetResponseContent()))
+            except InputError:
+                return Reply(False, _("The simulator's answer cannot be read."))
+            return Reply(True, "", data)
+        if not self.seen.isOpen:
+            return _LOST
+        if not command.IsInProgress() or self._clock() > request.deadline:
+            sentence = _("The simulator did not answer {name}.")
+            return Reply(False, sentence.format(name=request.name))
+        return None
+
+    @vtk.calldata_type(vtk.VTK_OBJECT)
+    def _keepCommand(self, _caller: Any, _event: str, command: Any) -> None:
+        """Keep a command of the simulator until it can be handled: this is inside VTK."""
+        if len(self._arrived) < MAX_KEPT:
+            self._arrived.append((command.GetName(), command.GetCommandContent()))
+        self._processSoon()
+
+    def _processSoon(self, *_event: Any) -> None:
+        """Have arrivals processed in another turn; called from inside VTK."""
+        if not self._isCallDue:
+            self._isCallDue = True
+            self._guard.run("A command's event", self._callSoon, self.processArrivals)
+
+    def _endConnection(self) -> None:
         self._searchAnew()
         self._dropConnector()
         self.seen = LinkObservation()
@@ -185,7 +312,7 @@ class SimulatorConnection:
         connector.SetSaveWithScene(False)
         self._scene.AddNode(connector)
         self._observerTags = [
-            connector.AddObserver(connector.CommandReceivedEvent, self._onCommandReceived),
+            connector.AddObserver(connector.CommandReceivedEvent, self._keepCommand),
             *(
                 connector.AddObserver(event, lambda *_event: self.woken.emit())
                 for event in (connector.ConnectedEvent, connector.DisconnectedEvent)

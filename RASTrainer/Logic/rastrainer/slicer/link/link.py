@@ -6,28 +6,23 @@ Everything happens in `process`, which the host calls soon after something has h
 
 from __future__ import annotations
 
-import json
 import logging
 import time
-from collections import deque
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from typing import Any
 
-import vtk
-
-from rastrainer.commands import CommandName, check_arguments, decode_answer_object
+from rastrainer.commands import CommandName, decode_answer_object
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, PROTOCOL_VERSION, DeviceName
-from rastrainer.slicer.link.connection import ConnectorKit, SimulatorConnection
+from rastrainer.slicer.link.connection import CallSoon, ConnectorKit, SimulatorConnection
 from rastrainer.slicer.link.link_status import (
-    LinkState,
+    LinkObservation,
     LinkStatus,
     judge,
     judgeFinding,
     lookingAt,
 )
-from rastrainer.slicer.link.pending_commands import OnReply, PendingCommands, Request
 from rastrainer.slicer.link.probe import Probe
 from rastrainer.slicer.scene.nodes import (
     capturedPointsNode,
@@ -37,19 +32,13 @@ from rastrainer.slicer.scene.nodes import (
     shownText,
     simStateNode,
 )
-from rastrainer.slicer.signal import ErrorGuard, Signal
+from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
-
-CallSoon = Callable[[Callable[[], None]], None]
-"""Calls a function in the host's next turn."""
 
 SOON_S, REST_S = 0.1, 1.0
 """Until the next look while something changes, and while nothing does."""
 POSES_HZ = 30.0
 """Requested rate of poses; software graphics renders them 20 times a second at best."""
-MAX_KEPT = 256
-"""Most commands that may wait. The sender has to repeat further commands, as the simulator does
-with trials and answers until they are acknowledged."""
 COMMANDS_A_TURN, CHARACTERS_A_TURN = 16, 200_000
 """How much is processed before the application may do something else."""
 
@@ -71,7 +60,7 @@ class Link(SimulatorConnection):
         callSoon: CallSoon = lambda _work: None,
     ) -> None:
         """Make a link that is not connected; `callSoon` is called from inside VTK."""
-        super().__init__(scene, findKit, self._onCommand, clock)
+        super().__init__(scene, findKit, clock, callSoon)
         self.statusChanged = Signal()
         self.opened = Signal()
         self.pointsChanged = Signal()
@@ -80,12 +69,7 @@ class Link(SimulatorConnection):
         self.trialAborted = Signal()
         self.stepAnswered = Signal()
         self.status = judge(self.seen)
-        self._callSoon = callSoon
-        self._isCallDue = False
-        self._guard = ErrorGuard()
         self._test: tuple[Probe, str, Callable[[LinkStatus], None]] | None = None
-        self._pending = PendingCommands(self._guard, self._transmit, clock, self._processSoon)
-        self._arrived: deque[tuple[str | bytes, str | bytes]] = deque()
         self._points: tuple = ()
         self._stateText: str | bytes = ""
         self._posesAreWanted = False
@@ -108,7 +92,10 @@ class Link(SimulatorConnection):
 
     def connectTo(self, host: str = DEFAULT_HOST, port: int = DEFAULT_PORT) -> None:
         """Connect to a simulator, and again whenever the connection is lost."""
-        self.beginConnection(_checkedAddress(host, port))
+        host, port = self._address = _checkedAddress(host, port)
+        self._endConnection()
+        self._kit = self.findKit()
+        self.seen = LinkObservation(f"{host}:{port}", isInstalled=self._kit is not None)
         self.process()
         self.woken.emit()
 
@@ -125,7 +112,7 @@ class Link(SimulatorConnection):
 
     def disconnect(self) -> None:
         """Close the connection and do not reconnect."""
-        self.endConnection()
+        self._endConnection()
         self.process()
 
     def requestPoses(self, areWanted: bool) -> None:
@@ -137,23 +124,6 @@ class Link(SimulatorConnection):
             self._posesAreWanted = areWanted
             if self.seen.isOpen:
                 self._sendHello(isFirst=False)
-
-    def send(
-        self,
-        name: str,
-        arguments: Mapping[str, Any] | None = None,
-        onReply: OnReply = lambda _reply: None,
-        timeoutS: float = 5.0,
-    ) -> None:
-        """Send a command; `onReply` is called by a later `process`, exactly once."""
-        check_arguments(name, arguments or {})
-        status = judge(self.seen)
-        if not self.seen.isOpen or status.state is LinkState.WRONG_VERSION:
-            self._pending.refuse(onReply, status.sentence)
-            self._processSoon()
-            return
-        content = json.dumps(dict(arguments or {}), allow_nan=False)
-        self._pending.send(Request(name, content, timeoutS, onReply))
 
     def process(self) -> None:
         """Connect, judge the heartbeat, and emit all arrivals."""
@@ -178,39 +148,16 @@ class Link(SimulatorConnection):
         if status != self.status:
             self.status = status
             self._guard.emit("The link's status", self.statusChanged, status)
-        self._pending.poll(self.seen.isOpen)
+        self._deliverReplies()
         if self.connector is not None:
             self._guard.run("The touched points and the state", self._emitNodes)
         self._emitCommands()
 
-    def _transmit(self, request: Request) -> Any:
-        # Commands are transmitted over an open connection only.
-        assert self._kit is not None
-        assert self.connector is not None
-        command = self._kit.makeCommand()
-        command.SetName(request.name)
-        command.SetCommandContent(request.content)
-        command.SetTimeoutSec(request.timeoutS)
-        self.connector.SendCommand(command)
-        return command
-
-    @vtk.calldata_type(vtk.VTK_OBJECT)
-    def _onCommand(self, _caller: Any, _event: str, command: Any) -> None:
-        """Keep a command of the simulator until it can be handled: this is inside VTK."""
-        if len(self._arrived) < MAX_KEPT:
-            self._arrived.append((command.GetName(), command.GetCommandContent()))
-        self._guard.run("A command's event", self._processSoon)
-
-    def _processSoon(self) -> None:
-        """Have arrivals processed soon; called from inside VTK."""
-        if not self._isCallDue:
-            self._isCallDue = True
-            self._callSoon(self._processArrivals)
-
-    def _processArrivals(self) -> None:
+    def processArrivals(self) -> None:
+        """Deliver replies and commands, as `process` does with all else."""
         self._isCallDue = False
         if not self._scene.IsBatchProcessing():
-            self._pending.poll(self.seen.isOpen)
+            self._deliverReplies()
             self._emitCommands()
 
     def _sendHello(self, isFirst: bool) -> None:

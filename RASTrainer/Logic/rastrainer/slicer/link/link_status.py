@@ -6,7 +6,7 @@ therefore sends a heartbeat every second, with the version of its protocol.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 from rastrainer.protocol import PROTOCOL_VERSION
@@ -35,28 +35,6 @@ class ProbeResult:
     ip: str = ""
     version: int = 0
 
-
-_NAMES = {
-    Peer.WEB_PAGE: _("a web page (HTTP)"),
-    Peer.ENCRYPTED: _("an encrypted port (TLS), such as that of a web page"),
-    Peer.OTHER_OPENIGTLINK: _("another OpenIGTLink program"),
-    Peer.OTHER_PROGRAM: _("another program"),
-}
-_ABSENT = {
-    Peer.UNREACHABLE: (
-        _("No simulator answers at {address}."),
-        _("Start the simulator, or correct the host and port."),
-    ),
-    Peer.UNKNOWN_HOST: (
-        _("There is no computer by that name: {address}."),
-        _("Correct the host, or enter its IPv4 address, such as 127.0.0.1."),
-    ),
-    Peer.WITHOUT_IPV4: (
-        _("Slicer connects by IPv4 only, and {address} is an IPv6 address."),
-        _("Enter its IPv4 address; this computer's own is 127.0.0.1."),
-    ),
-}
-"""Where no program answers: a sentence about it, and one about what to do."""
 
 STALE_AFTER_S = 3.5
 RECONNECT_AFTER_S = 10.0
@@ -91,6 +69,47 @@ NOT_INSTALLED = LinkStatus(
     _("The extension SlicerOpenIGTLink is not installed."),
     _("Install it in the Extensions Manager and restart Slicer."),
 )
+
+
+def _otherProgram(what: str) -> LinkStatus:
+    sentence = _("What answers at {address} is {what}, not the OpenIGTLink port of a simulator.")
+    return LinkStatus(
+        LinkState.OTHER_PROGRAM,
+        sentence.format(address="{address}", what=what),
+        _("Enter the port that the simulator shows for OpenIGTLink: 18944 unless it has another."),
+    )
+
+
+_SILENT = _(
+    "What answers at {address} accepts the connection and sends nothing: "
+    "it is not the OpenIGTLink port of a simulator."
+)
+_FOUND = {
+    Peer.SIMULATOR: LinkStatus(
+        LinkState.CONNECTED, _("A RASTrainer simulator answers at {address}."), _("Press Connect.")
+    ),
+    Peer.UNREACHABLE: LinkStatus(
+        LinkState.ABSENT,
+        _("No simulator answers at {address}."),
+        _("Start the simulator, or correct the host and port."),
+    ),
+    Peer.UNKNOWN_HOST: LinkStatus(
+        LinkState.ABSENT,
+        _("There is no computer by that name: {address}."),
+        _("Correct the host, or enter its IPv4 address, such as 127.0.0.1."),
+    ),
+    Peer.WITHOUT_IPV4: LinkStatus(
+        LinkState.ABSENT,
+        _("Slicer connects by IPv4 only, and {address} is an IPv6 address."),
+        _("Enter its IPv4 address; this computer's own is 127.0.0.1."),
+    ),
+    Peer.SILENT: replace(_otherProgram(""), sentence=_SILENT),
+    Peer.WEB_PAGE: _otherProgram(_("a web page (HTTP)")),
+    Peer.ENCRYPTED: _otherProgram(_("an encrypted port (TLS), such as that of a web page")),
+    Peer.OTHER_OPENIGTLINK: _otherProgram(_("another OpenIGTLink program")),
+    Peer.OTHER_PROGRAM: _otherProgram(_("another program")),
+}
+"""What is said of an address, by who answers there."""
 
 
 @dataclass
@@ -143,27 +162,10 @@ def judge(link: LinkObservation) -> LinkStatus:
 
 def judgeFinding(finding: ProbeResult, address: str) -> LinkStatus:
     """Return in words who answers at an address where no connection is wanted."""
-    if finding.peer in _ABSENT:
-        sentence, remedy = _ABSENT[finding.peer]
-        return LinkStatus(LinkState.ABSENT, sentence.format(address=address), remedy)
-    if finding.peer is Peer.SIMULATOR and finding.version == PROTOCOL_VERSION:
-        sentence = _("A RASTrainer simulator answers at {address}.")
-        return LinkStatus(
-            LinkState.CONNECTED, sentence.format(address=address), _("Press Connect.")
-        )
-    if finding.peer is Peer.SIMULATOR:
+    if finding.peer is Peer.SIMULATOR and finding.version != PROTOCOL_VERSION:
         return _wrongVersion(finding.version)
-    sentence = _("What answers at {address} is {what}, not the OpenIGTLink port of a simulator.")
-    if finding.peer is Peer.SILENT:
-        sentence = _(
-            "What answers at {address} accepts the connection and sends nothing: "
-            "it is not the OpenIGTLink port of a simulator."
-        )
-    return LinkStatus(
-        LinkState.OTHER_PROGRAM,
-        sentence.format(address=address, what=_NAMES.get(finding.peer, "")),
-        _("Enter the port that the simulator shows for OpenIGTLink: 18944 unless it has another."),
-    )
+    found = _FOUND[finding.peer]
+    return replace(found, sentence=found.sentence.format(address=address))
 
 
 def lookingAt(address: str) -> LinkStatus:

@@ -55,11 +55,8 @@ class ChildProcess:
     def __init__(
         self, arguments: Sequence[str | Path], environment: Mapping[str, str] | None = None
     ) -> None:
-        """Start the program, in the environment of `childEnvironment` unless another is given.
-
-        Raises:
-            NotStartedError: it cannot be started.
-        """
+        """Start the program, in the environment of `childEnvironment` unless another is given, or
+        raise `NotStartedError`."""
         self._lines: deque[str] = deque(maxlen=LINES_KEPT)
         self._killAt: float | None = None
         try:
@@ -151,11 +148,9 @@ class ChildResult:
 def runChild(command: Sequence[str | Path], progress: Progress, firstStep: str = "") -> ChildResult:
     """Run a program to its end.
 
-    Args:
-        progress: called many times a second with the step and share that the program has printed
-            last (see `print_progress`); it may let the application draw, and may raise to break
-            the program off, which then ends soon.
-        firstStep: passed to `progress` until the program prints a step.
+    `progress` is called many times a second with the step and share that the program has printed
+    last (see `print_progress`), before with `firstStep`. It may let the application draw, and may
+    raise to break the program off, which then ends soon.
     """
     child, result = ChildProcess(command), ChildResult()
     steps = [(firstStep, 0.0)]
@@ -198,15 +193,14 @@ class OwnProcess:
     def __call__(self, function: str, progress: Progress, *arguments: Any, **named: Any) -> Any:
         """Return what `function(*arguments, **named, progress=…)` returns in a separate process.
 
-        If no such process can be started, the function runs in this thread.
-        `progress` may raise to end the process.
-
-        Args:
-            function: `module:name`; its arguments and its result can be pickled.
+        `function` is `module:name`; its arguments and its result can be pickled. If no such process
+        can be started, it runs in this thread. `progress` may raise to end the process.
         """
         with tempfile.TemporaryDirectory(prefix="RASTrainer-") as temporary:
             folder = Path(temporary)
-            _write(folder / TASK, (function, arguments, named))
+            # Straight to the file, which leaves Python's lock to others.
+            with (folder / TASK).open("wb") as file:
+                pickle.dump((function, arguments, named), file, pickle.HIGHEST_PROTOCOL)
             try:
                 ended = runChild((self._python, "-c", PROGRAM, LOGIC, folder), progress)
             except NotStartedError as error:
@@ -238,10 +232,4 @@ def main(folder: str) -> None:
     except Exception:
         traceback.print_exc()
         sys.exit(1)
-    _write(path / OUTCOME, outcome)
-
-
-def _write(path: Path, value: Any) -> None:
-    """Write a value; arrays go straight to the file, which leaves Python's lock to others."""
-    with path.open("wb") as file:
-        pickle.dump(value, file, pickle.HIGHEST_PROTOCOL)
+    (path / OUTCOME).write_bytes(pickle.dumps(outcome, pickle.HIGHEST_PROTOCOL))

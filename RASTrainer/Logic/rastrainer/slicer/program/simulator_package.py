@@ -33,11 +33,9 @@ DIGEST = re.compile(r"([0-9a-f]{64})  (\S+)\n")
 
 @dataclass(frozen=True)
 class SimulatorPackage:
-    """The simulator as it comes with the module.
+    """The simulator as it comes with the module: the folder of lock, sizes and wheel.
 
-    Attributes:
-        folder: of the lock, the sizes and the wheel.
-        checkout: the repository that contains the module; None if the module was installed.
+    `checkout` is the repository that contains the module; None if the module was installed.
     """
 
     folder: Path
@@ -122,9 +120,8 @@ OPTIONS = (
 def pipArguments(index: str, wheels: Path | None) -> list[str]:
     """Return the options of `pip install`; the hashes of the lock hold for every source.
 
-    Args:
-        index: address of a package index; pip's own where empty.
-        wheels: a folder of wheels to install from without network; None asks the index.
+    `index` is the address of a package index, pip's own where empty; from a folder of `wheels` is
+    installed without network.
     """
     if wheels is not None:
         if not any(wheels.glob("*.whl")):

@@ -36,13 +36,10 @@ class ProgramState(str, Enum):
 class SimulatorProgram:
     """Starts and stops `rastrainer simulator`; call `process` now and then.
 
-    Attributes:
-        pageAddresses: where a browser or a headset finds the simulator's page.
-        fingerprint: SHA-256 of the certificate of the pages in the local network; empty without.
-        kinematics: what computes the robot's, such as "Pinocchio 3.9.0"; empty while not known.
-        pairingCode: that admits a browser or a headset; known only to the program that started it.
-        changed: emits nothing, whenever a state, a sentence, an address or the code has changed.
-        wroteLine: emits each line of its output.
+    A browser or a headset finds its page at `pageAddresses`, and is admitted by `pairingCode`,
+    which only the program that started it knows; `fingerprint` is the SHA-256 of the certificate of
+    the pages in the local network, empty without. `wroteLine` emits each line of its output,
+    `changed` nothing, whenever a state, a sentence, an address or the code has changed.
     """
 
     def __init__(self) -> None:
@@ -52,7 +49,6 @@ class SimulatorProgram:
         self.pageAddresses: list[str] = []
         self.fingerprint = ""
         self.pairingCode = ""
-        self.kinematics = ""
         self.ready = Signal()
         self.changed = Signal()
         self.wroteLine = Signal()
@@ -117,11 +113,11 @@ class SimulatorProgram:
             self._child = None
             self._change(*self._ended(child.process.poll()))
             command, self._next = self._next, None
-            if command is not None:
-                try:
+            try:
+                if command is not None:
                     self.start(command)
-                except InputError as error:
-                    self._change(ProgramState.FAILED, str(error))
+            except InputError as error:
+                self._change(ProgramState.FAILED, str(error))
         elif child.process.poll() is not None and self.state is not ProgramState.STOPPING:
             # Its window, or the real Python of a launcher that was killed.
             self._change(ProgramState.STOPPING, _("The simulator is ending."))
@@ -165,11 +161,10 @@ class SimulatorProgram:
             sentence = _("The simulator runs on port {port}.").format(port=self.port)
             self._change(ProgramState.READY, sentence)
             self.ready.emit()
-        elif said := _KINEMATICS.match(line):
-            self.kinematics = said.group(1)
+        elif kinematics := _KINEMATICS.match(line):
             sentence = _(
                 "The simulator runs on port {port}. {name} computes the robot's kinematics."
-            ).format(port=self.port, name=self.kinematics)
+            ).format(port=self.port, name=kinematics.group(1))
             self._change(ProgramState.READY, sentence)
         elif views := _VIEWS.match(line):
             self.fingerprint = ""

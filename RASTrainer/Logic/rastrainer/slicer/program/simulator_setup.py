@@ -50,14 +50,11 @@ LEFT_OUT, INSTALLING = "Ignoring ", "Installing collected packages"
 class SimulatorSetup:
     """The private folder and the pip that fills it; call `process` now and then.
 
-    Attributes:
-        fetched: packages that pip has fetched, or is fetching.
-        count: packages that it is to fetch on this computer.
-        isInstalling: whether all are there and are being put into the folder.
-        isCanceled: whether the set-up that runs, or ran last, was canceled.
-        progressed: emits each line that pip writes.
-        changed: emits nothing, whenever a set-up begins or ends, or the simulator is removed.
-        finished: emits an error message, empty on success.
+    pip has `fetched` so many of `count` packages, or is fetching the last of them. `isInstalling`
+    says that all are there and are being put into the folder; `isCanceled`, that the set-up that
+    runs, or ran last, was canceled. `progressed` emits each line that pip writes, `finished` an
+    error message, empty on success, and `changed` nothing, whenever a set-up begins or ends, or the
+    simulator is removed.
     """
 
     def __init__(self, python: Path, folder: Path, package: SimulatorPackage) -> None:
@@ -94,8 +91,7 @@ class SimulatorSetup:
         return kept // 10**6 if isinstance(kept, int) else None
 
     def begin(self, index: str = "", wheels: Path | None = None) -> None:
-        """Start the set-up, which replaces an earlier one; the arguments are as for
-        `pipArguments`."""
+        """Start the set-up, which replaces an earlier one; for the arguments see `pipArguments`."""
         if self.isRunning:
             raise InputError(_("The simulator is already being set up."))
         words = ["-m", "pip", "install", *pipArguments(index, wheels)]
@@ -136,7 +132,7 @@ class SimulatorSetup:
         """Forward the output of pip, trim the installed packages, and finish."""
         if self._child is None:
             return
-        isOver, child = self._child.poll(), self._child
+        child, isOver = self._child, self._child.poll()
         for line in child.takeLines():
             if BEGUN.match(line):
                 self.fetched = min(self.fetched + 1, self.count)
@@ -148,14 +144,13 @@ class SimulatorSetup:
             self.progressed.emit(line)
         if not isOver:
             return
-        self._child = None
-        if child.process.poll() == 0 and not self._isTrimming and not self.isCanceled:
+        self._child, status = None, child.process.poll()
+        if status == 0 and not self._isTrimming and not self.isCanceled:
             self._isTrimming = True
-            self._child = ChildProcess(
-                private_command(self._python, self._partial, TRIMMER, str(self._partial))
-            )
+            words = private_command(self._python, self._partial, TRIMMER, str(self._partial))
+            self._child = ChildProcess(words)
             return
-        error = self._finish(child.process.poll())
+        error = self._finish(status)
         self.changed.emit()
         self.finished.emit(error)
 

@@ -24,6 +24,8 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+from rastrainer.python_environment import mapped_files
+
 SIZES = "rastrainer-sizes.json"
 SOURCES = ("rastrainer_simulator", "rastrainer")
 SLICERS_OWN = ("slicer", "panels")
@@ -44,7 +46,6 @@ TESTS = "tests"
 """Folders of this name below any package."""
 BUILDING_ONLY = ("*.a", "*.lib", "*.pyi", "*.pxd", "*.pyx")
 MANY_LIBRARIES = ("vtkmodules", "cmeel.prefix/lib")
-MAPPED = Path("/proc/self/maps")
 MEGABYTE = 10**6
 
 
@@ -78,17 +79,14 @@ def loaded_libraries(folder: Path) -> set[str]:
 
     Empty where that is not known.
     """
-    if not MAPPED.exists():
-        return set()
     names = sorted(third_party_imports(folder))
     try:
         for name in names:
             importlib.import_module(name)
-        lines = MAPPED.read_text(encoding="utf-8", errors="surrogateescape").splitlines()
+        return {Path(path).name for path in mapped_files()}
     except Exception as error:  # a broken library may raise anything
         print(f"The libraries stay as they are: {error}", flush=True)
         return set()
-    return {Path(line.split(maxsplit=5)[5]).name for line in lines if "/" in line}
 
 
 def third_party_imports(folder: Path) -> set[str]:

@@ -13,10 +13,12 @@ from rastrainer import transforms
 from rastrainer.registration.registration import Registration
 from rastrainer.slicer.polydata import vtkArray
 from rastrainer.slicer.scene.nodes import (
+    MODEL,
     Role,
     findNode,
     findOrAddNode,
     nodesOfClass,
+    setValues,
     surfaceOf,
 )
 
@@ -34,7 +36,8 @@ OPACITY_ATTRIBUTE = "RASTrainer.opacity"
 """On a colored head: its opacity before it was colored. Colors are readable only at opacity 1."""
 
 
-def showScalars(model: Any, name: str, ends: tuple[float, float]) -> None:
+def _showColors(model: Any, name: str, ends: tuple[float, float], title: str, rank: int) -> None:
+    """Color a model by its scalars; show their legend in 3D unless one of higher rank is shown."""
     display = model.GetDisplayNode()
     with slicer.util.NodeModify(display):
         display.SetActiveScalar(name, vtk.vtkAssignAttribute.POINT_DATA)
@@ -42,30 +45,19 @@ def showScalars(model: Any, name: str, ends: tuple[float, float]) -> None:
         display.SetScalarRangeFlag(display.UseManualScalarRange)
         display.SetScalarRange(*ends)
         display.SetScalarVisibility(True)
-
-
-def showLegend(node: Any, title: str, rank: int) -> Any | None:
-    """Show the legend of a colored node in 3D, unless one of higher rank is shown.
-
-    Returns None if the scene knows no legends: only Slicer's module Colors has them.
-    """
-    if not node.GetScene().IsNodeClassRegistered(CLASS_NAME):
-        return None
-    legend = slicer.vtkSlicerColorLogic.GetColorLegendDisplayNode(node)
+    # Only Slicer's module Colors has legends.
+    if not model.GetScene().IsNodeClassRegistered(CLASS_NAME):
+        return
+    legend = slicer.vtkSlicerColorLogic.GetColorLegendDisplayNode(model)
     if legend is None:
-        legend = slicer.vtkSlicerColorLogic.AddDefaultColorLegendDisplayNode(node)
-        with slicer.util.NodeModify(legend):
-            legend.SetVisibility2D(False)
-            legend.SetSize(*SIZE)
-            legend.SetPosition(*PLACE)
-            legend.SetLabelFormat("%.2f")
+        legend = slicer.vtkSlicerColorLogic.AddDefaultColorLegendDisplayNode(model)
+        setValues(legend, Visibility2D=False, Size=SIZE, Position=PLACE, LabelFormat="%.2f")
     legend.SetTitleText(title)
     legend.SetAttribute(RANK_ATTRIBUTE, str(rank))
-    _showHighest(node.GetScene())
-    return legend
+    _showHighest(model.GetScene())
 
 
-def hideLegend(node: Any) -> None:
+def _hideLegend(node: Any) -> None:
     """Hide the legend of a node, if it has one; another requested one takes its place."""
     legend = slicer.vtkSlicerColorLogic.GetColorLegendDisplayNode(node)
     if legend is not None:
@@ -80,7 +72,7 @@ def _showHighest(scene: Any) -> None:
     ranks = {legend: int(legend.GetAttribute(RANK_ATTRIBUTE)) for legend in ours}
     nodes = {legend: legend.GetDisplayableNode() for legend in ours if ranks[legend]}
     wanted = [legend for legend, node in nodes.items() if node and node.GetDisplayVisibility()]
-    highest = max(wanted, key=lambda legend: ranks[legend], default=None)
+    highest = max(wanted, key=ranks.__getitem__, default=None)
     for legend in ours:
         legend.SetVisibility(legend is highest)
 
@@ -108,8 +100,7 @@ def colorSkin(
     if model.GetAttribute(OPACITY_ATTRIBUTE) is None:
         model.SetAttribute(OPACITY_ATTRIBUTE, str(display.GetOpacity()))
     display.SetOpacity(1.0)
-    showScalars(model, name, ends)
-    showLegend(model, title, HEAD_RANK)
+    _showColors(model, name, ends, title, HEAD_RANK)
 
 
 def removeHeadColors(model: Any, name: str = TRE_SCALARS) -> None:
@@ -120,7 +111,7 @@ def removeHeadColors(model: Any, name: str = TRE_SCALARS) -> None:
         if former:
             display.SetOpacity(float(former))
             model.RemoveAttribute(OPACITY_ATTRIBUTE)
-        hideLegend(model)
+        _hideLegend(model)
 
 
 LONGEST_ARROW_MM = 40.0
@@ -128,10 +119,7 @@ RESIDUAL_SCALARS = "residual (mm)"
 
 
 def magnification(registration: Registration) -> float:
-    """Return how many times as long as the residuals the arrows are.
-
-    Residuals are about a millimeter on a head of 200: true to scale they could not be seen.
-    """
+    """Return how many times as long as the residuals the arrows are, so that they can be seen."""
     largest = float(registration.residuals_mm.max())
     return next((m for m in (10.0, 5.0, 2.0) if m * largest <= LONGEST_ARROW_MM), 1.0)
 
@@ -144,21 +132,16 @@ def arrowTips(registration: Registration) -> np.ndarray:
 def glyphsPolyData(
     registration: Registration, rows: Iterable[int] | None = None
 ) -> vtk.vtkPolyData:
-    """Return a ball on each fiducial and an arrow along its residual, in RAS mm.
+    """Return a ball on each fiducial, or on those in `rows`, with an arrow along its residual.
 
-    Its point data hold the residual in mm under the name `residual (mm)`. `rows` selects points; by
-    default all.
+    In RAS mm; its scalars are the residual in mm.
     """
     append = vtk.vtkAppendPolyData()
     tips = arrowTips(registration)
     for row in range(len(registration.labels)) if rows is None else rows:
         fixed, residual = registration.fixed_mm[row], float(registration.residuals_mm[row])
-        ball = vtk.vtkSphereSource()
-        ball.SetCenter(fixed)
-        ball.SetRadius(2.2)
-        ball.SetThetaResolution(20)
-        ball.SetPhiResolution(20)
-        ball.Update()
+        ball = setValues(vtk.vtkSphereSource(), Center=fixed, Radius=2.2)
+        setValues(ball, ThetaResolution=20, PhiResolution=20).Update()
         for data in (ball.GetOutput(), arrowPolyData(fixed, tips[row] - fixed)):
             values = np.full(data.GetNumberOfPoints(), residual)
             data.GetPointData().SetScalars(vtkArray(values, RESIDUAL_SCALARS))
@@ -168,21 +151,20 @@ def glyphsPolyData(
 
 
 def showResidualArrows(scene: Any, registration: Registration) -> Any:
-    node = findOrAddNode(scene, "vtkMRMLModelNode", Role.RESIDUAL_ARROWS, "Residual arrows")
+    node = findOrAddNode(scene, MODEL, Role.RESIDUAL_ARROWS, "Residual arrows")
     with slicer.util.NodeModify(node):
         node.SetDescription(f"Residuals, {magnification(registration):g} times as long")
-        showScalars(node, RESIDUAL_SCALARS, residualRange(registration))
         node.SetAndObservePolyData(glyphsPolyData(registration))
-    showLegend(node, "Residual (mm)", ARROWS_RANK)
+    _showColors(node, RESIDUAL_SCALARS, residualRange(registration), "Residual (mm)", ARROWS_RANK)
     return node
 
 
 def clearResidualArrows(scene: Any) -> None:
     """Leave the arrows' model empty: there is no registration that they could show."""
-    node = findNode(scene, "vtkMRMLModelNode", Role.RESIDUAL_ARROWS)
+    node = findNode(scene, MODEL, Role.RESIDUAL_ARROWS)
     if node is not None and node.GetPolyData() and node.GetPolyData().GetNumberOfPoints():
         node.SetAndObservePolyData(vtk.vtkPolyData())
-        hideLegend(node)
+        _hideLegend(node)
 
 
 def residualRange(registration: Registration) -> tuple[float, float]:
@@ -193,12 +175,14 @@ def residualRange(registration: Registration) -> tuple[float, float]:
 def arrowPolyData(start: np.ndarray, vector: np.ndarray, thickness: float = 1.0) -> vtk.vtkPolyData:
     """Return an arrow of length `vector` (3,), mm, whose `thickness` does not depend on it."""
     length = max(float(np.linalg.norm(vector)), 1e-6)
-    arrow = vtk.vtkArrowSource()
-    arrow.SetTipResolution(16)
-    arrow.SetShaftResolution(12)
-    arrow.SetTipLength(min(4.5 * thickness, 0.5 * length) / length)
-    arrow.SetTipRadius(2.0 * thickness / length)
-    arrow.SetShaftRadius(0.8 * thickness / length)
+    arrow = setValues(
+        vtk.vtkArrowSource(),
+        TipResolution=16,
+        ShaftResolution=12,
+        TipLength=min(4.5 * thickness, 0.5 * length) / length,
+        TipRadius=2.0 * thickness / length,
+        ShaftRadius=0.8 * thickness / length,
+    )
     # Its axes: along the arrow, and any two across.
     direction = vector / length
     across = np.cross(direction, np.eye(3)[int(np.argmin(np.abs(direction)))])
@@ -207,7 +191,5 @@ def arrowPolyData(start: np.ndarray, vector: np.ndarray, thickness: float = 1.0)
     place = vtk.vtkTransform()
     place.Concatenate(transforms.rigid(length * axes, start).ravel())
     placed = vtk.vtkTransformPolyDataFilter()
-    placed.SetTransform(place)
-    placed.SetInputConnection(arrow.GetOutputPort())
-    placed.Update()
+    setValues(placed, Transform=place, InputConnection=arrow.GetOutputPort()).Update()
     return placed.GetOutput()

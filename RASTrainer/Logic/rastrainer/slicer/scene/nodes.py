@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -11,6 +12,11 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList
 from rastrainer.protocol import DeviceName
+
+MODEL, SEGMENTATION = "vtkMRMLModelNode", "vtkMRMLSegmentationNode"
+VOLUME, TABLE = "vtkMRMLScalarVolumeNode", "vtkMRMLTableNode"
+LIST, LINE = "vtkMRMLMarkupsFiducialNode", "vtkMRMLMarkupsLineNode"
+TRANSFORM, TEXT = "vtkMRMLLinearTransformNode", "vtkMRMLTextNode"
 
 ROLE_ATTRIBUTE = "RASTrainer.role"
 
@@ -88,6 +94,20 @@ def findOrAddNode(scene: Any, className: str, role: str, name: str) -> Any:
     return node
 
 
+def setValues(thing: Any, **values: Any) -> Any:
+    """Call `Set…` of a VTK object for each value and return it; a node reports one change."""
+    isNode = thing.IsA("vtkMRMLNode")
+    with slicer.util.NodeModify(thing) if isNode else contextlib.nullcontext():
+        for name, value in values.items():
+            getattr(thing, f"Set{name}")(value)
+    return thing
+
+
+def setDisplay(node: Any, **values: Any) -> Any:
+    """Call `Set…` of a node's display for each value; return the display."""
+    return setValues(node.GetDisplayNode(), **values)
+
+
 SELECTION = "vtkMRMLSelectionNodeSingleton"
 INTERACTION = "vtkMRMLInteractionNodeSingleton"
 
@@ -160,6 +180,7 @@ ORIGINAL_NAME = "OriginalNodeName"
 """The attribute in which Slicer's connector keeps the name of the device that fills a node."""
 
 TOUCH_COLOR = (0.95, 0.55, 0.1)
+TOUCH_LOOK = {"SelectedColor": TOUCH_COLOR, "GlyphScale": 2.5, "TextScale": 3.5}
 POINT_PIXELS = 5.0
 
 
@@ -177,46 +198,35 @@ def prepareNodes(scene: Any) -> Iterator[Any]:
 
 def poseNode(scene: Any, device: str) -> Any:
     """Return the transform that the connector fills for a device, or a new one; never saved."""
-    node = _node(scene, "vtkMRMLLinearTransformNode", device, device)
-    node.SetSaveWithScene(False)
-    return node
+    return setValues(_adopted(scene, TRANSFORM, device, device), SaveWithScene=False)
 
 
 def capturedPointsNode(scene: Any) -> Any:
     """Return the list of touched points (World, mm) under any name, or add it."""
-    className, role = "vtkMRMLMarkupsFiducialNode", Role.CAPTURED_POINTS
-    node = findNode(scene, className, role)
+    node = findNode(scene, LIST, Role.CAPTURED_POINTS)
     if node is None:
-        node = _node(scene, className, role, DeviceName.CAPTURED_POINTS)
+        node = _adopted(scene, LIST, Role.CAPTURED_POINTS, DeviceName.CAPTURED_POINTS)
         node.SetLocked(True)
         node.CreateDefaultDisplayNodes()
-        display = node.GetDisplayNode()
-        with slicer.util.NodeModify(display):
-            display.SetSelectedColor(TOUCH_COLOR)
-            display.SetGlyphScale(2.5)
-            display.SetTextScale(3.5)
-            display.SetOccludedVisibility(True)
+        setDisplay(node, **TOUCH_LOOK, OccludedVisibility=True)
     return node
 
 
 def simStateNode(scene: Any) -> Any:
     """Return the text of the simulator's state, or a new one; it is never saved."""
-    node = _node(scene, "vtkMRMLTextNode", Role.SIM_STATE, DeviceName.SIM_STATE)
-    node.SetSaveWithScene(False)
-    return node
+    node = _adopted(scene, TEXT, Role.SIM_STATE, DeviceName.SIM_STATE)
+    return setValues(node, SaveWithScene=False)
 
 
 def drawAsPoints(node: Any) -> None:
     node.SetSelectable(False)
-    display = node.GetDisplayNode()
-    with slicer.util.NodeModify(display):
-        display.SetRepresentation(display.PointsRepresentation)
-        display.SetPointSize(POINT_PIXELS)
-        display.SetColor(TOUCH_COLOR)
-        display.SetLighting(False)
+    points = slicer.vtkMRMLDisplayNode.PointsRepresentation
+    setDisplay(
+        node, Representation=points, PointSize=POINT_PIXELS, Color=TOUCH_COLOR, Lighting=False
+    )
 
 
-def _node(scene: Any, className: str, role: str, name: str) -> Any:
+def _adopted(scene: Any, className: str, role: str, name: str) -> Any:
     """Return the node with the role, else with the name, else a new node."""
     node = findNode(scene, className, role)
     if node is None:

@@ -11,12 +11,15 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.slicer.scene.nodes import (
     INTERACTION,
-    ROLE_ATTRIBUTE,
+    LINE,
+    LIST,
     SELECTION,
     Role,
+    addNode,
     findOrAddNode,
     labelOf,
     nodesOf,
+    setDisplay,
     setPoints,
 )
 from rastrainer.slicer.translation import _
@@ -38,8 +41,8 @@ def stopPlacing(scene: Any) -> None:
 
 
 TARGET_COLOR = (0.85, 0.2, 0.55)
-LIST, LINE = "vtkMRMLMarkupsFiducialNode", "vtkMRMLMarkupsLineNode"
 ENDS = 2
+"""Points of a line: its entry and its target."""
 
 
 class PlacedPoint(NamedTuple):
@@ -52,17 +55,24 @@ class PlacedPoint(NamedTuple):
 
 def placedPoints(node: Any | None, inRas: bool = False) -> list[PlacedPoint]:
     """Return the points of a node that are placed, and not only under the mouse."""
-    points: list[PlacedPoint] = []
     if node is None:
-        return points
-    for row in range(node.GetNumberOfControlPoints()):
-        if node.GetNthControlPointPositionStatus(row) == node.PositionDefined:
-            place = node.GetNthControlPointPosition(row)
-            if inRas:
-                place = node.GetNthControlPointPositionWorld(row)
-            isSelected = bool(node.GetNthControlPointSelected(row))
-            points.append(PlacedPoint(labelOf(node, row), place, isSelected))
-    return points
+        return []
+    place = node.GetNthControlPointPositionWorld if inRas else node.GetNthControlPointPosition
+    return [
+        PlacedPoint(labelOf(node, row), place(row), bool(node.GetNthControlPointSelected(row)))
+        for row in range(node.GetNumberOfControlPoints())
+        if node.GetNthControlPointPositionStatus(row) == node.PositionDefined
+    ]
+
+
+def unfinishedLine(scene: Any, role: str, name: str) -> Any:
+    """Return the first line of a role that lacks its entry or target, or a new one."""
+    for line in nodesOf(scene, LINE, role):
+        if len(placedPoints(line)) < ENDS:
+            return line
+    line = addNode(scene, LINE, role, scene.GenerateUniqueName(name))
+    line.CreateDefaultDisplayNodes()
+    return line
 
 
 def putPoints(node: Any, points: Sequence[PlacedPoint]) -> None:
@@ -83,8 +93,9 @@ class UndoablePoints:
     def remember(self, node: Any) -> list[PlacedPoint]:
         """Return the placed points, which `undo` will restore; the next click places none."""
         stopPlacing(self._scene)
-        self._before.append((node.GetID(), placedPoints(node)))
-        return placedPoints(node)
+        points = placedPoints(node)
+        self._before.append((node.GetID(), list(points)))
+        return points
 
     @property
     def canUndo(self) -> bool:
@@ -118,13 +129,7 @@ class PlanPoints(UndoablePoints):
 
     def newTrajectory(self) -> Any:
         """Return a line that lacks its entry or target, for the next clicks."""
-        lines = nodesOf(self._scene, LINE, Role.PLAN_TRAJECTORY)
-        node = next((line for line in lines if len(placedPoints(line)) < ENDS), None)
-        if node is None:
-            name = self._scene.GenerateUniqueName(_("Planned trajectory"))
-            node = self._scene.AddNewNodeByClass(LINE, name)
-            node.SetAttribute(ROLE_ATTRIBUTE, Role.PLAN_TRAJECTORY)
-            node.CreateDefaultDisplayNodes()
+        node = unfinishedLine(self._scene, Role.PLAN_TRAJECTORY, _("Planned trajectory"))
         return self._readyToPlace(node)
 
     def remove(self, node: Any | None, row: int = -1) -> None:
@@ -137,8 +142,7 @@ class PlanPoints(UndoablePoints):
         putPoints(node, points)
 
     def _readyToPlace(self, node: Any) -> Any:
-        node.GetDisplayNode().SetSelectedColor(TARGET_COLOR)
-        node.GetDisplayNode().SetOccludedVisibility(True)
+        setDisplay(node, SelectedColor=TARGET_COLOR, OccludedVisibility=True)
         self.remember(node)
         return node
 

@@ -26,21 +26,26 @@ from rastrainer.procedure.plan import Checkpoint, Procedure, ProcedureTrajectory
 from rastrainer.slicer.polydata import meshPolyData
 from rastrainer.slicer.scene.error_colors import arrowPolyData
 from rastrainer.slicer.scene.nodes import (
+    LINE,
+    LIST,
+    MODEL,
     ROLE_ATTRIBUTE,
+    SEGMENTATION,
+    TABLE,
     Role,
     addNode,
     findOrAddNode,
     nodesOf,
     nodesOfClass,
     removeNode,
+    setDisplay,
     setPoints,
     worldPoints,
 )
-from rastrainer.slicer.scene.plan_points import ENDS, LINE, LIST, TARGET_COLOR, placedPoints
-from rastrainer.slicer.scene.tables import showTable
+from rastrainer.slicer.scene.plan_points import ENDS, TARGET_COLOR, placedPoints, unfinishedLine
+from rastrainer.slicer.scene.tables import Columns, showTable
 from rastrainer.slicer.translation import _
 
-MODEL, SEGMENTATION = "vtkMRMLModelNode", "vtkMRMLSegmentationNode"
 DIAMETER_ATTRIBUTE, SAFETY_ATTRIBUTE = "RASTrainer.diameterMm", "RASTrainer.safetyMm"
 NO_GO_ATTRIBUTE = "RASTrainer.noGo"
 ORDER_ATTRIBUTE, LAST = "RASTrainer.order", 1e6
@@ -54,34 +59,21 @@ def planLines(scene: Any) -> list[Any]:
     return sorted(lines, key=lambda line: float(line.GetAttribute(ORDER_ATTRIBUTE) or LAST))
 
 
-def raiseLine(scene: Any, line: Any) -> None:
-    lines = planLines(scene)
-    place = lines.index(line)
-    if place > 0:
-        lines[place - 1 : place + 1] = [line, lines[place - 1]]
-    _noteOrder(lines)
+def placeLine(scene: Any, line: Any, place: int) -> None:
+    """Give a line a place in the order of the plan, and restore it if it was removed."""
+    if line.GetScene() is None:
+        scene.AddNode(line)
+        line.CreateDefaultDisplayNodes()
+    lines = [each for each in planLines(scene) if each is not line]
+    for number, each in enumerate([*lines[:place], line, *lines[place:]]):
+        each.SetAttribute(ORDER_ATTRIBUTE, str(number))
 
 
 def newPlanLine(scene: Any) -> Any:
     """Return a line of the plan that lacks its entry or target, for the next clicks."""
-    unfinished = [line for line in planLines(scene) if len(placedPoints(line)) < ENDS]
-    if unfinished:
-        return unfinished[0]
-    return _newLine(scene, Role.PLAN_LINE, scene.GenerateUniqueName(_("Line")))
-
-
-def removeLine(scene: Any, line: Any) -> int:
-    """Return the place that the line had, for `restoreLine`."""
-    place = planLines(scene).index(line)
-    scene.RemoveNode(line)
-    return place
-
-
-def restoreLine(scene: Any, line: Any, place: int) -> None:
-    lines = planLines(scene)
-    scene.AddNode(line)
-    line.CreateDefaultDisplayNodes()
-    _noteOrder([*lines[:place], line, *lines[place:]])
+    line = unfinishedLine(scene, Role.PLAN_LINE, _("Line"))
+    setDisplay(line, SelectedColor=TARGET_COLOR, OccludedVisibility=True)
+    return line
 
 
 def instrumentOf(line: Any) -> tuple[float, float]:
@@ -117,7 +109,8 @@ def showPlan(
         if node.GetAttribute(ROLE_ATTRIBUTE) == Role.NO_GO:
             scene.RemoveNode(node)
     for trajectory in trajectories:
-        line = _newLine(scene, Role.PLAN_LINE, trajectory.name)
+        line = newPlanLine(scene)
+        line.SetName(trajectory.name)
         setInstrument(line, trajectory.diameter_mm, trajectory.safety_mm)
         setPoints(
             line, (_("Entry"), _("Target")), np.array([trajectory.entry_ras, trajectory.target_ras])
@@ -127,8 +120,7 @@ def showPlan(
         model.SetAttribute(ROLE_ATTRIBUTE, Role.NO_GO)
         model.SetAndObservePolyData(meshPolyData(mesh))
         model.CreateDefaultDisplayNodes()
-        model.GetDisplayNode().SetColor(NO_GO_COLOR)
-        model.GetDisplayNode().SetVisibility2D(True)
+        setDisplay(model, Color=NO_GO_COLOR, Visibility2D=True)
         setNoGo(model, True)
     node = checkpointList(scene)
     names = [checkpoint.name for checkpoint in checkpoints]
@@ -153,13 +145,6 @@ def setNoGo(node: Any, isNoGoNow: bool) -> None:
     node.SetAttribute(NO_GO_ATTRIBUTE, "yes" if isNoGoNow else None)
 
 
-def _noteOrder(lines: list[Any]) -> None:
-    for number, line in enumerate(lines):
-        line.SetAttribute(ORDER_ATTRIBUTE, str(number))
-
-
-TRAJECTORY_ATTRIBUTE = "RASTrainer.trajectory"
-"""On a line: the name of its trajectory."""
 THICKNESS = 0.3
 """Thickness of the arrows, which are true to scale, relative to arrows of residuals."""
 
@@ -173,7 +158,7 @@ def showPlannedLines(scene: Any, procedure: Procedure | None) -> None:
         _showLines(scene, role, "{}", {})
     for role in (Role.ERRORS_BY_REGISTRATION, Role.ERRORS_BY_HAND):
         removeNode(scene, MODEL, role)
-    removeNode(scene, "vtkMRMLTableNode", Role.PROCEDURE_ERRORS)
+    removeNode(scene, TABLE, Role.PROCEDURE_ERRORS)
     planned = [] if procedure is None else procedure.trajectories
     lines = {each.name: (each.entry_ras, each.target_ras) for each in planned}
     _showLines(scene, Role.PLANNED_LINE, "{}", lines)
@@ -197,7 +182,6 @@ def showProcedureErrors(scene: Any, analysis: ProcedureAnalysis, lines: Sequence
 
 
 _COLORS = {
-    Role.PLAN_LINE: TARGET_COLOR,
     Role.PLANNED_LINE: PLANNED_COLOR,
     Role.REGISTERED_LINE: REGISTERED_COLOR,
     Role.TRUE_LINE: PLACED_COLOR,
@@ -210,29 +194,21 @@ def _showLines(scene: Any, role: str, title: str, lines: Mapping[str, Any]) -> N
     for node in nodes[len(lines) :]:
         scene.RemoveNode(node)
     for row, (name, ends) in enumerate(lines.items()):
-        node = nodes[row] if row < len(nodes) else _newLine(scene, role)
-        if node.GetName() != title.format(name):
-            node.SetName(title.format(name))
-        node.SetAttribute(TRAJECTORY_ATTRIBUTE, name)
+        node = nodes[row] if row < len(nodes) else addNode(scene, LINE, role, "")
+        node.SetName(title.format(name))
         # Only the planned lines show a label, at their entries.
         setPoints(node, (name, ""), np.array(ends))
-
-
-def _newLine(scene: Any, role: str, name: str = "") -> Any:
-    node = addNode(scene, LINE, role, name)
-    node.CreateDefaultDisplayNodes()
-    display = node.GetDisplayNode()
-    display.SetSelectedColor(_COLORS[role])
-    display.SetOccludedVisibility(True)
-    if role == Role.PLAN_LINE:
-        setInstrument(node, USUAL_DIAMETER_MM, USUAL_SAFETY_MM)
-        return node
-    node.SetLocked(True)
-    display.SetPropertiesLabelVisibility(False)
-    display.SetPointLabelsVisibility(role == Role.PLANNED_LINE)
-    display.SetGlyphScale(1.0)
-    display.SetTextScale(2.5)
-    return node
+        node.SetLocked(True)
+        node.CreateDefaultDisplayNodes()
+        setDisplay(
+            node,
+            SelectedColor=_COLORS[role],
+            OccludedVisibility=True,
+            PropertiesLabelVisibility=False,
+            PointLabelsVisibility=role == Role.PLANNED_LINE,
+            GlyphScale=1.0,
+            TextScale=2.5,
+        )
 
 
 def _showArrows(
@@ -253,8 +229,7 @@ def _showArrows(
         append.Update()
         node = findOrAddNode(scene, MODEL, role, name)
         node.SetAndObservePolyData(append.GetOutput())
-        node.GetDisplayNode().SetColor(color)
-        node.GetDisplayNode().SetVisibility2D(True)
+        setDisplay(node, Color=color, Visibility2D=True)
 
 
 def _showTable(scene: Any, each: Sequence[TrajectoryErrors]) -> Any:
@@ -265,7 +240,7 @@ def _showTable(scene: Any, each: Sequence[TrajectoryErrors]) -> Any:
             f"{title}, by hand or robot (mm)": [split.by_hand_mm for split in splits],
         }
 
-    columns: dict[str, Sequence[Any]] = {
+    columns: Columns = {
         "trajectory": [errors.trajectory for errors in each],
         "aligned by": ["robot" if errors.self_aligned else "hand" for errors in each],
         **parts("entry point error", [errors.entry_point_error for errors in each]),

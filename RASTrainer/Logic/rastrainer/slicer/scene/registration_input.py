@@ -19,13 +19,7 @@ from rastrainer.registration.fits import extents
 from rastrainer.registration.localization_error import LocalizationError, error_along_surface
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.warnings import SAME_PLACE, RegistrationWarning, find_order
-from rastrainer.slicer.scene.nodes import (
-    isUsed,
-    labelsOf,
-    surfaceOf,
-    usedPoints,
-    worldPoints,
-)
+from rastrainer.slicer.scene.nodes import isUsed, labelsOf, surfaceOf, usedPoints, worldPoints
 from rastrainer.slicer.translation import _
 
 USUAL_FLE_MM = 1.0
@@ -35,12 +29,10 @@ estimated from the residuals."""
 
 @dataclass(frozen=True)
 class Choices:
-    """The user's changes to the pairs.
+    """The user's changes to the pairs, by label.
 
-    Attributes:
-        excluded: labels of pairs that are left out.
-        renamed: label in the moving list → label that it belongs to.
-        fle: label → localization error, RMS length in mm, of points that do not have the usual one.
+    `renamed` gives moving points other labels; `fle` is the localization error of points that do
+    not have the usual one, RMS length in mm.
     """
 
     excluded: frozenset[str] = frozenset()
@@ -72,15 +64,12 @@ class Choices:
 
 @dataclass(frozen=True)
 class Pairs:
-    """Paired points, mm.
+    """Paired points, (n, 3) float, mm: moving in the list's own frame, fixed in RAS.
 
     Attributes:
         labels: one for each pair, in the order of the moving list.
-        moving: (n, 3) float, in the moving list's own frame.
-        fixed: (n, 3) float, RAS.
         missing: labels of fixed points that have no partner yet.
-        excluded: labels of the pairs that were left out, by the user's choices or because Slicer
-            would not use one of the points.
+        excluded: labels of left out pairs, by choice or because Slicer would not use a point.
     """
 
     labels: tuple[str, ...]

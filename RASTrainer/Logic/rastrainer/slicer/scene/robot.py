@@ -10,10 +10,13 @@ import vtk
 from rastrainer.protocol import DeviceName
 from rastrainer.slicer.polydata import trianglesPolyData, vtkArray
 from rastrainer.slicer.scene.nodes import (
+    MODEL,
     ROLE_ATTRIBUTE,
+    TRANSFORM,
     Role,
     findNode,
     poseNode,
+    setValues,
 )
 from rastrainer.slicer.scene.robot_description import LinkMesh
 
@@ -27,18 +30,14 @@ def missingLinks(scene: Any) -> list[int]:
 def addLink(scene: Any, number: int, mesh: LinkMesh) -> None:
     """Show a link of the robot, transformed by the node that the connection fills."""
     poseNode(scene, DeviceName.LINK_TO_WORLD[number])
-    # Everything is set before the node is added, so each view draws it once.
-    display = slicer.vtkMRMLModelDisplayNode()
-    display.SetSaveWithScene(False)
+    # Everything is set before the node is added, so each view draws it once. It is rebuilt from
+    # the module's files, so a saved scene need not contain it.
+    display = setValues(slicer.vtkMRMLModelDisplayNode(), SaveWithScene=False)
     display.SetActiveScalar(COLORS, vtk.vtkAssignAttribute.POINT_DATA)
-    display.SetScalarRangeFlag(display.UseDirectMapping)
-    display.SetScalarVisibility(True)
+    setValues(display, ScalarRangeFlag=display.UseDirectMapping, ScalarVisibility=True)
     scene.AddNode(display)
-    node = slicer.vtkMRMLModelNode()
-    node.SetName(f"Robot link {number}")
+    node = setValues(slicer.vtkMRMLModelNode(), Name=f"Robot link {number}", SaveWithScene=False)
     node.SetAttribute(ROLE_ATTRIBUTE, f"{Role.ROBOT} link {number}")
-    # It is rebuilt from the module's files, so a saved scene need not contain it.
-    node.SetSaveWithScene(False)
     node.SetSelectable(False)
     surface = trianglesPolyData(mesh.points, mesh.triangles, mesh.normals)
     surface.GetPointData().SetScalars(vtkArray(mesh.colors, COLORS))
@@ -50,7 +49,7 @@ def addLink(scene: Any, number: int, mesh: LinkMesh) -> None:
 def placeRobot(scene: Any, worldTransform: Any | None) -> None:
     """Let the robot follow its poses, with World placed by `worldTransform`."""
     for number, device in enumerate(DeviceName.LINK_TO_WORLD):
-        pose = scene.GetFirstNode(device, "vtkMRMLLinearTransformNode")
+        pose = scene.GetFirstNode(device, TRANSFORM)
         node = robotNode(scene, number)
         if pose is None and node is None:
             continue
@@ -71,4 +70,4 @@ def setRobotVisible(scene: Any, visible: bool) -> None:
 
 def robotNode(scene: Any, number: int) -> Any | None:
     """Return the model of a link, 0 to 7, or None; the tool belongs to link 7."""
-    return findNode(scene, "vtkMRMLModelNode", f"{Role.ROBOT} link {number}")
+    return findNode(scene, MODEL, f"{Role.ROBOT} link {number}")

@@ -10,7 +10,6 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import slicer
 import vtk
 
@@ -23,26 +22,29 @@ from rastrainer.slicer.background_work import BackgroundWork, CallLater, callNow
 from rastrainer.slicer.polydata import meshPolyData, vtkArray
 from rastrainer.slicer.scene.nodes import (
     CONTENT_ATTRIBUTE,
+    LINE,
+    LIST,
+    MODEL,
     TASK_ATTRIBUTE,
+    VOLUME,
     Role,
     findNode,
     findOrAddNode,
     nodesOfClass,
     removeNode,
+    setDisplay,
     setPoints,
 )
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 
-MODEL, VOLUME = "vtkMRMLModelNode", "vtkMRMLScalarVolumeNode"
-LINE = "vtkMRMLMarkupsLineNode"
 SKIN_COLOR = (0.87, 0.72, 0.62)
 SKULL_COLOR = (0.95, 0.92, 0.82)
 SKIN_OPACITY_OVER_SKULL = 0.5
 OUTLINE_PIXELS = 2
 """Width of the outlines of head and skull in slice views: one pixel is hardly visible on an MRI."""
 
-FIDUCIAL_COLOR = (0.25, 0.55, 0.95)
+FIDUCIAL_LOOK = {"SelectedColor": (0.25, 0.55, 0.95), "GlyphScale": 2.0, "TextScale": 3.5}
 TARGET_COLOR = (0.2, 0.75, 0.35)
 
 
@@ -75,20 +77,15 @@ def showTask(
     A trial by another method shows its touched landmarks instead.
     """
     task = task_by_method(scenario, taskName, method)
-    node = findOrAddNode(
-        scene, "vtkMRMLMarkupsFiducialNode", Role.FIXED_FIDUCIALS, f"{task.title} fiducials"
-    )
+    node = findOrAddNode(scene, LIST, Role.FIXED_FIDUCIALS, "")
     name = taskKey(scenario.name, task.name)
     stamp = f"{name} {sha256(task.fiducials.tobytes()).hexdigest()}"
     if node.GetAttribute(CONTENT_ATTRIBUTE) != stamp:
-        display = node.GetDisplayNode()
-        with slicer.util.NodeModify(node), slicer.util.NodeModify(display):
+        with slicer.util.NodeModify(node):
             node.SetName(f"{task.title} fiducials")
             setPoints(node, task.labels, task.fiducials)
             node.SetLocked(True)
-            display.SetSelectedColor(FIDUCIAL_COLOR)
-            display.SetGlyphScale(2.0)
-            display.SetTextScale(3.5)
+            setDisplay(node, **FIDUCIAL_LOOK)
         node.SetAttribute(TASK_ATTRIBUTE, name)
         node.SetAttribute(CONTENT_ATTRIBUTE, stamp)
     return node
@@ -119,35 +116,26 @@ def _showSurface(
     node.SetName(name)
     # Another scenario's head does not belong to these points.
     node.SetAndObservePolyData(None)
-    display = node.GetDisplayNode()
     # All at once, and before the surface comes: at each change every view would cut or redraw it.
-    with slicer.util.NodeModify(display):
-        display.SetColor(color)
-        display.SetOpacity(opacity)
-        display.SetVisibility2D(True)
-        display.SetSliceIntersectionThickness(OUTLINE_PIXELS)
+    outline = {"Visibility2D": True, "SliceIntersectionThickness": OUTLINE_PIXELS}
+    setDisplay(node, Color=color, Opacity=opacity, **outline)
 
 
 def _showPlan(scene: Any, scenario: Scenario) -> None:
     """Show the targets, the first of which is where the target error is reported, and the line."""
-    targets = findOrAddNode(scene, "vtkMRMLMarkupsFiducialNode", Role.TARGET, "Targets")
-    names = [scenario.target.name, *(target.name for target in scenario.targets)]
-    places = [scenario.target.position_ras, *(target.position_ras for target in scenario.targets)]
-    setPoints(targets, names, np.array(places))
-    showAsPlanned(targets)
-    planned = scenario.trajectory
-    if planned is None:
+    targets, line = (scenario.target, *scenario.targets), scenario.trajectory
+    shown = [(LIST, Role.TARGET, "Targets", [(each.name, each.position_ras) for each in targets])]
+    if line is None:
         removeNode(scene, LINE, Role.TRAJECTORY)
-        return
-    line = findOrAddNode(scene, LINE, Role.TRAJECTORY, planned.name)
-    line.SetName(planned.name)
-    setPoints(line, ("Entry", "Target"), np.array([planned.entry_ras, planned.target_ras]))
-    showAsPlanned(line)
-
-
-def showAsPlanned(node: Any) -> None:
-    node.SetLocked(True)
-    node.GetDisplayNode().SetSelectedColor(TARGET_COLOR)
+    else:
+        ends = [("Entry", line.entry_ras), ("Target", line.target_ras)]
+        shown.append((LINE, Role.TRAJECTORY, line.name, ends))
+    for className, role, name, points in shown:
+        node = findOrAddNode(scene, className, role, name)
+        node.SetName(name)
+        setPoints(node, *zip(*points, strict=True))
+        node.SetLocked(True)
+        setDisplay(node, SelectedColor=TARGET_COLOR)
 
 
 def requestVolume(scene: Any, scenario: Scenario) -> None:
@@ -164,8 +152,7 @@ def requestVolume(scene: Any, scenario: Scenario) -> None:
         return
     node = findOrAddNode(scene, VOLUME, Role.HEAD_VOLUME, scenario.title)
     _requestFile(node, scenario, file.file)
-    display = node.GetDisplayNode()
-    display.SetAutoWindowLevel(False)
+    display = setDisplay(node, AutoWindowLevel=False)
     display.SetWindowLevel(file.window, file.level)
 
 
@@ -216,7 +203,7 @@ _SHOWN = (
 class SceneFileLoader:
     """Fills the nodes of `showScenario` from files: read in the background, one shown in a turn.
 
-    A node holds the file's content, so that a saved scene carries it. It has no storage node:
+    A node holds the file's content, so that a saved scene contains it. It has no storage node:
     Slicer's *Save* would offer to overwrite the scenario's file.
 
     Attributes:
@@ -229,28 +216,25 @@ class SceneFileLoader:
         self.problemFound = Signal()
         self._scene = scene
         self._work = work
-        self._requested: dict[str, tuple[str, ...]] = {}
+        self._reading: set[tuple[str, ...]] = set()
 
     def process(self) -> None:
         """Start reading requested files; called about ten times a second."""
         for className, role, problem in _SHOWN:
             requested = requestedFile(findNode(self._scene, className, role))
-            if requested != self._requested.get(role, ()):
-                self._requested[role] = requested
-                if requested:
-                    read = read_nrrd if className == VOLUME else _readMesh
-                    self._work.do(
-                        partial(read, Path(requested[-1])),
-                        partial(self._take, role, requested),
-                        partial(self._refuse, role, requested, problem),
-                    )
+            if requested and requested not in self._reading:
+                self._reading.add(requested)
+                self._work.do(
+                    partial(read_nrrd if className == VOLUME else _readMesh, Path(requested[-1])),
+                    partial(self._take, requested),
+                    partial(self._refuse, requested, problem),
+                )
 
-    def _take(self, role: str, requested: tuple[str, ...], found: Any) -> None:
-        node = self._awaiting(role, requested)
+    def _take(self, requested: tuple[str, ...], found: Any) -> None:
+        node = self._awaiting(requested)
         if node is None:
             return
         node.RemoveAttribute(FILE_ATTRIBUTE)
-        className, nodeId = node.GetClassName(), node.GetID()
         if isinstance(found, HeadMesh):
             node.SetAndObservePolyData(meshPolyData(found))
         else:
@@ -260,29 +244,24 @@ class SceneFileLoader:
             data.GetPointData().SetScalars(vtkArray(values.ravel(order="F")))
             node.SetIJKToRASMatrix(slicer.util.vtkMatrixFromArray(ijkToRas))
             node.SetAndObserveImageData(data)
+        self._work.later(partial(self._emitShown, node))
 
-        def emitShown() -> None:
-            node = findNode(self._scene, className, role)
-            if node is not None and node.GetID() == nodeId:
-                if node.IsA(VOLUME):
-                    showAsBackground(self._scene, node, self._work.later)
-                self.shown.emit(node)
+    def _emitShown(self, node: Any) -> None:
+        if node.GetScene() is self._scene:
+            if node.IsA(VOLUME):
+                showAsBackground(self._scene, node, self._work.later)
+            self.shown.emit(node)
 
-        self._work.later(emitShown)
-
-    def _refuse(
-        self, role: str, requested: tuple[str, ...], problem: str, error: Exception
-    ) -> None:
-        node = self._awaiting(role, requested)
+    def _refuse(self, requested: tuple[str, ...], problem: str, error: Exception) -> None:
+        node = self._awaiting(requested)
         if node is not None:
             self._scene.RemoveNode(node)
             if isinstance(error, InputError):
                 self.problemFound.emit(problem.format(problem=error))
 
-    def _awaiting(self, role: str, requested: tuple[str, ...]) -> Any | None:
+    def _awaiting(self, requested: tuple[str, ...]) -> Any | None:
         """Return the node that still requests this file; None if there is none."""
-        # In a cleared scene the next node has the same ID, and may request the same at once.
-        self._requested[role] = ()
+        self._reading.discard(requested)
         node = self._scene.GetNodeByID(requested[0])
         return node if requestedFile(node) == requested else None
 

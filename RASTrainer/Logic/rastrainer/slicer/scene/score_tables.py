@@ -12,13 +12,13 @@ from rastrainer.number_text import fixed
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.slicer.scene.nodes import Role
-from rastrainer.slicer.scene.tables import showTable
+from rastrainer.slicer.scene.tables import Columns, showTable
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.outcomes import MOTION_METRICS
 from rastrainer.trial.analysis import published_score
-from rastrainer.trial.ctps import CTPS_WARNING, Trial
+from rastrainer.trial.ctps import CTPS_WARNING, RMSE, TIME
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.scoring import (
     COMMON_BIAS_LIMIT_MM,
@@ -27,14 +27,12 @@ from rastrainer.trial.scoring import (
     DEPTH_LIMIT_MM,
     TrialScore,
 )
+from rastrainer.trial.trial_row import TrialRow
 
 
 @dataclass(frozen=True)
 class Row:
-    """One line of the score: title, value, unit and note.
-
-    `more` is added to the note in the tool tip.
-    """
+    """One line of the score; `more` is added to the note in the tool tip."""
 
     title: str
     value: float | None
@@ -56,10 +54,7 @@ class Row:
 
 @dataclass(frozen=True)
 class GroupComparison:
-    """A value compared with the values of a group.
-
-    `betterThan` is the share of the others that the trial is better than, 0 to 1.
-    """
+    """A value compared with those of a group; it is better than a share of these, 0 to 1."""
 
     title: str
     unit: str
@@ -144,7 +139,7 @@ def _limit(value: float, unit: str) -> str:
     return _("at most {value:g} {unit}").format(value=value, unit=unit)
 
 
-def ctpsRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:
+def ctpsRows(trial: StoredTrial, cohort: Sequence[TrialRow]) -> list[Row]:
     """Return the published scores; CTPS compares with the cohort's trials of the same mode."""
     rigid = trial.registrations.get(RIGID)
     found = None if rigid is None else published_score(trial.record, rigid.fre_mm, cohort)
@@ -165,7 +160,7 @@ def motionRows(trial: StoredTrial) -> list[Row]:
 
 
 def standings(
-    study: Study, trial: StoredTrial, cohort: Sequence[Trial] = ()
+    study: Study, trial: StoredTrial, cohort: Sequence[TrialRow] = ()
 ) -> list[GroupComparison]:
     """Compare a trial with the trainee's own others, with everyone else's, and with a cohort.
 
@@ -193,7 +188,7 @@ def standings(
         (peer, (peer.task, f"task-{peer.task}")) for peer in cohort if peer.mode == record.mode
     ]
     published = [peer for peer, names in tasks if record.task in names]
-    times, errors = [p.completion_time_s for p in published], [p.rmse_mm for p in published]
+    times, errors = ([p.values[name] for p in published] for name in (TIME, RMSE))
     fre = None if rigid is None else rigid.fre_mm
     compared += [
         (_("Completion time"), "s", -1, record.completion_time_s, _("reference"), times),
@@ -211,32 +206,20 @@ def standings(
 
 def showStandings(scene: Any, found: Sequence[GroupComparison]) -> Any:
     """Show comparisons in a `vtkMRMLTableNode` and return it."""
-    return showTable(
-        scene,
-        Role.COMPARISON,
-        "Comparison",
-        {
-            "measure": [s.title for s in found],
-            "unit": [s.unit for s in found],
-            "value": [s.value for s in found],
-            "compared with": [s.group for s in found],
-            "trials": [s.count for s in found],
-            "median": [s.median for s in found],
-            "better than (share)": [s.betterThan for s in found],
-        },
-    )
+    columns: Columns = {
+        "measure": [each.title for each in found],
+        "unit": [each.unit for each in found],
+        "value": [each.value for each in found],
+        "compared with": [each.group for each in found],
+        "trials": [each.count for each in found],
+        "median": [each.median for each in found],
+        "better than (share)": [each.betterThan for each in found],
+    }
+    return showTable(scene, Role.COMPARISON, "Comparison", columns)
 
 
 def showRows(scene: Any, role: str, name: str, rows: Sequence[Row]) -> Any:
     """Show scores with their parts, or motion metrics, in a `vtkMRMLTableNode`; return it."""
-    return showTable(
-        scene,
-        role,
-        name,
-        {
-            "measure": [row.title for row in rows],
-            "value": [row.value for row in rows],
-            "unit": [row.unit for row in rows],
-            "note": [row.note for row in rows],
-        },
-    )
+    parts = {"measure": "title", "value": "value", "unit": "unit", "note": "note"}
+    columns = {title: [getattr(row, part) for row in rows] for title, part in parts.items()}
+    return showTable(scene, role, name, columns)

@@ -13,7 +13,7 @@ import vtk
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
-from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, Role, findOrAddNode
+from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, TABLE, Role, findOrAddNode, setValues
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.values import StoredTrial
 
@@ -21,23 +21,20 @@ if TYPE_CHECKING:
     from rastrainer.study.tre_calibration import TreCalibration
 
 
+Columns = Mapping[str, "Sequence[Any] | np.ndarray"]
 FEWEST_ROWS = 2
 """Fewest rows of a plotted table: VTK logs an error for each line with fewer points, visible or
 not, and Slicer plots every series as a line."""
+EXPECTED, TRUE = "expected TRE (mm)", "true TRE (mm)"
+LOW, HIGH = "TRE from, 95 % (mm)", "TRE to, 95 % (mm)"
 
 
-def showTable(
-    scene: Any,
-    role: str,
-    name: str,
-    columns: Mapping[str, Sequence[Any] | np.ndarray],
-    fewestRows: int = 0,
-) -> Any:
+def showTable(scene: Any, role: str, name: str, columns: Columns, fewestRows: int = 0) -> Any:
     """Put columns, texts or numbers or None, into the `vtkMRMLTableNode` of a role; return it.
 
     Rows without values follow where there are fewer than `fewestRows`.
     """
-    node = findOrAddNode(scene, "vtkMRMLTableNode", role, name)
+    node = findOrAddNode(scene, TABLE, role, name)
     with slicer.util.NodeModify(node):
         node.RemoveAllColumns()
         node.SetUseColumnTitleAsColumnHeader(True)
@@ -62,19 +59,13 @@ def showResiduals(
     """
     vectors = registration.residual_vectors_mm
     leftOut = [None] * len(registration.labels) if leaveOneOut is None else leaveOneOut
-    return showTable(
-        scene,
-        Role.RESIDUALS,
-        "Residuals",
-        {
-            "fiducial": registration.labels,
-            "residual (mm)": registration.residuals_mm,
-            "residual R (mm)": vectors[:, 0],
-            "residual A (mm)": vectors[:, 1],
-            "residual S (mm)": vectors[:, 2],
-            "without it (mm)": leftOut,
-        },
-    )
+    columns: Columns = {
+        "fiducial": registration.labels,
+        "residual (mm)": registration.residuals_mm,
+        **{f"residual {axis} (mm)": vectors[:, row] for row, axis in enumerate("RAS")},
+        "without it (mm)": leftOut,
+    }
+    return showTable(scene, Role.RESIDUALS, "Residuals", columns)
 
 
 def showFits(
@@ -82,19 +73,15 @@ def showFits(
 ) -> Any:
     """Compare fits of the same points, and what to expect at the target, in a table node."""
     known = [(e.expected_mm, *e.interval_mm) if e else (None, None, None) for e in targetErrors]
-    return showTable(
-        scene,
-        Role.FITS,
-        "Fits",
-        {
-            "fit": [fit.kind for fit in fits],
-            "FRE (mm)": [fit.fre_mm for fit in fits],
-            "largest residual (mm)": [fit.residuals_mm.max() for fit in fits],
-            "expected TRE (mm)": [expected for expected, _low, _high in known],
-            "TRE from, 95 % (mm)": [low for _expected, low, _high in known],
-            "TRE to, 95 % (mm)": [high for _expected, _low, high in known],
-        },
-    )
+    columns: Columns = {
+        "fit": [fit.kind for fit in fits],
+        "FRE (mm)": [fit.fre_mm for fit in fits],
+        "largest residual (mm)": [fit.residuals_mm.max() for fit in fits],
+        EXPECTED: [expected for expected, _low, _high in known],
+        LOW: [low for _expected, low, _high in known],
+        HIGH: [high for _expected, _low, high in known],
+    }
+    return showTable(scene, Role.FITS, "Fits", columns)
 
 
 BEST_SCORE = 100.0
@@ -103,56 +90,39 @@ FEWEST_SHOWN = 5.0
 TRIAL_COLUMN = "trial"
 SCORE_COLUMN = "score"
 TIME_COLUMN = "completion time (s)"
-_SERIES = {
-    # Column, its title in the plot, color.
-    SCORE_COLUMN: ("Score (0 to 100)", (0.15, 0.4, 0.75)),
-    TIME_COLUMN: ("Completion time (s)", (0.85, 0.45, 0.1)),
-}
 
 
 def showHistory(scene: Any, pseudonym: str, trials: Sequence[StoredTrial]) -> Any:
     """Show the trials of a trainee in a `vtkMRMLTableNode`, one a row, and return it."""
     records = [trial.record for trial in trials]
     rigid = [trial.registrations.get(RIGID) for trial in trials]
-    return showTable(
-        scene,
-        Role.HISTORY,
-        f"History of {pseudonym}",
-        {
-            TRIAL_COLUMN: range(1, len(trials) + 1),
-            "started (UTC)": [record.started_utc[:19] for record in records],
-            "task": [record.task for record in records],
-            "mode": [record.mode for record in records],
-            TIME_COLUMN: [record.completion_time_s for record in records],
-            "FRE (mm)": [fit.fre_mm if fit else None for fit in rigid],
-            "expected TRE (mm)": [fit.expected_tre_mm if fit else None for fit in rigid],
-            "true TRE (mm)": [trial.true_tre_mm for trial in trials],
-            SCORE_COLUMN: [t.score.score if t.score else None for t in trials],
-            "method": [record.method.value for record in records],
-        },
-    )
+    columns: Columns = {
+        TRIAL_COLUMN: range(1, len(trials) + 1),
+        "started (UTC)": [record.started_utc[:19] for record in records],
+        "task": [record.task for record in records],
+        "mode": [record.mode for record in records],
+        TIME_COLUMN: [record.completion_time_s for record in records],
+        "FRE (mm)": [fit.fre_mm if fit else None for fit in rigid],
+        EXPECTED: [fit.expected_tre_mm if fit else None for fit in rigid],
+        TRUE: [trial.true_tre_mm for trial in trials],
+        SCORE_COLUMN: [trial.score.score if trial.score else None for trial in trials],
+        "method": [record.method.value for record in records],
+    }
+    return showTable(scene, Role.HISTORY, f"History of {pseudonym}", columns, FEWEST_ROWS)
 
 
 def showLearningCurve(scene: Any, pseudonym: str, trials: Sequence[StoredTrial]) -> Any:
     """Plot score and time over the trials in a `vtkMRMLPlotChartNode` and return it."""
-    showHistory(scene, pseudonym, trials)
-    times = [trial.record.completion_time_s for trial in trials]
-    columns = {
-        TRIAL_COLUMN: range(1, len(trials) + 1),
-        SCORE_COLUMN: [trial.score.score if trial.score else None for trial in trials],
-        TIME_COLUMN: times,
-    }
+    table = showHistory(scene, pseudonym, trials)
     title = f"Learning curve of {pseudonym}"
-    table = showTable(scene, Role.LEARNING_CURVE, title, columns, FEWEST_ROWS)
     chart = _emptyChart(scene, Role.LEARNING_CURVE, title)
-    for column, (name, color) in _SERIES.items():
-        _addSeries(chart, table, TRIAL_COLUMN, column, name, color)
+    _addSeries(chart, table, TRIAL_COLUMN, SCORE_COLUMN, "Score (0 to 100)", (0.15, 0.4, 0.75))
+    _addSeries(chart, table, TRIAL_COLUMN, TIME_COLUMN, "Completion time (s)", (0.85, 0.45, 0.1))
     methods = sorted({trial.record.method.value for trial in trials if trial.score})
     if len(methods) > 1:
         title += f" (scores by {' and '.join(methods)} cannot be compared)"
-    chart.SetTitle(title)
-    chart.SetXAxisTitle("Trial")
-    chart.SetYAxisTitle("Score, and completion time in s")
+    setValues(chart, Title=title, XAxisTitle="Trial", YAxisTitle="Score, and completion time in s")
+    times = [trial.record.completion_time_s for trial in trials]
     chart.SetXAxisRange(0.0, max(FEWEST_SHOWN, len(trials) + 1.0))
     chart.SetYAxisRange(0.0, 1.05 * max((BEST_SCORE, *times)))
     return chart
@@ -160,11 +130,8 @@ def showLearningCurve(scene: Any, pseudonym: str, trials: Sequence[StoredTrial])
 
 def _emptyChart(scene: Any, role: str, name: str) -> Any:
     chart = findOrAddNode(scene, "vtkMRMLPlotChartNode", role, name)
-    chart.SetName(name)
     chart.RemoveAllPlotSeriesNodeIDs()
-    chart.SetXAxisRangeAuto(False)
-    chart.SetYAxisRangeAuto(False)
-    return chart
+    return setValues(chart, Name=name, XAxisRangeAuto=False, YAxisRangeAuto=False)
 
 
 def _addSeries(
@@ -174,21 +141,14 @@ def _addSeries(
     role = f"{chart.GetAttribute(ROLE_ATTRIBUTE)} {column}"
     node = findOrAddNode(chart.GetScene(), "vtkMRMLPlotSeriesNode", role, title)
     node.SetAndObserveTableNodeID(table.GetID())
-    node.SetPlotType(node.PlotTypeScatter)
-    node.SetXColumnName(across)
-    node.SetYColumnName(column)
-    node.SetColor(color)
-    node.SetLineStyle(node.LineStyleSolid)
-    node.SetMarkerStyle(node.MarkerStyleCircle)
+    setValues(node, PlotType=node.PlotTypeScatter, XColumnName=across, YColumnName=column)
+    setValues(node, Color=color, LineStyle=node.LineStyleSolid, MarkerStyle=node.MarkerStyleCircle)
     chart.AddAndObservePlotSeriesNodeID(node.GetID())
     return node
 
 
-EXPECTED = "expected TRE (mm)"
-TRUE = "true TRE (mm)"
 INSIDE = "true TRE, inside (mm)"
 OUTSIDE = "true TRE, outside (mm)"
-LOW, HIGH = "TRE from, 95 % (mm)", "TRE to, 95 % (mm)"
 ROOM = 1.5
 """Ratio of the plot's height to its content: the legend lies above and hides no trial."""
 _DOTS = {INSIDE: (_("Inside"), (0.15, 0.4, 0.75)), OUTSIDE: (_("Outside"), (0.8, 0.15, 0.1))}
@@ -204,7 +164,7 @@ def showCalibration(scene: Any, found: TreCalibration) -> Any:
     from rastrainer.study.tre_calibration import share_text
 
     points, role = found.points, Role.CALIBRATION
-    columns: dict[str, Sequence[Any]] = {
+    columns: Columns = {
         "trainee": [point.trainee for point in points],
         "mode": [point.mode for point in points],
         "task": [point.task for point in points],
@@ -222,17 +182,17 @@ def showCalibration(scene: Any, found: TreCalibration) -> Any:
     for column, (title, color) in {**_LINES, **_DOTS}.items():
         source = identity if column == TRUE else table
         series = _addSeries(chart, source, EXPECTED, column, title, color)
-        isLine = column in _LINES
-        series.SetLineStyle(series.LineStyleDash if isLine else series.LineStyleNone)
-        series.SetMarkerStyle(series.MarkerStyleNone if isLine else series.MarkerStyleCircle)
+        if column in _LINES:
+            setValues(series, LineStyle=series.LineStyleDash, MarkerStyle=series.MarkerStyleNone)
+        else:
+            series.SetLineStyle(series.LineStyleNone)
     title = _("True against expected TRE")
     if found.inside is not None:
         counted = _("True against expected TRE: {count} of {total} inside, {share}")
         inside, total = found.inside.count, found.inside.total
         title = counted.format(count=inside, total=total, share=share_text(found.inside))
-    chart.SetTitle(title)
-    chart.SetXAxisTitle(_("Expected TRE (mm)"))
-    chart.SetYAxisTitle(_("True TRE (mm)"))
+    axes = {"XAxisTitle": _("Expected TRE (mm)"), "YAxisTitle": _("True TRE (mm)")}
+    setValues(chart, Title=title, **axes)
     chart.SetXAxisRange(0.0, end)
     highest = [max(point.true_mm, point.interval_mm[1]) for point in points]
     chart.SetYAxisRange(0.0, ROOM * max(highest, default=1.0))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,18 +16,23 @@ from rastrainer.motion.trajectory import Trajectory
 from rastrainer.number_text import fixed
 from rastrainer.slicer.polydata import pointCloud
 from rastrainer.slicer.scene.nodes import (
+    LIST,
+    MODEL,
     ROLE_ATTRIBUTE,
-    TOUCH_COLOR,
+    TEXT,
+    TOUCH_LOOK,
+    TRANSFORM,
     Role,
     drawAsPoints,
     findNode,
     findOrAddNode,
     nodesOfClass,
+    setDisplay,
+    setValues,
 )
 from rastrainer.slicer.scene.robot_description import ArmChain
 
-TRANSFORM, MODEL, TEXT = "vtkMRMLLinearTransformNode", "vtkMRMLModelNode", "vtkMRMLTextNode"
-LIST, BROWSER = "vtkMRMLMarkupsFiducialNode", "vtkMRMLSequenceBrowserNode"
+BROWSER, SEQUENCE = "vtkMRMLSequenceBrowserNode", "vtkMRMLSequenceNode"
 SAMPLE_HZ = 10.0
 """Displayed samples a second; the journal has 50."""
 TRIAL_ATTRIBUTE = "RASTrainer.trial"
@@ -40,7 +45,7 @@ TOOL_LENGTH_MM, TOOL_RADIUS_MM = 120.0, 2.0
 
 _BROWSER, _PLACE, _TOOL, _TIP, _TOUCHES, _TRACE, _CLEARANCE = (
     f"{Role.REPLAY} {part}"
-    for part in ("browser", "place", "tool", "tool model", "touches", "trace", "clearance")
+    for part in ("browser", "WorldToHead", "tool", "tool model", "touches", "trace", "clearance")
 )
 POINTS_A_STATE = 10
 """Points of a trace that are added each time."""
@@ -88,50 +93,51 @@ def _fillScene(
     worldToHead: np.ndarray,
     rest: Callable[[float], None],
 ) -> Any:
-    def add(className: str, role: str, title: str) -> Any:
+    def add(className: str, role: str, under: Any | None = None) -> Any:
         rest(0.0)
-        return findOrAddNode(scene, className, role, title)
+        title = role.removeprefix(f"{Role.REPLAY} ")
+        node = findOrAddNode(scene, className, role, f"{name}: {title}")
+        if under is not None:
+            node.SetAndObserveTransformNodeID(under.GetID())
+        return node
 
-    placed = add(TRANSFORM, _PLACE, f"{name}: WorldToHead")
+    placed = add(TRANSFORM, _PLACE)
     placed.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(worldToHead))
-    tool = add(TRANSFORM, _TOOL, f"{name}: tool")
-    tool.SetAndObserveTransformNodeID(placed.GetID())
-    tip = add(MODEL, _TIP, f"{name}: tool model")
+    tool = add(TRANSFORM, _TOOL, placed)
+    tip = add(MODEL, _TIP, tool)
     tip.SetAndObservePolyData(_needle())
-    tip.GetDisplayNode().SetColor(TOOL_COLOR)
-    tip.SetAndObserveTransformNodeID(tool.GetID())
-    touches = add(LIST, _TOUCHES, f"{name}: touches")
+    setDisplay(tip, Color=TOOL_COLOR)
+    touches = add(LIST, _TOUCHES, placed)
     touches.SetLocked(True)
-    display = touches.GetDisplayNode()
-    display.SetSelectedColor(TOUCH_COLOR)
-    display.SetGlyphScale(2.5)
-    display.SetTextScale(3.5)
-    touches.SetAndObserveTransformNodeID(placed.GetID())
-    clearance = add(TEXT, _CLEARANCE, f"{name}: clearance")
-    browser = add(BROWSER, _BROWSER, f"Replay of {name}")
-    browser.SetIndexDisplayMode(browser.IndexDisplayAsIndexValue)
-    browser.SetPlaybackRateFps(SAMPLE_HZ)
+    setDisplay(touches, **TOUCH_LOOK)
+    clearance = add(TEXT, _CLEARANCE)
+    browser = findOrAddNode(scene, BROWSER, _BROWSER, f"Replay of {name}")
+    setValues(browser, IndexDisplayMode=browser.IndexDisplayAsIndexValue, PlaybackRateFps=SAMPLE_HZ)
     rest(0.0)
     _checkIsThere(placed, tool, touches, clearance, browser)
-    times = trajectory.times_s[rows]
+    matrices = map(slicer.util.vtkMatrixFromArray, poses)
+    poseStates = (
+        setValues(slicer.vtkMRMLLinearTransformNode(), MatrixTransformToParent=matrix)
+        for matrix in matrices
+    )
+    distances = (f"{fixed(mm, 1)} mm" for mm in trajectory.clearance_mm[rows])
+    distanceStates = (setValues(slicer.vtkMRMLTextNode(), Text=text) for text in distances)
+    start, times = float(trajectory.times_s[0]), trajectory.times_s[rows]
     total, done = 2 * len(rows) + len(trajectory.touches) + 1, 0
     shown = [
-        (tool, zip(times, map(_toolState, poses), strict=True)),
-        (touches, _touchStates(trajectory)),
-        (clearance, zip(times, map(_clearanceState, trajectory.clearance_mm[rows]), strict=True)),
+        (tool, zip(times, poseStates, strict=True)),
+        (touches, _growing(trajectory.touches, 1, _touchesState, start)),
+        (clearance, zip(times, distanceStates, strict=True)),
     ]
     if trajectory.traced:
-        trace = findOrAddNode(scene, MODEL, _TRACE, f"{name}: trace")
+        trace = add(MODEL, _TRACE, placed)
         drawAsPoints(trace)
-        trace.SetAndObserveTransformNodeID(placed.GetID())
-        shown.append((trace, _traceStates(trajectory)))
+        shown.append((trace, _growing(trajectory.traced, POINTS_A_STATE, _traceState, start)))
         total += 1 + -(-len(trajectory.traced) // POINTS_A_STATE)
     for proxy, states in shown:
         title = f"{proxy.GetName()} sequence"
-        sequence = findOrAddNode(scene, "vtkMRMLSequenceNode", f"{Role.REPLAY} {title}", title)
-        sequence.SetIndexName("time")
-        sequence.SetIndexUnit("s")
-        sequence.SetIndexType(sequence.NumericIndex)
+        sequence = findOrAddNode(scene, SEQUENCE, f"{Role.REPLAY} {title}", title)
+        setValues(sequence, IndexName="time", IndexUnit="s", IndexType=sequence.NumericIndex)
         # Saving the states needs units from the scene that contains them.
         sequence.GetSequenceScene().AddNode(slicer.vtkMRMLSelectionNode())
         for time, state in states:
@@ -206,7 +212,7 @@ def removeReplay(scene: Any, rest: Callable[[float], None] = lambda _share: None
         if node.IsA("vtkMRMLDisplayableNode") and node.GetDisplayNode() is not None:
             scene.RemoveNode(node.GetDisplayNode())
         scene.RemoveNode(node)
-        if node.IsA("vtkMRMLSequenceNode"):
+        if node.IsA(SEQUENCE):
             for _slice in _slicesOf(node):
                 rest(0.0)
 
@@ -216,8 +222,7 @@ def emptyReplay(scene: Any) -> Iterator[None]:
 
     Call this before the scene is closed: that would delete thousands of states at once.
     """
-    sequences = _nodesOfReplay(scene, "vtkMRMLSequenceNode")
-    return itertools.chain.from_iterable(map(_slicesOf, sequences))
+    return itertools.chain.from_iterable(map(_slicesOf, _nodesOfReplay(scene, SEQUENCE)))
 
 
 def _nodesOfReplay(scene: Any, className: str) -> list[Any]:
@@ -234,47 +239,33 @@ def _slicesOf(sequence: Any) -> Iterator[None]:
             yield
 
 
-def _toolState(pose: np.ndarray) -> Any:
-    state = slicer.vtkMRMLLinearTransformNode()
-    state.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(pose))
+def _growing(
+    made: Sequence[Any], step: int, stateOf: Callable[[Sequence[Any]], Any], startS: float
+) -> Iterator[tuple[float, Any]]:
+    """Yield a state of the points made so far, at the start and after every `step` points."""
+    for count in (*range(0, len(made), step), len(made)):
+        yield made[count - 1].time_s if count else startS, stateOf(made[:count])
+
+
+def _touchesState(touches: Sequence[Any]) -> Any:
+    state = setValues(slicer.vtkMRMLMarkupsFiducialNode(), Locked=True)
+    for touch in touches:
+        state.AddControlPoint(vtk.vtkVector3d(*touch.position_mm), touch.label)
     return state
 
 
-def _clearanceState(clearanceMm: float) -> Any:
-    state = slicer.vtkMRMLTextNode()
-    state.SetText(f"{fixed(clearanceMm, 1)} mm")
+def _traceState(traced: Sequence[Any]) -> Any:
+    state = slicer.vtkMRMLModelNode()
+    places = np.array([point.position_mm for point in traced]).reshape(-1, 3)
+    state.SetAndObservePolyData(pointCloud(places))
     return state
-
-
-def _touchStates(trajectory: Trajectory) -> Iterator[tuple[float, Any]]:
-    made = trajectory.touches
-    for count in range(len(made) + 1):
-        state = slicer.vtkMRMLMarkupsFiducialNode()
-        state.SetLocked(True)
-        for touch in made[:count]:
-            state.AddControlPoint(vtk.vtkVector3d(*touch.position_mm), touch.label)
-        yield made[count - 1].time_s if count else float(trajectory.times_s[0]), state
-
-
-def _traceStates(trajectory: Trajectory) -> Iterator[tuple[float, Any]]:
-    """Yield the trace so far, at the start and after every few points."""
-    made = trajectory.traced
-    places = np.array([point.position_mm for point in made])
-    for count in (*range(0, len(made), POINTS_A_STATE), len(made)):
-        state = slicer.vtkMRMLModelNode()
-        state.SetAndObservePolyData(pointCloud(places[:count]))
-        yield made[count - 1].time_s if count else float(trajectory.times_s[0]), state
 
 
 def _needle() -> vtk.vtkPolyData:
     """Return a needle whose tip is the tool's: its shaft lies along −z."""
-    line = vtk.vtkLineSource()
-    line.SetPoint1(0.0, 0.0, 0.0)
-    line.SetPoint2(0.0, 0.0, -TOOL_LENGTH_MM)
-    tube = vtk.vtkTubeFilter()
-    tube.SetInputConnection(line.GetOutputPort())
-    tube.SetRadius(TOOL_RADIUS_MM)
-    tube.SetNumberOfSides(16)
-    tube.CappingOn()
-    tube.Update()
+    line = setValues(
+        vtk.vtkLineSource(), Point1=(0.0, 0.0, 0.0), Point2=(0.0, 0.0, -TOOL_LENGTH_MM)
+    )
+    tube = setValues(vtk.vtkTubeFilter(), Radius=TOOL_RADIUS_MM, NumberOfSides=16, Capping=True)
+    setValues(tube, InputConnection=line.GetOutputPort()).Update()
     return tube.GetOutput()

@@ -18,6 +18,7 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import CallLater, callNow
 from rastrainer.slicer.scene.error_colors import showResidualArrows
 from rastrainer.slicer.scene.nodes import (
+    TRANSFORM,
     Role,
     capturedPointsNode,
     findNode,
@@ -105,15 +106,12 @@ def _stamp(node: Any) -> str:
 MOVING_REFERENCE = "RASTrainer.moving"
 FIXED_REFERENCE = "RASTrainer.fixed"
 KIND_ATTRIBUTE = "RASTrainer.registration"
-FRE_ATTRIBUTE = "RASTrainer.freMm"
 PLANNED = "planned"
 
 
 def showRegistration(scene: Any, registration: Registration, moving: Any, fixed: Any) -> Any:
     """Put a registration into the scene's WorldToHead transform and return that node."""
-    node = _placeWorld(scene, registration.matrix, registration.kind, moving, fixed)
-    node.SetAttribute(FRE_ATTRIBUTE, f"{registration.fre_mm:.6f}")
-    return node
+    return _placeWorld(scene, registration.matrix, registration.kind, moving, fixed)
 
 
 def showPlannedPlace(scene: Any, scenario: Scenario, moving: Any, fixed: Any) -> Any:
@@ -121,10 +119,7 @@ def showPlannedPlace(scene: Any, scenario: Scenario, moving: Any, fixed: Any) ->
 
     The head of a trial is placed a little differently; only its registration shows where.
     """
-    matrix = transforms.inverse(scenario.head_to_world)
-    node = _placeWorld(scene, matrix, PLANNED, moving, fixed)
-    node.RemoveAttribute(FRE_ATTRIBUTE)
-    return node
+    return _placeWorld(scene, transforms.inverse(scenario.head_to_world), PLANNED, moving, fixed)
 
 
 def _placeWorld(scene: Any, matrix: np.ndarray, kind: str, moving: Any, fixed: Any) -> Any:
@@ -132,7 +127,7 @@ def _placeWorld(scene: Any, matrix: np.ndarray, kind: str, moving: Any, fixed: A
 
     At first it is applied to the moving points; later that stays as it was.
     """
-    node = findOrAddNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD, "WorldToHead")
+    node = findOrAddNode(scene, TRANSFORM, Role.WORLD_TO_HEAD, "WorldToHead")
     wanted = movingNode(node) is None or isApplied(node)
     # Touches and robot follow it.
     with slicer.util.NodeModify(node):
@@ -166,7 +161,7 @@ def setApplied(transformNode: Any, applied: bool) -> None:
 
 def followPlacement(scene: Any) -> None:
     """Show the robot where the touched points are shown: at the head, or in World."""
-    node = findNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
+    node = findNode(scene, TRANSFORM, Role.WORLD_TO_HEAD)
     placeRobot(scene, node if node is not None and isApplied(node) else None)
 
 

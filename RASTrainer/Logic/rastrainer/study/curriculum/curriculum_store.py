@@ -16,6 +16,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import decoded, json_text
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import pass_mark_of
+from rastrainer.trial.trial_row import TrialRow
 
 _STAMPS = """
     SELECT pseudonym,
@@ -66,7 +67,6 @@ class CurriculumStore:
         return tuple((name, _read(text), utc) for name, text, utc in rows)
 
     def standing(self, pseudonym: str) -> CurriculumStanding | None:
-        """Return the standing of a trainee; None without a curriculum."""
         with self._study.database.reading():
             row = self._study.database.row(
                 "SELECT curriculum_json FROM curriculum_choices "
@@ -76,15 +76,8 @@ class CurriculumStore:
             curriculum = None if row is None else _read(row[0])
             if curriculum is None:
                 return None
-            counted = [
-                trial
-                if (done := trial.procedure_score) is None
-                else replace(
-                    trial, score=done.score, acceptable=done.acceptable, parts=done.desirabilities
-                )
-                for trial in self._study.attempts(pseudonym)
-            ]
-            return standing_in(curriculum, counted, _marks(self._study))
+            counted = map(_by_procedure, self._study.attempts(pseudonym))
+            return standing_in(curriculum, tuple(counted), _marks(self._study))
 
     def stamps(self) -> dict[str, tuple[int | None, ...]]:
         """Return for each active trainee numbers that change with where they may stand.
@@ -97,6 +90,15 @@ class CurriculumStore:
     def standings(self) -> dict[str, CurriculumStanding]:
         names = [trainee.pseudonym for trainee in self._study.trainees()]
         return {name: each for name in names if (each := self.standing(name)) is not None}
+
+
+def _by_procedure(trial: TrialRow) -> TrialRow:
+    """Return a trial with the score of its procedure, if it has one."""
+    if trial.procedure is None:
+        return trial
+    done = trial.procedure.score
+    values = {**trial.values, "score": done.score}
+    return replace(trial, values=values, acceptable=done.acceptable, parts=done.desirabilities)
 
 
 def _marks(study: Study) -> PassMarkOf:

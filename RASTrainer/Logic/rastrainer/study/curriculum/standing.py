@@ -18,7 +18,8 @@ from rastrainer.study.database.values import day_of, moment
 from rastrainer.study.protocol.steps import trial_title
 from rastrainer.study_messages import WHOLE_WAY, Assignment, AssignmentStanding, CurriculumMessage
 from rastrainer.trial.scoring import passes
-from rastrainer.trial.trial_feedback import PastTrial, competence_of
+from rastrainer.trial.trial_feedback import competence_of
+from rastrainer.trial.trial_row import TrialRow
 
 PassMarkOf = Callable[[Assignment], "float | None"]
 """Maps an assignment to the study's pass mark for its trials; None if there is none."""
@@ -75,7 +76,7 @@ def by_curriculum(
 
 
 def standing_in(
-    curriculum: Curriculum, trials: Sequence[PastTrial], pass_mark_of: PassMarkOf
+    curriculum: Curriculum, trials: Sequence[TrialRow], pass_mark_of: PassMarkOf
 ) -> CurriculumStanding:
     """Return where a trainee stands by their trials, in order of starting.
 
@@ -96,18 +97,18 @@ def standing_in(
     return CurriculumStanding(curriculum, tuple(standings), played)
 
 
-def _counts_for(trial: PastTrial, assignment: Assignment) -> bool:
+def _counts_for(trial: TrialRow, assignment: Assignment) -> bool:
     if trial.is_aborted and trial.is_in_procedure and not assignment.procedure:
         return False
-    procedure = assignment.procedure if trial.is_aborted else trial.procedure
-    return assignment.is_played_as(
-        trial.scenario, trial.task, trial.mode, trial.method.value, procedure
-    )
+    procedure = assignment.procedure if trial.is_aborted else ""
+    if trial.procedure is not None:
+        procedure = trial.procedure.analysis.procedure
+    return assignment.is_played_as(trial.scenario, trial.task, trial.mode, trial.method, procedure)
 
 
 def _standing(
     assignment: Assignment,
-    own: Sequence[PastTrial],
+    own: Sequence[TrialRow],
     reached: Mapping[str, str],
     pass_mark_of: PassMarkOf,
 ) -> AssignmentStanding:
@@ -136,8 +137,8 @@ def _standing(
 
 
 def _progress(
-    assignment: Assignment, trials: Sequence[PastTrial], mark: float
-) -> tuple[PastTrial | None, int]:
+    assignment: Assignment, trials: Sequence[TrialRow], mark: float
+) -> tuple[TrialRow | None, int]:
     """Return which of the trials reaches the goal, and how far they are now."""
     passed = [passes(trial.score, trial.acceptable, mark) for trial in trials]
     if assignment.goal is GoalKind.COMPETENT:
@@ -154,7 +155,7 @@ def _progress(
     return reaching, min(row, assignment.trials)
 
 
-def _weakest(trials: Sequence[PastTrial]) -> str:
+def _weakest(trials: Sequence[TrialRow]) -> str:
     """Return the part of the score with the least geometric mean, which costs most; "" if none."""
     names = dict.fromkeys(name for trial in trials for name in trial.parts)
     means = {
@@ -213,7 +214,6 @@ def short_progress_of(standing: AssignmentStanding) -> str:
 
 
 def state_of(standing: AssignmentStanding) -> str:
-    """Return the state, and what a locked assignment waits for, by name."""
     if standing.state is not AssignmentState.LOCKED:
         return standing.state.value
     are = "is" if len(standing.missing) == 1 else "are"
@@ -221,7 +221,6 @@ def state_of(standing: AssignmentStanding) -> str:
 
 
 def advice_of(standing: CurriculumStanding) -> str:
-    """Return the sentence about what to practice next, and why."""
     best = standing.next_best
     if best is None:
         return "All assignments are reached."

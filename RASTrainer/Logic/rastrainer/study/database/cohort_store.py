@@ -79,15 +79,11 @@ class CohortStore:
             if not study.has_trainee(record.trainee):
                 study.create_trainee(record.trainee, consent=True)
             # Not new where a second process plays the same cohort; its trial is the same.
-            if study.add_trial(record):
-                study.add_results(
-                    record.trial_id,
-                    analysis.fits.values(),
-                    analysis.target_errors,
-                    analysis.score,
-                    analysis.procedure,
-                    analysis.truth,
-                )
+            study.add_trial(
+                *(record, analysis.fits.values(), analysis.target_errors, analysis.score),
+                procedure=analysis.procedure,
+                truth=analysis.truth,
+            )
 
     def add_stuck(self, trial_id: str) -> None:
         self._database.insert("stuck_trials", is_once=True, trial_id=trial_id)

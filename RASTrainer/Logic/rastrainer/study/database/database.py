@@ -177,7 +177,6 @@ class StudyDatabase(ABC):
             raise
 
     def close(self) -> None:
-        """Close the connection; nothing is pending outside a transaction."""
         self._connection.close()
 
     def rows(self, sql: str, *parameters: Any) -> list[Any]:

@@ -110,7 +110,6 @@ def find_driver_in(folder: Path) -> None:
 
 
 def postgres_driver() -> ModuleType:
-    """Return the module `psycopg`."""
     searched = [str(folder) for folder in _folders if folder.is_dir()]
     # Last, and only meanwhile: nothing else in Slicer finds the simulator's packages.
     sys.path.extend(searched)
@@ -204,7 +203,6 @@ def _impatient(driver: ModuleType, answer_s: float) -> Any:
 
 
 def postgres_error(error: Any, address: PostgresAddress) -> InputError | None:
-    """Return what to tell the user of an error of psycopg; None if it is a bug of ours."""
     state, text = error.sqlstate or "", str(error).lower()
     if state in _LOCKED:
         return StudyBusyError(

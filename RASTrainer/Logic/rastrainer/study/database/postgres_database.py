@@ -72,7 +72,6 @@ _IN_POSTGRES = (
 
 
 def in_postgres(statement: str) -> str:
-    """Return a statement of the schema for PostgreSQL."""
     for pattern, replacement in _IN_POSTGRES:
         statement = re.sub(pattern, replacement, statement)
     return statement

@@ -12,6 +12,7 @@ import json
 import os
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from typing import Any
 
@@ -20,15 +21,10 @@ from rastrainer.errors import InputError
 from rastrainer.files import writing
 from rastrainer.head.trial_head import UNMOVED
 from rastrainer.json_records import record_from_json, record_to_json
-from rastrainer.protocol import TRIAL_RUN, RegistrationMethod
+from rastrainer.protocol import TRIAL_RUN
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
-from rastrainer.study.database.database import (
-    LockWait,
-    PostgresAddress,
-    StudyDatabase,
-    study_place,
-)
+from rastrainer.study.database.database import LockWait, PostgresAddress, StudyDatabase, study_place
 from rastrainer.study.database.postgres_database import PostgresDatabase
 from rastrainer.study.database.schema import TRAINEE_ID
 from rastrainer.study.database.sqlite_database import ReadOnlySqliteDatabase, SqliteDatabase
@@ -37,23 +33,20 @@ from rastrainer.study.database.values import (
     RESULTS,
     SCORE,
     TRUTH,
-    StoredAbortedTrial,
     StoredRegistration,
     StoredTrial,
     Trainee,
-    TrialRow,
     decoded_record,
     json_text,
     moment,
     result_of,
     utc_now,
 )
-from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
-from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.record import AbortedTrial, TrialRecord
 from rastrainer.trial.scoring import TrialScore
-from rastrainer.trial.trial_feedback import PastTrial
+from rastrainer.trial.trial_row import TrialRow
 
 STUDY_FILE = "study.db"
 """The usual name."""
@@ -75,7 +68,7 @@ def _latest(column: str, kind: str) -> str:
 
 
 _ATTEMPTS = f"""
-    SELECT trial_id, task, mode, completion_time_s, scenario, started_utc, method,
+    SELECT trial_id, task, mode, scenario, started_utc, method,
         {_latest("result_json", SCORE)}, {_latest("result_json", PROCEDURE)},
         {_latest("value", TRUTH)} IS NOT NULL
     FROM trials WHERE trainee_id = ({TRAINEE_ID}) AND task != ? ORDER BY started_utc, id
@@ -92,7 +85,7 @@ class DeletedTrialError(InputError):
     """The trial was deleted from the study together with its trainee."""
 
 
-class Study:
+class Study(AbstractContextManager["Study"]):
     """A study; use it in a `with` statement, or call `close`.
 
     Every method raises `InputError` if the study cannot be read or written, `StudyBusyError` if
@@ -116,10 +109,7 @@ class Study:
     ) -> Study:
         """Open the study in a file or a database of PostgreSQL, or create one.
 
-        Args:
-            lock_wait: For locks of others; half a minute by default.
-            make_folder: Create a missing folder of the file, private to its user.
-            must_exist: Refuse a place that holds no study yet.
+        A folder that is made is private to its user.
         """
         place = study_place(place)
         if isinstance(place, PostgresAddress):
@@ -134,14 +124,10 @@ class Study:
     def open_for_reading(
         cls, place: str | os.PathLike[str] | PostgresAddress, lock_wait: LockWait | None = None
     ) -> Study:
-        """Open a study without changing it; changes are refused."""
         place = study_place(place)
         if isinstance(place, PostgresAddress):
             return cls(PostgresDatabase(place, lock_wait, may_change=False))
         return cls(ReadOnlySqliteDatabase(place, lock_wait))
-
-    def __enter__(self) -> Study:
-        return self
 
     def __exit__(self, *_exception: object) -> None:
         self.close()
@@ -208,10 +194,9 @@ class Study:
         """
         with self.database.writing():
             self.trainee(pseudonym)
+            own = f"WHERE trainee_id = ({TRAINEE_ID})"
             finished, aborted = (
-                self.database.rows(
-                    f"SELECT trial_id FROM {table} WHERE trainee_id = ({TRAINEE_ID})", pseudonym
-                )
+                self.database.rows(f"SELECT trial_id FROM {table} {own}", pseudonym)
                 for table in ("trials", "aborted_trials")
             )
             for (trial_id,) in (*finished, *aborted):
@@ -226,21 +211,24 @@ class Study:
         target_errors: Mapping[str, TargetError] | None = None,
         score: TrialScore | None = None,
         delivered: Mapping[str, Any] | None = None,
+        **others: Any,
     ) -> bool:
         """Store a finished trial with its results, if known; return whether it was new.
 
         A trial that is already stored is not changed, and `DeletedTrialError` is raised if it was
-        deleted. An unknown trainee is added without consent, so that no trial is lost.
-
-        Args:
-            record: The trial, or its untrusted JSON object.
-            delivered: The original object, whose unknown keys are stored too.
+        deleted. An unknown trainee is added without consent, so that no trial is lost. The record
+        may be an untrusted JSON object; of one that was `delivered`, unknown keys are stored, too.
+        `others` are further results, as of `add_results`.
         """
         if not isinstance(record, TrialRecord):
             delivered = record
             record = record_from_json(TrialRecord, delivered)
         with self.database.writing():
-            if not self.check_trial(record):
+            self._check_not_deleted(record.trial_id)
+            if self.has("trials", record.trial_id):
+                # The seed is the simulator's secret at first and may be revealed later.
+                if replace(self.record(record.trial_id), seed=None) != replace(record, seed=None):
+                    raise _other_trial(record.trial_id)
                 return False
             self._store(
                 "trials",
@@ -253,20 +241,8 @@ class Study:
                 started_utc=record.started_utc,
                 completion_time_s=record.completion_time_s,
             )
-            self.add_results(record.trial_id, registrations, target_errors, score)
+            self.add_results(record.trial_id, registrations, target_errors, score, **others)
         return True
-
-    def check_trial(self, record: TrialRecord) -> bool:
-        """Return whether a trial would be new, before anything is computed from it."""
-        with self.database.reading():
-            self._check_not_deleted(record.trial_id)
-            if self.has("trials", record.trial_id):
-                # The seed is the simulator's secret at first and may be revealed later.
-                if replace(self.record(record.trial_id), seed=None) != replace(record, seed=None):
-                    raise _other_trial(record.trial_id)
-                return False
-            json_checks.accepted(json_checks.pseudonym, record.trainee, "A pseudonym")
-            return True
 
     def add_aborted(
         self, record: AbortedTrial | Mapping[str, Any], delivered: Mapping[str, Any] | None = None
@@ -407,7 +383,7 @@ class Study:
             }
         return tuple(trial for _stamp, trial in self._read_trials.values())
 
-    def aborted(self, pseudonym: str) -> tuple[StoredAbortedTrial, ...]:
+    def aborted(self, pseudonym: str) -> tuple[AbortedTrial, ...]:
         """Return a trainee's aborted trials in order of starting; `InputError` if unknown."""
         with self.database.reading():
             self.trainee(pseudonym)
@@ -417,39 +393,40 @@ class Study:
                 f"WHERE trainee_id = ({TRAINEE_ID}) ORDER BY id",
                 pseudonym,
             )
-        found = [StoredAbortedTrial(decoded_record(AbortedTrial, row[0]), *row[1:]) for row in rows]
-        return tuple(sorted(found, key=lambda stored: moment(stored.record.started_utc)))
+        found = [
+            replace(decoded_record(AbortedTrial, text), step=step, repeat_reason=reason)
+            for text, step, reason in rows
+        ]
+        return tuple(sorted(found, key=lambda record: moment(record.started_utc)))
 
-    def attempts(self, pseudonym: str) -> tuple[PastTrial, ...]:
+    def attempts(self, pseudonym: str) -> tuple[TrialRow, ...]:
         """Return the trials from which progress is computed, as started: scored and failed.
 
         Aborted trials with a touch have failed, and trials that can have no score, since their
         truth is known. Trial runs are left out.
         """
         with self.database.reading():
-            aborted = [stored.record for stored in self.aborted(pseudonym)]
+            aborted = self.aborted(pseudonym)
             rows = self.database.rows(_ATTEMPTS, pseudonym, TRIAL_RUN)
         found = []
-        for trial_id, task, mode, seconds, scenario, utc, method, scored, done, is_revealed in rows:
+        for trial_id, task, mode, scenario, utc, method, scored, done, is_revealed in rows:
             score = None if scored is None else result_of(SCORE, scored)
-            procedure = None if done is None else result_of(PROCEDURE, done)
             if score is None and not is_revealed:
                 continue
-            found.append(
-                PastTrial(
-                    *(trial_id, task, mode, seconds),
-                    score=0.0 if score is None else score.score,
-                    acceptable=score is not None and score.acceptable,
-                    is_aborted=score is None,
-                    method=RegistrationMethod(method),
-                    scenario=scenario,
-                    started_utc=utc,
-                    parts={} if score is None else score.parts,
-                    procedure="" if procedure is None else procedure.analysis.procedure,
-                    procedure_score=None if procedure is None else procedure.score,
-                )
+            row = TrialRow(
+                *(pseudonym, mode, task),
+                trial_id=trial_id,
+                started_utc=utc,
+                scenario=scenario,
+                method=method,
+                procedure=None if done is None else result_of(PROCEDURE, done),
+                is_aborted=score is None,
             )
-        found += [PastTrial.failed(record) for record in aborted if record.counts_as_failed]
+            if score is not None:
+                values = {"score": score.score}
+                row = replace(row, values=values, acceptable=score.acceptable, parts=score.parts)
+            found.append(row)
+        found += [TrialRow.of(record) for record in aborted if record.counts_as_failed]
         return tuple(sorted(found, key=lambda trial: moment(trial.started_utc)))
 
     def unrevealed(self) -> tuple[TrialRecord, ...]:
@@ -461,7 +438,6 @@ class Study:
         return tuple(decoded_record(TrialRecord, text) for (text,) in rows)
 
     def outcomes(self, task: str, mode: str) -> list[TrialRow]:
-        """Return the time, latest score and true error of all trials of a task and mode."""
         names = "completion_time_s", "score", "true_tre_mm"
         rows = []
         for trial_id, trainee, method, *results in self.database.rows(_OUTCOMES, task, mode):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from functools import partial
@@ -15,10 +15,8 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.json_checks import decode_finite_json, number, numbers, plain_object, text
 from rastrainer.json_records import record_from_json, record_to_json
-from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
-from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.record import TrialRecord
@@ -28,7 +26,6 @@ Value = TypeVar("Value")
 
 
 def utc_now() -> str:
-    """Return the current time as ISO 8601 in UTC, to the millisecond."""
     return datetime.now(timezone.utc).isoformat(timespec="milliseconds")
 
 
@@ -96,12 +93,10 @@ _Length = Annotated[float, number(0, _LIMIT, "mm")]
 
 @dataclass(frozen=True)
 class StoredRegistration:
-    """A stored registration of a trial.
+    """A stored registration of a trial: `World` to RAS, mm, its matrix row by row.
 
-    Attributes:
-        matrix: Row by row, `World` to RAS, mm.
-        target_mm: Target in RAS; None with the next two if the fit gives no target error.
-        common_bias_sd_mm: Standard deviation on each axis of the common offset included in both.
+    Target, expected TRE and interval are None if the fit gives no target error; both include a
+    common offset of `common_bias_sd_mm` on each axis.
     """
 
     kind: Annotated[str, text(20)]
@@ -132,32 +127,6 @@ class StoredRegistration:
 
 
 @dataclass(frozen=True)
-class TrialRow:
-    """One trial of a report or a comparison; texts are empty if unknown.
-
-    Attributes:
-        number: Of the trainee's trials in this mode, from 1; 0 for a trial run.
-        values: Measurements by name; see `rastrainer.study.outcomes`.
-        acceptable: Whether it was within all limits of its score; False without a score.
-        procedure: None of touches alone, or if it is not scored.
-    """
-
-    trainee: str
-    mode: str
-    task: str
-    number: int
-    values: Mapping[str, float]
-    trial_id: str = ""
-    started_utc: str = ""
-    scenario: str = ""
-    score_version: str = ""
-    acceptable: bool = False
-    completed_utc: str = ""
-    procedure: ProcedureOutcome | None = None
-    method: str = RegistrationMethod.FIDUCIALS.value
-
-
-@dataclass(frozen=True)
 class StoredTrial:
     """A trial with its latest results, as far as they are known; registrations by kind."""
 
@@ -171,15 +140,6 @@ class StoredTrial:
     def true_tre_mm(self) -> float | None:
         """True error at the target; None until it is revealed."""
         return None if self.truth is None else self.truth.true_tre_mm
-
-
-@dataclass(frozen=True)
-class StoredAbortedTrial:
-    """An aborted trial, and the study's step that was repeated because of it, and why."""
-
-    record: AbortedTrial
-    step: str = ""
-    repeat_reason: str = ""
 
 
 SCORE, PROCEDURE, TRUTH = "score", "procedure", "truth"

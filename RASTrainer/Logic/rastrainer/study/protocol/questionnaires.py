@@ -47,12 +47,7 @@ class Scale:
 
 @dataclass(frozen=True)
 class Questionnaire:
-    """A questionnaire.
-
-    Attributes:
-        name: For files and protocols, such as "sus".
-        marks_apart: Distance of the marks in a form; answers between them are valid too.
-    """
+    """A questionnaire; answers between the marks of its form are valid, too."""
 
     name: str
     title: str
@@ -66,7 +61,6 @@ class Questionnaire:
 
     @property
     def marks(self) -> range:
-        """The answers offered in a form."""
         return range(self.lowest, self.highest + 1, self.marks_apart)
 
     def score(self, answers: Sequence[int] | Mapping[str, int]) -> dict[str, float]:
@@ -74,7 +68,6 @@ class Questionnaire:
         return {scale.name: value for scale, value in zip(self.scales, values, strict=True)}
 
     def checked(self, answers: Sequence[int] | Mapping[str, int]) -> tuple[int, ...]:
-        """Return the answers in the order of the items."""
         names = [item.name for item in self.items]
         if isinstance(answers, Mapping):
             if set(answers) != set(names):

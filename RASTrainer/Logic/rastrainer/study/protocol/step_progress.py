@@ -13,7 +13,7 @@ from rastrainer.protocol import ALL_DONE, REPEAT, StepKind
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study.protocol.steps import instruction
 from rastrainer.study_messages import StudyStep
-from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.record import AbortedTrial
 
 DONE, SKIPPED = "done", "skipped"
 MIN_REASON_LENGTH, MAX_REASON_LENGTH = 10, 500
@@ -68,7 +68,6 @@ class StepProgress:
         return self.entries[-1].stored_utc if self.entries else self.enrolled_utc
 
     def minutes_elapsed(self, now: datetime) -> float:
-        """Return the elapsed time of a trial run or break, min."""
         if self.break_end is None:
             return self.practiced_s / 60.0
         return max(0.0, (now - datetime.fromisoformat(self.since_utc)).total_seconds() / 60.0)
@@ -96,7 +95,6 @@ class StepProgress:
 
     @property
     def sentence(self) -> str:
-        """The next step, for the trainee."""
         step = self.next_step
         if step is None:
             return "All steps of the study are done. Thank you!"
@@ -114,7 +112,6 @@ class StepProgress:
         )
 
     def study_step(self, trainee: str, now: datetime) -> StudyStep:
-        """Return the next step as the simulator gets it."""
         step, count = self.next_step, len(self.steps)
         if step is None:
             return StudyStep(trainee, ALL_DONE, count, count)

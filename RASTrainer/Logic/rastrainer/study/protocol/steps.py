@@ -36,7 +36,6 @@ def objections_to(step: StudyStep, record: TrialRecord) -> tuple[str, ...]:
 
 
 def instruction(step: StudyStep) -> str:
-    """Return what a step asks of the trainee."""
     if step.kind == StepKind.QUESTIONNAIRE:
         return f"Answer the questionnaire {QUESTIONNAIRES[step.questionnaire].title}."
     if step.kind == StepKind.BREAK:

@@ -27,13 +27,9 @@ from rastrainer.study.protocol.step_progress import (
     checked_reason,
 )
 from rastrainer.study.protocol.steps import objections_to
-from rastrainer.study.protocol.study_protocol import (
-    StudyProtocol,
-    steps_for,
-)
+from rastrainer.study.protocol.study_protocol import StudyProtocol, steps_for
 from rastrainer.study_messages import StudyStep
-from rastrainer.trial.aborted_trial import AbortedTrial
-from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.record import AbortedTrial, TrialRecord
 
 
 @dataclass(frozen=True)
@@ -58,7 +54,6 @@ class StudyProgress:
         self._study, self._database = study, study.database
 
     def set_protocol(self, protocol: StudyProtocol) -> None:
-        """Set the study's protocol; the same one again changes nothing."""
         with self._database.writing():
             stored = self.protocol()
             if stored is None:
@@ -71,7 +66,6 @@ class StudyProgress:
                 )
 
     def protocol(self) -> StudyProtocol | None:
-        """Return the study's protocol, or None if trainees practice freely."""
         row = self._database.row("SELECT protocol_json FROM study_protocol")
         return None if row is None else decoded(row[0], StudyProtocol.from_json)
 
@@ -99,7 +93,6 @@ class StudyProgress:
             return place
 
     def enrolled(self) -> dict[str, int]:
-        """Return the place of each enrolled trainee, in order."""
         return dict(
             self._database.rows(
                 "SELECT pseudonym, place FROM enrollments "
@@ -143,7 +136,6 @@ class StudyProgress:
     def finish(
         self, pseudonym: str, step: str, details: Mapping[str, Any] | None = None
     ) -> StepProgress:
-        """Store that the next step was done, with details of `StepEntry`; return the progress."""
         with self._database.writing():
             due = self.progress(pseudonym).due(step)
             checked = checked_details(due, details or {})
@@ -165,7 +157,6 @@ class StudyProgress:
         return self.progress(pseudonym)
 
     def explain_repeat(self, pseudonym: str, reason: str) -> StepProgress:
-        """Store why the next step is repeated after an abort; return the new progress."""
         with self._database.writing():
             progress = self.progress(pseudonym)
             if not progress.unexplained:
@@ -179,7 +170,6 @@ class StudyProgress:
             return self.progress(pseudonym)
 
     def practice(self, pseudonym: str, step: str, seconds: float) -> None:
-        """Add to the practiced time of the next step, a trial run."""
         with self._database.writing():
             due = self.progress(pseudonym).next_step
             if due is None or (due.name, due.kind) != (step, StepKind.TRIAL_RUN):
@@ -220,7 +210,6 @@ class StudyProgress:
             return replace(progress, unexplained=self._aborted_before(pseudonym, progress))
 
     def answers(self) -> tuple[QuestionnaireAnswers, ...]:
-        """Return all answered questionnaires, by place and step."""
         found = []
         for name in self.enrolled():
             progress = self.progress(name)
@@ -233,7 +222,6 @@ class StudyProgress:
         return tuple(found)
 
     def _played_next(self, pseudonym: str, progress: StepProgress) -> list[StepEntry]:
-        """Return the entries of next steps whose trials are stored but not counted yet."""
         entries = []
         while (step := progress.next_step) is not None:
             found = self._played_for(pseudonym, progress, step)
@@ -273,7 +261,6 @@ class StudyProgress:
         return None
 
     def _since(self, pseudonym: str, progress: StepProgress) -> datetime:
-        """Return the earliest start of the next step's trial."""
         rows = self._database.rows(
             f"SELECT trial_id, started_utc FROM trials WHERE trainee_id = ({TRAINEE_ID})", pseudonym
         )
@@ -282,7 +269,6 @@ class StudyProgress:
         return max([*after, moment(progress.enrolled_utc)])
 
     def _aborted_before(self, pseudonym: str, progress: StepProgress) -> tuple[AbortedTrial, ...]:
-        """Return the aborted trials of the next step without a reason."""
         step = progress.next_step
         if step is None or step.kind != StepKind.TRIAL:
             return ()
@@ -290,9 +276,9 @@ class StudyProgress:
         left_out = [moment(entry.stored_utc) for entry in progress.skipped]
         since = max([self._since(pseudonym, progress), *left_out])
         return tuple(
-            stored.record
-            for stored in self._study.aborted(pseudonym)
-            if not stored.repeat_reason
-            and (stored.record.mode, stored.record.task) == (step.mode, step.task)
-            and moment(stored.record.started_utc) >= since
+            record
+            for record in self._study.aborted(pseudonym)
+            if not record.repeat_reason
+            and (record.mode, record.task) == (step.mode, step.task)
+            and moment(record.started_utc) >= since
         )

@@ -8,21 +8,8 @@ from dataclasses import dataclass, field, replace
 from typing import Annotated, Any, ClassVar, Literal
 
 from rastrainer.errors import InputError
-from rastrainer.json_checks import (
-    is_identifier,
-    number,
-    one_of,
-    text,
-    texts,
-    whole_number,
-)
-from rastrainer.protocol import (
-    SKIN_KEYS,
-    TRIAL_RUN,
-    Mode,
-    RegistrationMethod,
-    StepKind,
-)
+from rastrainer.json_checks import is_identifier, number, one_of, text, texts, whole_number
+from rastrainer.protocol import SKIN_KEYS, TRIAL_RUN, Mode, RegistrationMethod, StepKind
 from rastrainer.study.protocol.plan_file import PlanFile
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study_messages import (
@@ -83,20 +70,15 @@ class StudyProtocol(PlanFile):
     """What every trainee of a study does.
 
     Attributes:
-        mode_order, task_order: As listed, or balanced over the trainees.
-        repetitions: How often each task is done in each mode, round by round.
         trial_run_min: Length of the trial run at the start of each mode; 0 for none.
-        break_between_modes_min, break_between_tasks_min: At least so long; 0 for none.
         references: Of the score, by task; by default, the scenario's.
-        guidance: To the next point; "" leaves it to the simulator's setting.
+        guidance, tutorial: "" leaves it to the simulator's setting.
         ghost: For the trials; "" for none, even if the simulator's setting has one.
-        tutorial: "" leaves it to the simulator's setting.
         procedures: By task, the procedure that its trials continue with; without one, a trial ends
             with the registration.
         methods: By task, by what its trials are registered; without one, by its fiducials.
         skin: By task, how far the skin shifts and is indented in its trials; without one, as the
             scenario says.
-        allows: What counts in the trials although it is not how a trainee plays, `Allowance`s.
         check_journals: Whether a trial is scored only if it follows from its journal.
     """
 
@@ -182,14 +164,6 @@ def mode_order(protocol: StudyProtocol, place: int) -> tuple[str, ...]:
     return _ordered(protocol.modes, protocol.mode_order, place)
 
 
-def task_order(
-    protocol: StudyProtocol, place: int, mode_index: int, round_: int
-) -> tuple[str, ...]:
-    rows = len(williams_design(len(protocol.modes))) if protocol.mode_order == BALANCED else 1
-    row = place // rows + mode_index * protocol.repetitions + round_
-    return _ordered(protocol.tasks, protocol.task_order, row)
-
-
 def _ordered(names: tuple[str, ...], order: str, row: int) -> tuple[str, ...]:
     if order != BALANCED:
         return names
@@ -221,8 +195,10 @@ def _in_mode(protocol: StudyProtocol, place: int, index: int, mode: str) -> Iter
             tutorial=protocol.tutorial,
         )
     is_first = True
+    orders = len(williams_design(len(protocol.modes))) if protocol.mode_order == BALANCED else 1
     for round_ in range(protocol.repetitions):
-        for task in task_order(protocol, place, index, round_):
+        row = place // orders + index * protocol.repetitions + round_
+        for task in _ordered(protocol.tasks, protocol.task_order, row):
             name = f"{mode}/{round_ + 1}/{task}"
             if not is_first and protocol.break_between_tasks_min:
                 minutes = protocol.break_between_tasks_min
