@@ -10,15 +10,7 @@ import { Ghost } from "../scene/ghost";
 import { Gamepads } from "../input/gamepads";
 import { Keyboard } from "../input/keyboard";
 import {
-  BANNERS,
-  TONES,
-  type ControlNews,
-  type Feedback,
-  type Hello,
-  type News,
-  type SceneNews,
-  type Screen,
-  type StateNews,
+  BANNERS, TONES, type ControlNews, type Feedback, type Hello, type News, type SceneNews, type Screen, type StateNews,
 } from "../generated";
 import { isSoftware } from "../scene/graphics";
 import { hasGuide, isTouchError } from "../stream/stages";

@@ -1,15 +1,8 @@
 /** The headset's controllers or tracked hands: input, rays and haptic pulses. */
 
 import {
-  BufferGeometry,
-  Float32BufferAttribute,
-  Line,
-  LineBasicMaterial,
-  Raycaster,
-  type Intersection,
-  type Object3D,
-  type WebXRManager,
-  type XRTargetRaySpace,
+  BufferGeometry, Float32BufferAttribute, Line, LineBasicMaterial, Raycaster, type Intersection, type Object3D,
+  type WebXRManager, type XRTargetRaySpace,
 } from "three";
 
 import type { Connection } from "../stream/connection";
