@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import slicer
-from Testing.slicer.host.stand_ins.plot_view import draw_chart
 
 from rastrainer.errors import InputError
 from rastrainer.procedure.plan import ProcedureKind
@@ -32,6 +31,7 @@ from rastrainer.trial.trial_row import TrialRow
 from Testing.domain.trial.trial_records import REFERENCE, gentle_score, make_traced
 from Testing.simulator.report.studied_procedures import outcome
 from Testing.slicer.host.failures import FAILURES, VtkMessages
+from Testing.slicer.host.pictures import draw_chart
 from Testing.slicer.recorded_trial import scored_analysis
 
 COHORT = [
