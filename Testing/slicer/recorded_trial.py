@@ -70,9 +70,8 @@ def scored_analysis(
     motion = dict.fromkeys(SAFETY_METRICS, 0.0) | dict(record.get("motion", {}))
     pose = scenario.perturbed_head_to_world(seed)
     truth = RevealedTruth(tuple(pose.ravel().tolist()), true_tre_mm)
-    return analyze_trial(
-        record_from_json(TrialRecord, {**record, "motion": motion}), scenario, truth=truth
-    )
+    read = record_from_json(TrialRecord, {**record, "motion": motion})
+    return analyze_trial(read, scenario).scored(scenario, truth)
 
 
 COLIN27 = load_scenario(asset_path("scenarios", "colin27"))

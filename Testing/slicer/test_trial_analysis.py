@@ -43,7 +43,7 @@ def test_touches_are_paired_with_fiducials_by_label(scenario, make_record):
 
 def test_all_three_kinds_are_fitted_and_the_true_error_of_the_rigid_one_is_scored(scenario, record):
     truth = truth_of(scenario)
-    analysis = analyze_trial(record, scenario, truth=truth)
+    analysis = analyze_trial(record, scenario).scored(scenario, truth)
     assert set(analysis.fits) == {"rigid", "similarity", "affine"}
     region = region_of(scenario)
     errors = [
@@ -66,7 +66,7 @@ def test_a_common_bias_is_scored_and_reported_until_the_truth_is_unknown(scenari
     for point in value["points"]:
         aim = aims[task.labels.index(point["label"])]
         point["positionMm"] = transforms.apply(truth.matrix, aim).tolist()
-    beside = analyze_trial(record_from_json(TrialRecord, value), scenario, truth=truth)
+    beside = analyze_trial(record_from_json(TrialRecord, value), scenario).scored(scenario, truth)
     assert beside.score.measures.common_bias_mm == pytest.approx(1.4)
     assert beside.score.acceptable
     (advice,) = [each for each in beside.feedback.advice if each.topic == "common bias"]
@@ -83,9 +83,9 @@ def test_only_the_score_detects_an_offset_shared_by_all_touches(scenario, make_r
     for point in value["points"]:
         point["positionMm"] = [point["positionMm"][0] + 9.0, *point["positionMm"][1:]]
     truth = truth_of(scenario)
-    aside = analyze_trial(record_from_json(TrialRecord, value), scenario, truth=truth)
+    aside = analyze_trial(record_from_json(TrialRecord, value), scenario).scored(scenario, truth)
     record = record_from_json(TrialRecord, make_record(str(uuid.UUID(int=1))))
-    honest = analyze_trial(record, scenario, truth=truth)
+    honest = analyze_trial(record, scenario).scored(scenario, truth)
     assert aside.target_errors[RIGID].expected_mm == pytest.approx(
         honest.target_errors[RIGID].expected_mm
     )
@@ -108,7 +108,7 @@ def test_ctps_compares_with_the_published_trials_of_the_same_mode(scenario, reco
 
 def test_the_protocols_references_apply(scenario, record):
     def score(**others):
-        return analyze_trial(record, scenario, truth=truth_of(scenario), **others).score
+        return analyze_trial(record, scenario).scored(scenario, truth_of(scenario), **others).score
 
     strict = {record.task: ScoreReference(20.0, 0.1, 0.5)}
     assert score(references=strict).score < score().score
@@ -117,7 +117,7 @@ def test_the_protocols_references_apply(scenario, record):
 
 def test_the_results_are_json_with_finite_numbers(scenario, record):
     cohort, truth = read_trials(PUBLISHED), truth_of(scenario)
-    analysis = analyze_trial(record, scenario, cohort, truth=truth)
+    analysis = analyze_trial(record, scenario, cohort).scored(scenario, truth)
     value = json.loads(json.dumps(results_json(analysis), allow_nan=False))
     assert value["fits"]["rigid"]["freMm"] == analysis.rigid.fre_mm
     assert value["truth"]["trueTreMm"] == 0.3

@@ -6,8 +6,9 @@ virtual trainees.
 
 from __future__ import annotations
 
+import json
 import tempfile
-from collections.abc import Awaitable, Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 
 from aiohttp import web
@@ -17,14 +18,14 @@ from rastrainer.number_text import with_units
 from rastrainer.protocol import Phase
 from rastrainer_simulator.board.class_table import ClassReader, Standings
 from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
-from rastrainer_simulator.presentation.messages import SeatNews, message_text
+from rastrainer_simulator.presentation.messages import SUBPROTOCOL, SeatNews, message_text
 from rastrainer_simulator.state import TouchStage
 from rastrainer_simulator.texts.texts import Texts
+from Testing.free_port import free_port
 from Testing.pictures import keep_picture
 from Testing.simulator.board.class_study import play_class
 from Testing.simulator.board.conftest import BoardClient
-from Testing.simulator.board.seat_double import HOST, serve_seat
-from Testing.simulator.net.igtl.servers import LoopThread
+from Testing.simulator.net.igtl.servers import HOST, LoopThread
 from Testing.web.chromium import launch
 
 FOLDER = Path(__file__).parents[2] / "docs" / "pictures"
@@ -74,14 +75,28 @@ def seats(found: Standings) -> dict[str, str]:
     }
 
 
-def says(text: str) -> Callable[[web.WebSocketResponse], Awaitable[None]]:
-    """Return a function that has a seat report one state."""
+async def serve_seat(reported: str) -> tuple[web.AppRunner, int]:
+    """Serve a seat that pairs with any board and reports one state; return server and port."""
 
-    async def say(socket: web.WebSocketResponse) -> None:
-        await socket.send_str(text)
+    async def pair(_request: web.Request) -> web.Response:
+        return web.json_response({"key": "k" * 43})
+
+    async def stream(request: web.Request) -> web.WebSocketResponse:
+        socket = web.WebSocketResponse(protocols=(SUBPROTOCOL,))
+        await socket.prepare(request)
         await socket.receive()
+        welcome = {"type": "welcome", "protocol": 1, "view": 1, "bodies": []}
+        await socket.send_str(json.dumps(welcome))
+        await socket.send_str(reported)
+        await socket.receive()
+        return socket
 
-    return say
+    app = web.Application()
+    app.add_routes([web.post("/pair", pair), web.get("/stream", stream)])
+    runner, port = web.AppRunner(app, access_log=None, shutdown_timeout=0.1), free_port()
+    await runner.setup()
+    await web.TCPSite(runner, HOST, port).start()
+    return runner, port
 
 
 def take_picture(board: BoardClient, stopped: Iterable[web.AppRunner]) -> None:
@@ -117,7 +132,7 @@ def main() -> None:
         board = BoardClient(thread, Path(folder) / "teacher", study)
         runners = []
         for name, text in seats(found).items():
-            runner, port = thread.run(serve_seat(says(text)))
+            runner, port = thread.run(serve_seat(text))
             runners.append(runner)
             values = {"name": name, "address": f"http://{HOST}:{port}", "code": "000000"}
             status, answer = board.ask("/seats", "POST", **values)

@@ -17,6 +17,7 @@ from rastrainer.study.curriculum.standing import CurriculumStanding, by_curricul
 from rastrainer.study.database.database import LockWait, StudyBusyError, StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import utc_now
+from rastrainer.study.outcomes import task_title
 from rastrainer_simulator.board.board_messages import (
     AssignmentCell,
     AssignmentColumn,
@@ -167,11 +168,11 @@ class ClassWatch:
 def class_table(found: Standings, language: str) -> tuple[CurriculumTable, ...]:
     texts = Texts(LANGUAGES[language])
 
-    def task_title(name: str) -> str:
-        key = f"task.{name}"
-        return texts.say(key) if key in texts else _spoken(name)
+    def title(task: str) -> str:
+        key = f"task.{task}"
+        return texts.say(key) if key in texts else task_title(task)
 
-    words = AssignmentTexts(texts, task_title, _spoken)
+    words = AssignmentTexts(texts, title, task_title)
     tables = []
     for curriculum, group in by_curriculum(found).items():
         first = next(iter(group.values()))
@@ -197,7 +198,3 @@ def _row(name: str, standing: CurriculumStanding, words: AssignmentTexts) -> Tra
             for each in standing.standings
         ),
     )
-
-
-def _spoken(name: str) -> str:
-    return name.replace("-", " ").capitalize()

@@ -9,7 +9,7 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from rastrainer.number_text import counted, fixed, p_phrase, p_text, percent, signed, significant
+from rastrainer.number_text import counted, fixed, p_phrase, p_text, percent, signed
 from rastrainer.study.outcomes import mode_name, mode_title, short_mode_title, task_title
 from rastrainer.study.tre_calibration import share_text
 from rastrainer_simulator.statistics.intervals import ALPHA, TARGET_POWER, Estimate
@@ -48,7 +48,7 @@ def p_or_dash(p: float | None) -> str:
 
 WRITERS = (
     *(cell, left, interval_text, or_dash, p_or_dash, share_text),
-    *(counted, fixed, p_phrase, p_text, percent, signed, significant),
+    *(counted, fixed, p_phrase, p_text, percent, signed),
     *(mode_name, mode_title, short_mode_title, task_title),
 )
 """The functions that templates call."""

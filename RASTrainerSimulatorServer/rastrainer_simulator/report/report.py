@@ -37,10 +37,8 @@ from rastrainer_simulator.report.variation import variation
 PAGE, NUMBERS = "report.html", "trials.csv"
 
 
-def write_report(
-    data: StudyData, folder: Path, made_utc: str | None = None, progress: Progress = no_progress
-) -> Path:
-    page_text = report_html(data, made_utc, progress)
+def write_report(data: StudyData, folder: Path, progress: Progress = no_progress) -> Path:
+    page_text = report_html(data, progress=progress)
     make_folder(folder)
     write_text(folder / PAGE, page_text)
     write_text(folder / NUMBERS, trials_csv(data.trials))

@@ -47,7 +47,7 @@ def record():
 def test_a_procedure_is_analyzed_and_scored_once_the_truth_is_known(record):
     before = analyze_trial(record, SCENARIO)
     assert before.procedure is None
-    found = analyze_trial(record, SCENARIO, truth=REVEALED).procedure
+    found = analyze_trial(record, SCENARIO).scored(SCENARIO, REVEALED).procedure
     assert len(found.analysis.trajectories) == 5
     assert 0.0 < found.analysis.target_point_error_rms_mm < 1.5
     assert found.analysis.target_point_error_by_hand_rms_mm == pytest.approx(0.0, abs=1e-9)
@@ -56,11 +56,11 @@ def test_a_procedure_is_analyzed_and_scored_once_the_truth_is_known(record):
 
 
 def test_a_guide_that_the_robot_aligned_leaves_less_time_and_is_named_in_the_feedback(record):
-    by_hand = analyze_trial(record, SCENARIO, truth=REVEALED).procedure
+    by_hand = analyze_trial(record, SCENARIO).scored(SCENARIO, REVEALED).procedure
     first, *others = record.procedure.instruments
     instruments = (replace(first, self_aligned=True), *others)
     changed = replace(record, procedure=replace(record.procedure, instruments=instruments))
-    by_robot = analyze_trial(changed, SCENARIO, truth=REVEALED).procedure
+    by_robot = analyze_trial(changed, SCENARIO).scored(SCENARIO, REVEALED).procedure
     assert by_robot.score.reference_s == by_hand.score.reference_s - 30.0
     assert by_robot.score.score < by_hand.score.score
     told = [each["selfAligned"] for each in by_robot.summary()["trajectories"]]
@@ -69,14 +69,14 @@ def test_a_guide_that_the_robot_aligned_leaves_less_time_and_is_named_in_the_fee
 
 def test_the_score_of_the_registration_equals_that_of_a_trial_with_touches_only(record):
     alone = replace(record, procedure=None)
-    scored = analyze_trial(alone, SCENARIO, truth=REVEALED)
+    scored = analyze_trial(alone, SCENARIO).scored(SCENARIO, REVEALED)
     assert scored.procedure is None
-    assert scored.score == analyze_trial(record, SCENARIO, truth=REVEALED).score
+    assert scored.score == analyze_trial(record, SCENARIO).scored(SCENARIO, REVEALED).score
     assert "procedure" not in score_arguments(scored)["details"]
 
 
 def test_the_outcome_of_a_procedure_is_submitted_with_the_score(record):
-    analysis = analyze_trial(record, SCENARIO, truth=REVEALED)
+    analysis = analyze_trial(record, SCENARIO).scored(SCENARIO, REVEALED)
     arguments = json.loads(json.dumps(score_arguments(analysis)))
     check_arguments(CommandName.TRIAL_SCORED, arguments)
     submitted = arguments["details"]["procedure"]
@@ -93,4 +93,4 @@ def test_the_outcome_of_a_procedure_is_submitted_with_the_score(record):
 def test_a_trial_with_another_version_of_the_plan_is_not_analyzed(record):
     done = replace(record.procedure, sha256="0" * 64)
     with pytest.raises(InputError, match="with a different plan from the procedure 'seeg'"):
-        analyze_trial(replace(record, procedure=done), SCENARIO, truth=REVEALED)
+        analyze_trial(replace(record, procedure=done), SCENARIO).scored(SCENARIO, REVEALED)

@@ -9,17 +9,19 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
+from scipy.stats import ttest_rel
 
 from rastrainer.errors import InputError
 from rastrainer.study.database.study import Study
+from rastrainer.study.outcomes import MAIN_OUTCOMES
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.study_data import StudyData, read_study_data
 from rastrainer.trial.scoring import LONG_PAUSE_S
 from rastrainer.trial.trial_feedback import competence_of
 from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.cli.main import main
-from rastrainer_simulator.report.comparisons import mode_delays, paired_means
-from rastrainer_simulator.report.published_tables import performance_color
+from rastrainer_simulator.report.comparisons import compare_modes, mode_delays, paired_means
+from rastrainer_simulator.report.published_tables import performance_color, with_ctps
 from rastrainer_simulator.report.report import report_html
 from rastrainer_simulator.virtual.outcome_model import OutcomeModel
 from Testing.domain.study.played_study import STUDIES, study_with_trials
@@ -366,3 +368,13 @@ def test_names_are_texts_whatever_they_contain(recwarn):
     assert "<script" not in page
     assert "&lt;script&gt;" in page
     assert [str(each.message) for each in recwarn if "Glyph" in str(each.message)] == []
+
+
+def test_ctps_is_not_tested_because_it_differs_between_equal_modes_far_too_often():
+    random, modes, rejected = np.random.default_rng(16), ("desktop", "hmd"), []
+    for _ in range(40):
+        drawn = draw_study(OutcomeModel([120.0] * 3, [1.5] * 3), 12, modes, random)
+        (found,) = (c for c in compare_modes(with_ctps(drawn), MAIN_OUTCOMES, *modes) if c.reason)
+        assert (found.outcome.name, found.result) == ("ctps", None)
+        rejected.append(ttest_rel(found.second_means, found.first_means).pvalue < 0.05)
+    assert np.mean(rejected) > 0.2

@@ -38,7 +38,7 @@ def test_one_group_is_not_split():
     refused = 0
     for seed in range(10):
         with contextlib.suppress(NoClustersError):
-            cluster_trainees(cohort([(120, 1.5, -3.0)], 30, (20, 0.3, 0.4), seed), METRICS, seed)
+            cluster_trainees(cohort([(120, 1.5, -3.0)], 30, (20, 0.3, 0.4), seed), METRICS)
             continue
         refused += 1
     assert refused >= 9
@@ -53,9 +53,9 @@ def test_few_trainees_and_constant_metrics_are_refused_with_a_message():
         cluster_trainees(same, METRICS)
 
 
-def test_the_same_seed_gives_the_same_groups():
+def test_the_same_trainees_give_the_same_groups():
     trainees = cohort([(90, 1.0, -2.0), (150, 2.0, -4.0)], 15, (8, 0.1, 0.2))
-    assert cluster_trainees(trainees, METRICS, 7) == cluster_trainees(trainees, METRICS, 7)
+    assert cluster_trainees(trainees, METRICS) == cluster_trainees(trainees, METRICS)
 
 
 def test_the_dip_is_hartigans():

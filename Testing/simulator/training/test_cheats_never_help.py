@@ -111,7 +111,9 @@ def score_of(scenario, hands, meanwhile=lambda _trial: None, settings=None):
     for point, kept in zip(record["points"], trial.state.touches, strict=True):
         point["positionMm"] = [MM_PER_M * value for value in kept.position]
     pose = RevealedTruth(tuple(truth.head_to_world.ravel().tolist()), 0.0)
-    return analyze_trial(record_from_json(TrialRecord, record), scenario, truth=pose).score
+    return (
+        analyze_trial(record_from_json(TrialRecord, record), scenario).scored(scenario, pose).score
+    )
 
 
 @pytest.fixture(params=_with_soak(HANDS, MORE_HANDS))

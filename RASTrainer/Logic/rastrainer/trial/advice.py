@@ -39,8 +39,7 @@ class TouchFinding:
     """The analysis of one touch.
 
     Attributes:
-        depth_mm, aside_mm: Parts along the skin's outward normal, positive off the skin, and along
-            the skin; None without skin.
+        depth_mm: Part along the skin's outward normal, positive off the skin; None without skin.
         share: Of the squared registration error, 0 to 1.
         dwell_s: How long the tip had been within 2 mm; None without a recording.
         reasons: The main one first.
@@ -50,7 +49,6 @@ class TouchFinding:
     label: str
     residual_mm: float
     depth_mm: float | None
-    aside_mm: float | None
     share: float
     dwell_s: float | None
     is_outlier: bool
@@ -93,7 +91,7 @@ def touch_findings(
         residual = float(registration.residuals_mm[row])
         share = float(squares[row]) / total if total > 0 else 0.0
         is_outlier = share * len(squares) >= OUTLIER_SHARE
-        depth = aside = dwell = replay = None
+        depth = dwell = replay = None
         reasons = []
         if normals is not None:
             depth = float(registration.residual_vectors_mm[row] @ normals[row])
@@ -103,7 +101,7 @@ def touch_findings(
             dwell, replay, how = _touched(trajectory, touches[label])
             reasons += how
         why = tuple(reasons) if is_outlier else ()
-        known = label, residual, depth, aside, share, dwell
+        known = label, residual, depth, share, dwell
         findings.append(TouchFinding(*known, is_outlier, why, replay))
     return tuple(findings)
 

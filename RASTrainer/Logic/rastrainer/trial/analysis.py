@@ -79,10 +79,10 @@ class TrialAnalysis(TouchRegistration):
 
     record: TrialRecord
     target_name: str
-    truth: RevealedTruth | None
-    score: TrialScore | None
     published_score: PublishedScore | None
     feedback: TrialFeedback
+    truth: RevealedTruth | None = None
+    score: TrialScore | None = None
     procedure: ProcedureOutcome | None = None
 
     def scored(
@@ -95,8 +95,8 @@ class TrialAnalysis(TouchRegistration):
         """Return the analysis with the truth and its score.
 
         The score uses the true error of the rigid registration and, of a trial by fiducials, the
-        common bias of its touches. A landmark has no exact place, and a trace no bias.
-        `analyze_trial` describes the arguments.
+        common bias of its touches. A landmark has no exact place, and a trace no bias. References,
+        by task, are those of a study's protocol; other tasks have the scenario's.
         """
         record = self.record
         tre_mm = region_of(scenario).tre_mm(self.rigid.matrix, truth.matrix)
@@ -149,26 +149,21 @@ def analyze_trial(
     record: TrialRecord,
     scenario: Scenario,
     cohort: Sequence[TrialRow] = (),
-    references: Mapping[str, ScoreReference] | None = None,
     trajectory: Trajectory | None = None,
-    truth: RevealedTruth | None = None,
     pause: Callable[[], None] = lambda: None,
 ) -> TrialAnalysis:
-    """Register a trial by its method, its touches paired by label; score it by its truth.
+    """Register a trial by its method, its touches paired by label.
 
-    CTPS compares with the trials of the cohort in the same mode. The references of the score, by
-    task, are those of a study's protocol; other tasks have the scenario's. The trajectory explains
-    why a touch was off. `pause` is called every 10 ms or so; a worker may wait in it.
+    CTPS compares with the trials of the cohort in the same mode. The trajectory explains why a
+    touch was off. `pause` is called every 10 ms or so; a worker may wait in it.
     """
     registered = register_trial(GivenPoints.of_record(record), scenario, pause)
     rigid = registered.rigid
     normals = normals_at(scenario, record.task, rigid.labels, record.method)
-    analysis = TrialAnalysis(
+    return TrialAnalysis(
         **vars(registered),
         record=record,
         target_name=scenario.target.name,
-        truth=None,
-        score=None,
         published_score=(
             published_score(record, rigid.fre_mm, cohort)
             if record.method is RegistrationMethod.FIDUCIALS
@@ -176,7 +171,6 @@ def analyze_trial(
         ),
         feedback=trial_feedback(None, rigid, normals, record.motion, trajectory),
     )
-    return analysis if truth is None else analysis.scored(scenario, truth, references, trajectory)
 
 
 def published_score(

@@ -67,17 +67,11 @@ def _latest(column: str, kind: str) -> str:
     return f"(SELECT {column} FROM results {own} ORDER BY results.id DESC LIMIT 1)"
 
 
-_ATTEMPTS = f"""
-    SELECT trial_id, task, mode, scenario, started_utc, method,
+_ROWS = f"""
+    SELECT pseudonym, mode, task, trial_id, started_utc, scenario, method, completion_time_s,
         {_latest("result_json", SCORE)}, {_latest("result_json", PROCEDURE)},
-        {_latest("value", TRUTH)} IS NOT NULL
-    FROM trials WHERE trainee_id = ({TRAINEE_ID}) AND task != ? ORDER BY started_utc, id
-"""
-_OUTCOMES = f"""
-    SELECT trial_id, pseudonym, method, completion_time_s, {_latest("value", SCORE)},
         {_latest("value", TRUTH)}
     FROM trials JOIN trainees ON trainees.id = trainee_id
-    WHERE task = ? AND mode = ? ORDER BY trials.id
 """
 
 
@@ -407,25 +401,8 @@ class Study(AbstractContextManager["Study"]):
         """
         with self.database.reading():
             aborted = self.aborted(pseudonym)
-            rows = self.database.rows(_ATTEMPTS, pseudonym, TRIAL_RUN)
-        found = []
-        for trial_id, task, mode, scenario, utc, method, scored, done, is_revealed in rows:
-            score = None if scored is None else result_of(SCORE, scored)
-            if score is None and not is_revealed:
-                continue
-            row = TrialRow(
-                *(pseudonym, mode, task),
-                trial_id=trial_id,
-                started_utc=utc,
-                scenario=scenario,
-                method=method,
-                procedure=None if done is None else result_of(PROCEDURE, done),
-                is_aborted=score is None,
-            )
-            if score is not None:
-                values = {"score": score.score}
-                row = replace(row, values=values, acceptable=score.acceptable, parts=score.parts)
-            found.append(row)
+            rows = self._rows("WHERE pseudonym = ? AND task != ?", pseudonym, TRIAL_RUN)
+        found = [row for row in rows if row.values.keys() & {"score", "true_tre_mm"}]
         found += [TrialRow.of(record) for record in aborted if record.counts_as_failed]
         return tuple(sorted(found, key=lambda trial: moment(trial.started_utc)))
 
@@ -438,13 +415,34 @@ class Study(AbstractContextManager["Study"]):
         return tuple(decoded_record(TrialRecord, text) for (text,) in rows)
 
     def outcomes(self, task: str, mode: str) -> list[TrialRow]:
-        names = "completion_time_s", "score", "true_tre_mm"
-        rows = []
-        for trial_id, trainee, method, *results in self.database.rows(_OUTCOMES, task, mode):
-            known = zip(names, results, strict=True)
-            values = {name: value for name, value in known if value is not None}
-            rows.append(TrialRow(trainee, mode, task, 0, values, trial_id, method=method))
-        return rows
+        return self._rows("WHERE task = ? AND mode = ?", task, mode)
+
+    def _rows(self, condition: str, *parameters: str) -> list[TrialRow]:
+        """Return the time, latest score and procedure, and the true error of trials."""
+        rows = self.database.rows(f"{_ROWS} {condition} ORDER BY trials.id", *parameters)
+        found = []
+        for who, mode, task, trial_id, utc, scenario, method, seconds, *results in rows:
+            scored, done, true_mm = results
+            score = None if scored is None else result_of(SCORE, scored)
+            values = {"completion_time_s": seconds}
+            values |= {} if score is None else {"score": score.score}
+            values |= {} if true_mm is None else {"true_tre_mm": true_mm}
+            row = TrialRow(
+                who,
+                mode,
+                task,
+                values=values,
+                trial_id=trial_id,
+                started_utc=utc,
+                scenario=scenario,
+                acceptable=score is not None and score.acceptable,
+                procedure=None if done is None else result_of(PROCEDURE, done),
+                method=method,
+                parts={} if score is None else score.parts,
+                is_aborted=score is None and true_mm is not None,
+            )
+            found.append(row)
+        return found
 
 
 def _trainee(pseudonym: str, consent: int, archived: int, created_utc: str) -> Trainee:
