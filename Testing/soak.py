@@ -7,19 +7,16 @@ python -m Testing.soak 3          runs the third
 
 import subprocess
 import sys
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 ROOT = Path(__file__).parents[1]
 
 
-@dataclass(frozen=True)
-class Part:
+class Part(NamedTuple):
     """Some of the tests, with a sentence about them.
 
-    Attributes:
-        places: folders and files below Testing. A test file belongs to the part that names it, or
-            the nearest folder that holds it.
+    A test file belongs to the part that names it, or the nearest folder that holds it.
     """
 
     name: str

@@ -68,7 +68,6 @@ LAYERS = {
         rastrainer_simulator.net
         rastrainer_simulator.net.igtl, rastrainer_simulator.net.views
         rastrainer_simulator.replay
-        rastrainer_simulator.flow.tutorial
         rastrainer_simulator.flow.session
         rastrainer_simulator.flow.pages
         rastrainer_simulator.flow

@@ -103,18 +103,8 @@ def is_module(name: str) -> bool:
     for length in range(len(parts), 0, -1):
         module = ".".join(parts[:length])
         if module in MODULES:
-            return length == len(parts) or defines(module, parts[length])
-    return False
-
-
-def defines(module: str, name: str) -> bool:
-    """Return whether a module's source defines a name at its top level."""
-    place = module.replace(".", "/")
-    for source in SOURCES:
-        for file in (ROOT / source / f"{place}.py", ROOT / source / place / "__init__.py"):
-            if file.is_file():
-                pattern = rf"^(?:async def|def|class) {name}\b|^{name}\b.*="
-                return bool(re.search(pattern, file.read_text(encoding="utf-8"), re.MULTILINE))
+            files = (f"{module.replace('.', '/')}{end}" for end in (".py", "/__init__.py"))
+            return length == len(parts) or any(is_named(file, parts[length]) for file in files)
     return False
 
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 from typing import Any, Protocol
 
-from rastrainer_simulator.flow.tutorial.steps import TutorialStep, steps_for
+from rastrainer_simulator.flow.session.tutorial import TutorialStep, steps_for
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.presentation.screen import Screen
 

@@ -33,6 +33,7 @@ ROOTS = (
 )
 LIMITS = ("SUBPROTOCOL", "MAX_KEY_TEXT", "MAX_ITEM_TEXT", "MAX_DEVICE_TEXT", "MAX_FRAMES")
 ALIASES = {Vector: "Vector", messages.Pose: "Pose"}
+LONGEST_LINE = 100
 PLAIN = {str: "string", bool: "boolean", int: "number", float: "number"}
 
 
@@ -78,11 +79,13 @@ class PageTypes:
             values = " | ".join(json.dumps(each.value) for each in hint)
             text = f"{_comment(hint)}\nexport type {hint.__name__} = {values};"
         else:
-            keys = [f"  readonly {each.key}: {self.of(each.hint)};" for each in record_fields(hint)]
+            keys = [f"readonly {each.key}: {self.of(each.hint)};" for each in record_fields(hint)]
             if issubclass(hint, messages.ViewMessage):
-                keys.insert(0, f'  readonly type: "{hint.type}";')
-            lines = "\n".join(keys)
-            text = f"{_comment(hint)}\nexport interface {hint.__name__} {{\n{lines}\n}}"
+                keys.insert(0, f'readonly type: "{hint.type}";')
+            head = f"export interface {hint.__name__} {{"
+            line = " ".join((head, *keys, "}"))
+            lines = "\n".join((head, *(f"  {key}" for key in keys), "}"))
+            text = f"{_comment(hint)}\n{line if len(line) <= LONGEST_LINE else lines}"
         self.declarations[hint] = text
 
 

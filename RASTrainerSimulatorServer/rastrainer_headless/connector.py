@@ -1,8 +1,8 @@
-"""A stand-in of `vtkMRMLIGTLConnectorNode`, so that the link runs without desktop Slicer.
+"""Stand-ins of Slicer's connector and its commands, so that the link runs without desktop Slicer.
 
-It makes the very nodes that the real connector makes, and has its oddities: the latest message of
-a device wins, the order across devices is lost, time stamps are dropped, and a lost connection is
-reported only after the next one.
+The connector makes the very nodes that the real one makes, and has its oddities: the latest message
+of a device wins, the order across devices is lost, time stamps are dropped, and a lost connection
+is reported only after the next one.
 """
 
 from __future__ import annotations
@@ -13,16 +13,17 @@ import threading
 import time
 import weakref
 from collections import deque
+from collections.abc import Mapping
 from typing import Any
 
 import slicer
+import vtk
 
 from rastrainer.errors import InputError
-from rastrainer.igtl.content import Command, CommandReply, Status
+from rastrainer.igtl.content import ERROR_KEY, STATUS_KEY, SUCCESS, Command, CommandReply, Status
 from rastrainer.igtl.message import Header, Message, crc64, pack, unpack
 from rastrainer.slicer.link.connection import ConnectorKit
 from rastrainer.slicer.scene.nodes import ORIGINAL_NAME, decodedText
-from rastrainer_headless.command import HeadlessCommand
 from rastrainer_headless.peer_socket import PeerSocket, recordCrash
 from rastrainer_headless.scene import NODE_CLASS, adoptOrCreateNode, asSlicerHas, updateNode
 
@@ -31,6 +32,70 @@ _CRASHING_TYPE = re.compile(r"(GET|STT|STP|RTS)_")
 _DEVICE_NAME_FIELD = slice(14, 34)
 
 Raw = tuple[Header, bytes]
+WireText = str | bytes
+
+
+class HeadlessCommand(vtk.vtkObject):
+    """The part of `vtkSlicerOpenIGTLinkCommand` that we use: a sent command, and its answer.
+
+    It has the real class's names, values and default time-out. Python gets a text of VTK's as
+    `bytes` if it is not UTF-8.
+    """
+
+    CommandUnknown, CommandWaiting, CommandExpired, CommandCancelled = range(4)
+    CommandFailed, CommandResponseReceived, CommandResponseSent = range(4, 7)
+
+    CommandResponseEvent = 128000
+    CommandExpiredEvent = 128001
+    CommandReceivedEvent = 128002
+    CommandCompletedEvent = 128004
+
+    def __init__(self) -> None:
+        self.commandId = -1
+        self._name: WireText = ""
+        self._content: WireText = ""
+        self._response: WireText = ""
+        self._metadata: Mapping[str, WireText] = {}
+        self.timeoutSec = 5.0
+        self._status = self.CommandUnknown
+
+    def SetName(self, name: WireText) -> None:
+        self._name = name
+
+    def GetName(self) -> WireText:
+        return self._name
+
+    def SetCommandContent(self, content: WireText) -> None:
+        self._content = content
+
+    def GetCommandContent(self) -> WireText:
+        return self._content
+
+    def SetTimeoutSec(self, seconds: float) -> None:
+        self.timeoutSec = seconds
+
+    def GetCommandStatus(self) -> int:
+        return self._status
+
+    def SetCommandStatus(self, status: int) -> None:
+        self._status = status
+
+    def IsInProgress(self) -> bool:
+        return self._status == self.CommandWaiting
+
+    def setResponse(self, content: WireText, metadata: Mapping[str, WireText]) -> None:
+        self._response, self._metadata = content, metadata
+        self._status = self.CommandResponseReceived
+
+    def GetResponseContent(self) -> WireText:
+        return self._response
+
+    def GetSuccessful(self) -> bool:
+        """Return whether the answer says SUCCESS in its metadata; its content does not matter."""
+        return self._metadata.get(STATUS_KEY) == SUCCESS
+
+    def GetErrorMessage(self) -> WireText:
+        return self._metadata.get(ERROR_KEY, "")
 
 
 class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
@@ -75,7 +140,6 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         return self._state
 
     def Start(self) -> int:
-        """Start to connect, repeatedly until `Stop`; return 1 on success."""
         if self._socket is not None:
             return 0
         self._state = self.StateWaitConnection

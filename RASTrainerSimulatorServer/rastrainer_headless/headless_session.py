@@ -20,7 +20,6 @@ def openSession(
     assets: Path,
     studyAddress: PostgresAddress | None = None,
 ) -> ModuleSession:
-    """Begin a session whose study and journals are in a folder."""
     places = ModulePaths(
         assets=assets,
         python=Path(sys.executable),

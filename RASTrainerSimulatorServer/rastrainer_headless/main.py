@@ -143,7 +143,6 @@ def results_json(analysis: TrialAnalysis) -> dict[str, Any]:
 def writeOutput(
     folder: Path, scene: HeadlessScene, scenario: Scenario, latest: TrialAnalysis
 ) -> dict[str, str]:
-    """Write scene and picture of the latest trial; return the paths of all files."""
     files = {"scene": folder / SCENE, "picture": folder / PICTURE, "results": folder / RESULTS}
     scene.save(files["scene"])
     task, rigid = scenario.task(latest.record.task), latest.rigid

@@ -65,7 +65,6 @@ def readVolume(path: Path, orientation: str | None = None) -> Volume:
 
 
 def _oriented(volume: Volume, orientation: str) -> Volume:
-    """Return a volume around the origin whose axes run in the stated directions."""
     axes = np.zeros((3, 3))
     for axis, letter in enumerate(orientation.upper()[:3]):
         for row, pair in enumerate(("LR", "PA", "IS")):

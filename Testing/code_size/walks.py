@@ -110,7 +110,7 @@ def walk_from_touch_to_score(folder: Path) -> None:
             story.start_task,
         ):
             step()
-        story._touch(1, 14)
+        story.touch(1, 14)
         story.player.lower(15)
         host.wait_until(lambda: story.player.is_done, "the tip is on point 15")
         with recording():

@@ -96,9 +96,6 @@ def _keep_views(config: Path) -> None:
 
 
 SERVES = re.compile(r"serves views on (http://\S+), pairing code (\d{6})$")
-LINE = re.compile(
-    r"RASTrainer simulator serves views on (http://127\.0\.0\.1:(\d+)), pairing code (\d{6})\n"
-)
 
 
 class ViewedSimulator(SimulatorProcess):
@@ -111,8 +108,8 @@ class ViewedSimulator(SimulatorProcess):
 
     def __init__(self, records: Path, *arguments: str):
         super().__init__(records, "--no-gamepad", *arguments)
-        line = LINE.fullmatch(self._process.stdout.readline())
-        self.url, self.view_port, self.code = line[1], int(line[2]), line[3]
+        self.url, self.code = SERVES.search(self.next_line()).groups()
+        self.view_port = int(self.url.rpartition(":")[2])
         self.key = paired_key(self.url, self.code)
 
 

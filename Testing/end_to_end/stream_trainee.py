@@ -69,7 +69,6 @@ class WatchingView:
         state, screen, scene: the latest.
         holder: who has control, by the latest message.
         trace: the latest news of a trace.
-        pairing: code and addresses by which others are paired; None before.
         events: all, in order.
     """
 
@@ -79,7 +78,6 @@ class WatchingView:
         self.trace: dict = {"next": None}
         self.screen = Screen()
         self.holder = ""
-        self.pairing: tuple[str, str] | None = None
         self.events: list[dict] = []
         self._client = client
         self._bodies = client.join(kind="page", device="watcher")["bodies"]
@@ -114,8 +112,6 @@ class WatchingView:
                     self.screen = record_from_json(Screen, message["screen"], "The screen")
                 elif message["type"] == "control":
                     self.holder = message["holder"]
-                elif message["type"] == "pairing":
-                    self.pairing = message["code"], ", ".join(message["addresses"])
                 elif message["type"] == "event":
                     self.events.append(message)
                 elif message["type"] == "trace":

@@ -1,4 +1,4 @@
-"""Many OpenIGTLink clients at 60 Hz and views at once are all served; a benchmark times it."""
+"""Many OpenIGTLink clients at 60 Hz and views at once are all served."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import multiprocessing
 
 import pytest
 
-from Testing.benchmarks.bench_crowd import CLIENTS, VIEWS, serve_crowd
+from Testing.benchmarks.crowd import CLIENTS, VIEWS, serve_crowd
 from Testing.end_to_end.simulator_process import ViewedSimulator
 
 SECONDS = 2.0

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import os
 import threading
 
 import numpy as np
@@ -19,6 +18,7 @@ from rastrainer.sections import new_scenario_logic
 from rastrainer.slicer.head.volume import SEGMENT_NAME
 from rastrainer.slicer.scene.nodes import Role, findNode, setPoints
 from Testing.end_to_end.module.story import Story, unfold
+from Testing.running_process import runs
 from Testing.slicer.head.phantoms import phantom
 from Testing.slicer.head.placed import add_volume, fiducials, vtk_matrix
 from Testing.slicer.host.cancels import cancels
@@ -80,33 +80,22 @@ def test_the_scenario_has_the_edited_head_on_the_base_that_was_shown(host):
     assert made[:, 1].min() == pytest.approx(WEN[1] - WEN_RADIUS, abs=1.5)
 
 
-def test_a_scenario_canceled_while_its_head_is_extracted_leaves_nothing_behind(
+def test_a_scenario_canceled_while_its_head_is_extracted_or_planned_on_leaves_nothing_behind(
     host, tmp_path, monkeypatch
 ):
-    is_canceled = threading.Event()
-    # The head is not finished before, however late it is canceled.
-    monkeypatch.setattr(new_scenario_logic, "write_draft", lambda *_draft: is_canceled.wait(120))
-    with cancels(host, "makeScenarioButton"):
-        host.press("makeScenarioButton")
-    is_canceled.set()
-    assert not (tmp_path / "simulator.pid").exists()
+    pid_file, is_canceled = tmp_path / "simulator.pid", threading.Event()
+    with monkeypatch.context() as patched:
+        # The head is not finished before, however late it is canceled.
+        patched.setattr(new_scenario_logic, "write_draft", lambda *_draft: is_canceled.wait(120))
+        with cancels(host, "makeScenarioButton"):
+            host.press("makeScenarioButton")
+        is_canceled.set()
+    assert not pid_file.exists()
     assert_nothing_is_left(host)
-
-
-def test_a_scenario_canceled_while_it_is_planned_leaves_nothing_behind(host, tmp_path):
-    pid_file = tmp_path / "simulator.pid"
     with cancels(host, "makeScenarioButton", lambda: pid_file.exists() and pid_file.read_text()):
         host.press("makeScenarioButton")
-    host.wait_until(lambda: not is_running(int(pid_file.read_text())), "the planner ends")
+    host.wait_until(lambda: not runs(int(pid_file.read_text())), "the planner ends")
     assert_nothing_is_left(host)
-
-
-def is_running(pid):
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    return True
 
 
 def assert_nothing_is_left(host):

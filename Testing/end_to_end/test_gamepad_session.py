@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from rastrainer.journal.journal_file import read_journal
+from rastrainer_simulator.scene.nodes import TIP_ERROR, TIP_FREE, Material
 from rastrainer_simulator.texts.texts import Texts
 from Testing.end_to_end.hands import GamepadHands
 from Testing.end_to_end.lab import Lab
@@ -265,14 +266,13 @@ def test_the_window_shows_each_step_of_the_flow(session):
         pixels = read_png(path)
         assert pixels.shape == (HEIGHT, WIDTH, 3)
         assert pixels.std() > 20, name
-    red, blue = ((200, 0, 0), (255, 60, 60)), ((0, 30, 190), (70, 125, 255))
     free, near = (
         middle(read_png(session["pictures"][f"close-view-{name}"]))
         for name in ("free", "proximity")
     )
     few = WIDTH * HEIGHT / 100_000
-    assert count(free, blue) > few > count(free, red)
-    assert count(near, red) > few
+    assert count(free, TIP_FREE) > few > count(free, TIP_ERROR)
+    assert count(near, TIP_ERROR) > few
 
 
 def middle(pixels: np.ndarray) -> np.ndarray:
@@ -280,5 +280,6 @@ def middle(pixels: np.ndarray) -> np.ndarray:
     return pixels[HEIGHT // 5 : HEIGHT * 7 // 8, WIDTH // 6 : WIDTH * 3 // 4]
 
 
-def count(pixels: np.ndarray, color) -> int:
-    return int(np.all((pixels >= color[0]) & (pixels <= color[1]), axis=2).sum())
+def count(pixels: np.ndarray, material: Material) -> int:
+    """Return how many pixels have about the color of a glowing material."""
+    return int((np.abs(pixels - 255.0 * np.array(material.color)).max(axis=2) < 20.0).sum())

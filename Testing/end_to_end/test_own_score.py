@@ -12,23 +12,10 @@ from rastrainer.errors import InputError
 from rastrainer.journal.entries import Stamp
 from rastrainer.journal.folder import journals_of
 from rastrainer.journal.journal_file import read_journal
-from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.sections.trial_logic import TrialLogic
 from rastrainer.study.database.study import Study
-from rastrainer.study.delivered_trial import (
-    score_references,
-    scored_with_journal,
-    store_delivered,
-    with_progress,
-)
-from rastrainer.trial.analysis import (
-    RevealedTruth,
-    analyze_trial,
-    score_arguments,
-)
 from rastrainer.trial.ctps import PUBLISHED_STUDY, read_trials
-from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
@@ -43,7 +30,6 @@ from Testing.end_to_end.finished_trials import COLIN, TRAINEE, write_finished_tr
 from Testing.end_to_end.simulator_process import SimulatorProcess
 
 TIMEOUT_S = 600.0
-TRIALS, FEW = 100, 3
 TOO_MANY_AT_ONCE = "Trials arrive faster than they can be scored; they will be offered again later."
 
 
@@ -84,38 +70,6 @@ def without_its_mark(scored):
     return {**scored, "details": details}
 
 
-@pytest.mark.soak
-def test_the_result_without_slicer_is_that_of_slicers_study_on_100_seeded_trials(
-    tmp_path, scenario, cohort
-):
-    alone = Alone(tmp_path / "alone", TRIALS, scenario)
-    delivered = tmp_path / "delivered"
-    delivered.mkdir()
-    assert write_finished_trials(delivered, range(TRIALS)) == alone.trials
-    archive = TrialArchive(delivered)
-    with Study.open(tmp_path / "study.db") as study:
-        for record in archive.unacknowledged():
-            assert isinstance(record, TrialRecord)
-            _record, analysis = store_delivered(
-                record_to_json(record), study, lambda each: analyze_trial(each, scenario, cohort)
-            )
-            registration = check_arguments(
-                "SubmitRegistration", analysis.arguments(record.trial_id)
-            )
-            answer = archive.answer("SubmitRegistration", registration, Stamp.now(0, 0.0))
-            truth = record_from_json(RevealedTruth, answer)
-            scored = scored_with_journal(analysis, truth, scenario, score_references(study))
-            study.add_results(record.trial_id, score=scored.score)
-            slicers = score_arguments(with_progress(scored, study))
-            (own,) = alone.entries(record.trial_id, "scored")
-            assert own["details"][SCORED_BY_SIMULATOR] is True
-            assert without_its_mark(own) == slicers
-            (registered,) = alone.entries(record.trial_id, "registration")
-            assert tuple(registered["matrix"]) == registration["matrix"]
-        scores = [study.trial(trial).score.score for trial in alone.trials]
-    assert alone.history.trend(TRAINEE, "desktop") == tuple(scores[-20:])
-
-
 def test_a_trial_is_not_scored_on_another_head_that_was_loaded_afterward(tmp_path, scenario):
     alone = Alone(tmp_path / "alone", 0, scenario)
     (trial,) = write_finished_trials(alone.folder, range(1))
@@ -124,10 +78,11 @@ def test_a_trial_is_not_scored_on_another_head_that_was_loaded_afterward(tmp_pat
     assert alone.entries(trial, "registration") == []
 
 
+@pytest.mark.parametrize("count", [3, pytest.param(100, marks=pytest.mark.soak)])
 def test_slicer_connecting_later_stores_the_trial_and_its_score_replaces_the_identical_one(
-    tmp_path, scenario, cohort
+    tmp_path, scenario, cohort, count
 ):
-    alone = Alone(tmp_path / "alone", FEW, scenario)
+    alone = Alone(tmp_path / "alone", count, scenario)
 
     find, make = lambda _name: scenario, lambda services: TrialLogic(services, cohort)
     with SimulatorProcess(alone.folder, "--no-views") as simulator:
@@ -136,13 +91,13 @@ def test_slicer_connecting_later_stores_the_trial_and_its_score_replaces_the_ide
         slicer.logic.trialScored.connect(scored.append)
         slicer.logic.problemFound.connect(problems.append)
         give_up = time.monotonic() + TIMEOUT_S
-        while len(scored) < FEW and time.monotonic() < give_up:
+        while len(scored) < count and time.monotonic() < give_up:
             slicer.run_for(10)
         slicer.close()
         assert simulator.stop()[0] == 0
     # A busy machine takes them in several turns.
     assert set(problems) <= {TOO_MANY_AT_ONCE}
-    assert len(scored) == FEW
+    assert len(scored) == count
     for analysis in scored:
         trial = analysis.record.trial_id
         (registered,) = alone.entries(trial, "registration")

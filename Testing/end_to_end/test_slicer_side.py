@@ -62,19 +62,16 @@ class SlicerSide:
         return lambda: self.link.status.state is state
 
 
-@pytest.fixture(scope="module")
-def slicer_side(tmp_path_factory):
-    """What Slicer's side has seen of a trial whose simulator crashed before it was stored."""
-    folder = tmp_path_factory.mktemp("lab")
-    side = SlicerSide(folder / "study.db")
+def test_a_crash_loses_no_touch_and_the_trial_is_stored_once_with_its_truth(tmp_path):
+    side = SlicerSide(tmp_path / "study.db")
     port = ("--port", str(free_port()))
-    with SimulatorProcess(folder / "records", "--no-views", "--speed", "20", *port) as simulator:
+    with SimulatorProcess(tmp_path / "records", "--no-views", "--speed", "20", *port) as simulator:
         side.link.connectTo(port=simulator.port)
         side.run_until(side.is_in(LinkState.CONNECTED))
         task, started = {"task": "task-1", "trainee": "T-042", "seed": SEED}, []
         side.link.send(CommandName.START_TASK, task, started.append)
         side.run_until(lambda: started)
-        player = Player(simulator.port, folder / "records")
+        player = Player(simulator.port, tmp_path / "records")
         for number in range(1, 16):
             player.touch(number, number)
             side.run_until(lambda n=number: player.is_done and n in side.counts)
@@ -82,36 +79,24 @@ def slicer_side(tmp_path_factory):
         side.run_until(lambda: player.is_done)
         simulator.kill()
     side.run_until(side.is_in(LinkState.ABSENT))
-    side.live_counts, side.live_points = list(side.counts), side.points
+    assert side.counts == sorted(set(side.counts)), "points appear as they are touched"
+    live_points = side.points
     side.open_logic()
-    with SimulatorProcess(folder / "records", "--no-views", *port):
+    with SimulatorProcess(tmp_path / "records", "--no-views", *port):
         side.run_until(lambda: side.scored)
         side.run_until(side.is_in(LinkState.CONNECTED))
     side.link.disconnect()
     side.logic.close()
-    return side
-
-
-def test_points_appear_as_they_are_touched(slicer_side):
-    counts = slicer_side.live_counts
-    assert counts == sorted(set(counts))
-    assert {*range(1, 16)} <= {*counts} <= {*range(16)}
-
-
-def test_the_crash_is_reported_and_the_link_recovers(slicer_side):
     reported = (LinkState.CONNECTED, LinkState.ABSENT, LinkState.OFF)
     # How often it looks for the simulator meanwhile depends on how long that takes to start.
-    seen = [state for state, _again in groupby(s for s in slicer_side.states if s in reported)]
+    seen = [state for state, _again in groupby(s for s in side.states if s in reported)]
     assert seen[-3:] == [LinkState.ABSENT, LinkState.CONNECTED, LinkState.OFF]
-
-
-def test_the_trial_is_recovered_from_the_journal_and_stored_once_with_its_truth(slicer_side):
-    with Study.open(slicer_side.study) as study:
+    with Study.open(side.study) as study:
         (trial,) = study.history("T-042")
-    assert len(slicer_side.scored) == 1
+    assert len(side.scored) == 1
     assert trial.record.task == "task-1"
     # Points travel as 32-bit numbers, the record as text: the scene saw the recorded points.
-    np.testing.assert_allclose(slicer_side.live_points, trial.record.positions_mm, atol=1e-3)
+    np.testing.assert_allclose(live_points, trial.record.positions_mm, atol=1e-3)
     scenario = load_scenario(COLIN)
     head_to_world = scenario.perturbed_head_to_world(SEED)
     np.testing.assert_allclose(trial.truth.matrix, head_to_world, atol=1e-9)

@@ -1,29 +1,12 @@
 """Three clicks lead from an empty Slicer to a running trial, with the real simulator's process."""
 
-import pytest
 import slicer
 
-from rastrainer.slicer.settings import PORT, PROGRAM
-from Testing.end_to_end.module.installed_simulator import bundled_package, write_program
+from rastrainer.slicer.settings import PORT
+from Testing.end_to_end.module.installed_simulator import bundled_package
 from Testing.end_to_end.module.story import FAST
 from Testing.free_port import free_port
 from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
-
-
-@pytest.fixture
-def options(host, tmp_path):  # noqa: ARG001 (the settings are the host's)
-    # The usual port may be in use by another test that runs at the same time.
-    slicer.app.settings().setValue(PORT.key, free_port())
-    return (*FAST, "--records", str(tmp_path / "trials"))
-
-
-@pytest.fixture
-def set_up_slicer(host, tmp_path, options):
-    """A Slicer in which the module has never been opened, on a computer with the simulator."""
-    program = write_program(tmp_path / "rastrainer", tmp_path / "simulator.pid", options)
-    slicer.app.settings().setValue(PROGRAM.key, str(program))
-    host.open()
-    return host
 
 
 def press_next(host, title, until):
@@ -39,26 +22,22 @@ def open_sections(host):
     return [name for name in names if not host.find(f"{name}CollapsibleButton").collapsed]
 
 
-def test_three_clicks_lead_from_an_empty_slicer_to_a_running_trial(set_up_slicer):
-    host = set_up_slicer
-    assert open_sections(host) == ["simulator"]
-    press_next(host, "Start and connect", until="New trainee")
-    assert open_sections(host) == ["trainees"]
-    press_next(host, "New trainee", until="Start the trial run")
-    assert open_sections(host) == ["training"]
-    press_next(host, "Start the trial run", until="Pause")
-    assert host.clicks == 3 * ["nextStepButton"]
-    host.wait_until(lambda: "running" in host.text("phaseText"), "it runs")
-    names, now = ("linkText", "nowTraineeText", "nowTaskText"), ["Connected", "T001", "Trial run"]
-    host.wait_until(lambda: [host.text(name) for name in names] == now, "the panel follows")
-
-
-def test_the_simulator_is_set_up_first_after_confirmation(host, tmp_path, options):
+def test_three_clicks_lead_from_an_empty_slicer_over_the_set_up_to_a_running_trial(host, tmp_path):
+    # The usual port may be in use by another test that runs at the same time.
+    slicer.app.settings().setValue(PORT.key, free_port())
     setup = host.open().logic.session.simulator.setup
+    options = (*FAST, "--records", str(tmp_path / "trials"))
     setup.package = bundled_package(tmp_path / "module", tmp_path / "simulator.pid", options)
     host.answer("not set up on this computer yet", "Cancel")
     host.press("nextStepButton")
     assert host.text("nextStepButton") == "Start and connect"
     host.answer("not set up on this computer yet", "Ok")
     press_next(host, "Start and connect", until="New trainee")
-    assert host.clicks == 2 * ["nextStepButton"]
+    assert open_sections(host) == ["trainees"]
+    press_next(host, "New trainee", until="Start the trial run")
+    assert open_sections(host) == ["training"]
+    press_next(host, "Start the trial run", until="Pause")
+    assert host.clicks == 4 * ["nextStepButton"], "one was canceled"
+    host.wait_until(lambda: "running" in host.text("phaseText"), "it runs")
+    names, now = ("linkText", "nowTraineeText", "nowTaskText"), ["Connected", "T001", "Trial run"]
+    host.wait_until(lambda: [host.text(name) for name in names] == now, "the panel follows")

@@ -17,7 +17,7 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer_headless.make_head import main as make_head
 from rastrainer_simulator.cli.main import main
 from Testing.slicer.head.broken_volumes import HEADLESS
-from Testing.slicer.head.dicom_series import slices, write_slices
+from Testing.slicer.head.dicom_series import LPS_TO_RAS, slices, write_slices
 from Testing.slicer.head.phantoms import CT, DOUBLE_OBLIQUE, NOSE, SAGITTAL, depth_mm, phantom
 from Testing.slicer.head.placed import fiducials
 from Testing.slicer.head.volume_file import write_volume
@@ -62,13 +62,9 @@ def cut(name, is_compressed=True, share=0.6):
 
 def dicom(folder):
     scan = phantom(CT, spacing=(2.0, 2.0, 2.5), size=SIZE)
-    # Ours are rows to the left and down from the front, in LPS: turned half about S.
-    values = scan.values[::-1, ::-1].astype(np.int16)
-    first = (-1.0, -1.0, 1.0) * (scan.ijkToRas @ [*(np.array(scan.values.shape) - 1), 1.0])[:3]
-    first[2] = scan.ijkToRas[2, 3]
-    matrix = np.diag([2.0, 2.0, 2.5, 1.0])
-    matrix[:3, 3] = first
-    write_slices(folder / "series", slices(values, matrix))
+    write_slices(
+        folder / "series", slices(scan.values.astype(np.int16), LPS_TO_RAS @ scan.ijkToRas)
+    )
     return folder / "series"
 
 

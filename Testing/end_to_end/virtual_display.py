@@ -67,7 +67,6 @@ class _Device:
         self._test = ctypes.CDLL("libXtst.so.6")
         self._x.XOpenDisplay.restype = ctypes.c_void_p
         self._x.XStringToKeysym.restype = ctypes.c_ulong
-        self._x.XDefaultRootWindow.restype = ctypes.c_ulong
         self._display = ctypes.c_void_p(self._x.XOpenDisplay(display.name.encode()))
         assert self._display, f"{display.name} cannot be opened"
 
@@ -94,23 +93,6 @@ class VirtualMouse(_Device):
         for is_pressed in (1, 0):
             self._test.XTestFakeButtonEvent(self._display, 5 if is_down else 4, is_pressed, 0)
         self._x.XFlush(self._display)
-
-    def window_corner(self, width: int) -> tuple[int, int]:
-        """Return the left edge of the window of this width, in pixels."""
-        root = ctypes.c_ulong(self._x.XDefaultRootWindow(self._display))
-        parent, count = ctypes.c_ulong(), ctypes.c_uint()
-        others, children = ctypes.c_ulong(), ctypes.POINTER(ctypes.c_ulong)()
-        refs = (others, parent, children, count)
-        self._x.XQueryTree(self._display, root, *map(ctypes.byref, refs))
-        for index in range(count.value):
-            x, y = ctypes.c_int(), ctypes.c_int()
-            size = [ctypes.c_uint() for _ in range(4)]
-            child = ctypes.c_ulong(children[index])
-            into = map(ctypes.byref, (others, x, y, *size))
-            self._x.XGetGeometry(self._display, child, *into)
-            if size[0].value == width:
-                return x.value, y.value
-        raise AssertionError(f"no window is {width} pixels wide")
 
 
 class VirtualKeyboard(_Device):

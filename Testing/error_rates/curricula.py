@@ -22,12 +22,6 @@ from rastrainer.trial.trial_row import TrialRow
 from Testing.error_rates.measured import Measured, share_of
 
 GOALS_HEADER = ("goal, and trainee", "called reached")
-WEAKEST_HEADER = (
-    "known so far",
-    "the weakest task is named",
-    "farther from it, points, mean",
-    "any task",
-)
 CHOICES_HEADER = (
     "what is practiced next",
     "all reached within 40 trials",
@@ -118,26 +112,6 @@ CHOICES: dict[str, Choice] = {
     ],
     "in order, each until it is reached": lambda standing, _random: _open(standing)[0],
 }
-
-
-def weakest(sets: int) -> list[Measured]:
-    """Return how often the truly weakest task is named after as many trials of each."""
-    found = []
-    for count in (1, 2, 3, 5):
-        random = np.random.default_rng((7, count))
-        hits, missed, by_chance = [], [], []
-        for _ in range(sets):
-            skill = _skill(random)
-            played = [_play(task, skill, random) for task in range(TASKS) for _ in range(count)]
-            best = next_best(_stand(CURRICULUM, played), random)
-            chosen = int(best.name) - 1
-            hits.append(chosen == int(np.argmin(skill)))
-            missed.append(skill[chosen] - skill.min())
-            by_chance.append(skill.mean() - skill.min())
-        case = f"{count} trial{'' if count == 1 else 's'} of each of {TASKS} tasks"
-        further = (fixed(fmean(missed), 1), fixed(fmean(by_chance), 1))
-        found.append(Measured(case, share_of(hits), sets, at_least=0.5, further=further))
-    return found
 
 
 def course(choose: Choice, seed: int) -> tuple[int, float]:

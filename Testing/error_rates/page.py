@@ -45,7 +45,6 @@ TABLES: dict[str, tuple[Sequence[str], Callable[[int], Sequence[Measured]]]] = {
     "throughput": (cheats.THROUGHPUT_HEADER, cheats.offsets),
     "aborted trials": (cheats.ABORTED_HEADER, cheats.competence),
     "goals": (curricula.GOALS_HEADER, curricula.goals),
-    "weakest task": (curricula.WEAKEST_HEADER, curricula.weakest),
     "next task": (curricula.CHOICES_HEADER, curricula.choices),
     "target errors": (target_errors.HEADER, target_errors.intervals),
     "propagation": (propagation.HEADER, propagation.targets),

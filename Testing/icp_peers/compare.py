@@ -7,12 +7,12 @@ any time. Open3D and small_gicp are in `.venv/icp` (`make soak` puts them there)
 
 from __future__ import annotations
 
-import csv
+import itertools
 import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
-from dataclasses import astuple, dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -29,6 +29,7 @@ from Testing.domain.registration.traces import (
     places,
     traced,
 )
+from Testing.error_rates.row_files import add_row, stored_rows
 from Testing.icp_peers.vtk_icp import vtk_match
 from Testing.simulator.authoring.heads import egg, small
 
@@ -45,18 +46,9 @@ SAME_MM, WRONG_MM = 0.01, 3.0
 class Comparison:
     """One trace of 200 points on the face, registered by a peer and by us.
 
-    Attributes:
-        head: one of `HEADS`.
-        seed: of trace and start.
-        peer: one of `PEERS`.
-        cost_mm2: ours: the sum of the squared distances to the triangles, all points.
-        cost_off_mm2: the peer's, minus ours.
-        apart_mm: between where both put the points, at most.
-        next_off_mm2: the cost of the minimum next to where the peer stopped, minus ours.
-        next_apart_mm: how far that minimum is from ours.
-        error_mm: how far off our match is at the head's center.
-        peer_error_mm: how far off the peer's is.
-        warned: whether our match has a warning.
+    The cost is the sum of the squared distances to the triangles: ours, that of the peer and that
+    of the minimum next to where the peer stopped, both minus ours. The peer and that minimum put
+    the points so far from ours at most; the errors, ours and the peer's, are at the head's center.
     """
 
     head: str
@@ -70,9 +62,6 @@ class Comparison:
     error_mm: float
     peer_error_mm: float
     warned: int
-
-
-COLUMNS = tuple(field.name for field in fields(Comparison))
 
 
 def compare(name: str, seeds: range) -> list[Comparison]:
@@ -95,21 +84,14 @@ def compare(name: str, seeds: range) -> list[Comparison]:
             theirs = vtk_match(trace, skin, start) if peer == "vtk" else moved[peer][row] @ start
             nearby = fit_to_surface(trace, skin, theirs[None], TOLERANCE_MM, gate_mm=np.inf)
             cost = np.sum(skin.tree.nearest(transforms.apply(theirs, trace)).distances ** 2)
-            found.append(
-                Comparison(
-                    name,
-                    seed,
-                    peer,
-                    ours,
-                    float(cost) - ours,
-                    _apart(theirs, match.matrix, trace),
-                    float(np.sum(nearby.distances_mm**2)) - ours,
-                    _apart(nearby.matrices[0], match.matrix, trace),
-                    error_at_center(match.matrix, pose, head),
-                    error_at_center(theirs, pose, head),
-                    int(bool(match.warnings)),
-                )
+            numbers = (
+                *(ours, float(cost) - ours, _apart(theirs, match.matrix, trace)),
+                float(np.sum(nearby.distances_mm**2)) - ours,
+                _apart(nearby.matrices[0], match.matrix, trace),
+                *(error_at_center(matrix, pose, head) for matrix in (match.matrix, theirs)),
             )
+            rounded = (float(f"{number:.6g}") for number in numbers)
+            found.append(Comparison(name, seed, peer, *rounded, int(bool(match.warnings))))
     return found
 
 
@@ -130,20 +112,7 @@ def _apart(one: np.ndarray, other: np.ndarray, trace: np.ndarray) -> float:
 
 
 def stored() -> list[Comparison]:
-    """Return what the file holds."""
-    if not FILE.exists():
-        return []
-    with FILE.open(encoding="utf-8", newline="") as file:
-        return [
-            Comparison(
-                row["head"],
-                int(row["seed"]),
-                row["peer"],
-                *(float(row[name]) for name in COLUMNS[3:-1]),
-                int(row["warned"]),
-            )
-            for row in csv.DictReader(file)
-        ]
+    return stored_rows(FILE, Comparison)
 
 
 def table() -> str:
@@ -181,19 +150,11 @@ LOWER_MM2 = 1e-4
 
 def compare_missing(seeds: int) -> None:
     """Compare what the file lacks, and add each batch to it at once."""
-    if not FILE.exists():
-        FILE.write_text(",".join(COLUMNS) + "\n", encoding="utf-8")
     known = {(one.head, one.seed) for one in stored()}
-    for first in range(0, seeds, BATCH):
-        for head in HEADS:
-            if (head, first) in known:
-                continue
-            rows = compare(head, range(first, first + BATCH))
-            with FILE.open("a", encoding="utf-8", newline="") as file:
-                writer = csv.writer(file, lineterminator="\n")
-                for row in map(astuple, rows):
-                    texts = [f"{value:.6g}" if isinstance(value, float) else value for value in row]
-                    writer.writerow(texts)
+    for first, head in itertools.product(range(0, seeds, BATCH), HEADS):
+        if (head, first) not in known:
+            for row in compare(head, range(first, first + BATCH)):
+                add_row(FILE, row)
             print(head, first, flush=True)
 
 

@@ -7,19 +7,13 @@ from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 from rastrainer import transforms
 
 
-def head_corners(mesh):
-    return mesh.triangles.astype(np.int64).ravel()
-
-
 def vtk_match(trace, mesh, start):
     """VTK's ICP: true nearest points of cells, all points count, point to point."""
     surface, points, cells = vtk.vtkPolyData(), vtk.vtkPoints(), vtk.vtkCellArray()
     points.SetData(numpy_to_vtk(mesh.vertices, deep=True))
-    offsets = np.arange(0, head_corners(mesh).size + 1, 3)
-    cells.SetData(
-        numpy_to_vtkIdTypeArray(offsets, deep=True),
-        numpy_to_vtkIdTypeArray(head_corners(mesh), deep=True),
-    )
+    corners = mesh.triangles.astype(np.int64).ravel()
+    offsets = np.arange(0, corners.size + 1, 3)
+    cells.SetData(*(numpy_to_vtkIdTypeArray(each, deep=True) for each in (offsets, corners)))
     surface.SetPoints(points)
     surface.SetPolys(cells)
     source, places_ = vtk.vtkPolyData(), vtk.vtkPoints()

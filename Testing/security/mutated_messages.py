@@ -83,7 +83,7 @@ def valid_messages() -> list[bytes]:
     ]
     metadata = {"seq": "1", "note": "ö", "Status": "SUCCESS"}
     return [
-        pack(Message(device, content, metadata if version == 2 else {}, 7, 1.0, version))
+        pack(Message(device, content, metadata if version == 2 else {}, 1.0, version))
         for device, content in contents
         for version in (1, 2)
     ]

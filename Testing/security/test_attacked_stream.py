@@ -33,8 +33,8 @@ def attack(folder, warm_up: int, count: int) -> None:
     assert " ERROR " not in errors
 
 
-def test_a_hundred_mutated_view_messages_affect_no_other_view(tmp_path):
-    attack(tmp_path / "records", 100, 100)
+def test_sixty_mutated_view_messages_affect_no_other_view(tmp_path):
+    attack(tmp_path / "records", 60, 60)
 
 
 @pytest.mark.soak

@@ -56,17 +56,14 @@ def stored(folder, trainee="T-001"):
         return {each.trial_id for each in study.aborted(trainee)}
 
 
-@pytest.mark.parametrize("hello", [None, HELLO], ids=["without Hello", "as a client that scores"])
-def test_an_aborted_trial_that_a_bystander_acknowledges_reaches_the_study(
-    simulator, tmp_path, hello
-):
+def test_an_aborted_trial_that_a_bystander_acknowledges_reaches_the_study(simulator, tmp_path):
     slicer = slicer_for_aborted(tmp_path, simulator)
     try:
         with Client(port=simulator.port) as bystander:
-            if hello:
-                bystander.send_command("Hello", hello)
             trials = set()
             for _ in range(3):
+                if trials:
+                    bystander.send_command("Hello", HELLO)
                 trials.add(trial := aborted_trial(bystander))
                 bystander.send_command("AcknowledgeTrial", {"trialId": trial})
             run_logic_until(slicer.link, slicer.work, lambda: stored(tmp_path) == trials, TIMEOUT_S)

@@ -23,12 +23,7 @@ SENDING = ("sendall", "sendto", "sock_sendall", "writelines", "create_connection
 NUMBERS = some.floats(width=64) | some.sampled_from([3.4e38, 3.5e38, 1e308])
 TEXTS = some.text(max_size=300) | some.sampled_from(["", "\0", "x" * 65_535, "x" * 65_536])
 NAMES = some.text(max_size=70) | some.sampled_from(["command", "x" * 20, "x" * 21, "", " "])
-POINTS = some.builds(
-    lambda label, position, group: (label, position, group),
-    NAMES,
-    some.tuples(NUMBERS, NUMBERS, NUMBERS),
-    some.sampled_from(["", "Unselected", "g" * 33]),
-)
+POINTS = some.tuples(NAMES, some.tuples(NUMBERS, NUMBERS, NUMBERS))
 MAKERS = (
     some.tuples(some.just(Transform), some.tuples(some.tuples(*[NUMBERS] * 12))),
     some.tuples(some.just(String), some.tuples(TEXTS)),
@@ -43,7 +38,7 @@ MAKERS = (
 
 def content_of(kind, arguments):
     if kind is Points:
-        return Points(tuple(Point(*point[:2], group=point[2]) for point in arguments[0]))
+        return Points(tuple(Point(*point) for point in arguments[0]))
     return kind(*arguments)
 
 
@@ -59,7 +54,7 @@ def test_what_the_gate_lets_through_never_harms_slicer(made, device, metadata, v
     police = WireChecker()
     try:
         content = content_of(kind, arguments)
-        message = Message(device, content, metadata, 1, timestamp, version)
+        message = Message(device, content, metadata, timestamp, version)
         packed = [Outgoing(message).packed(header_version) for header_version in (1, 2)]
     except InputError:
         return

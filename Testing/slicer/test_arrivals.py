@@ -6,7 +6,7 @@ import pytest
 
 from rastrainer.slicer.link.connection import MAX_KEPT
 from rastrainer.slicer.link.link import CHARACTERS_A_TURN, COMMANDS_A_TURN
-from rastrainer_headless.command import HeadlessCommand
+from rastrainer_headless.connector import HeadlessCommand
 
 
 class Arrivals:

@@ -419,9 +419,6 @@ def test_the_report_of_those_who_consent_is_written_and_opened(
     panels.press("reportButton")
     assert "is not set up yet: in the section Simulator, press Set up" in panels.messages[-1].text
     use_installed(panels, tmp_path)
-    panels.answer("Folder for the report", str(tmp_path / "report"))
-    panels.press("reportButton")
-    assert "consented to research" in panels.messages[-1].text
     with Study.open(study_path) as study:
         study.change_trainee("T-001", consent=True)
     panels.answer("Folder for the report", str(tmp_path / "report"))

@@ -50,7 +50,7 @@ def sphere_node(scene, name="Vessel", resolution=20, is_open=False):
 
 def test_a_displayed_plan_is_read_back_unchanged(scene, logic):
     procedure = made_up_procedure()
-    showPlan(scene, procedure.trajectories, {"Vessel": vessel()}, procedure.checkpoints)
+    showPlan(scene, procedure, {"Vessel": vessel()})
     node = scene.GetFirstNodeByName("Checkpoints")
     read, meshes = logic.read(replace(PLAN, name="dbs-1", checkpoints=node))
     assert [each.name for each in read.trajectories] == ["Left", "Right"]
@@ -148,9 +148,9 @@ def test_instruments_and_structures_are_kept_with_the_scene(headless_scene, logi
 
 def test_another_plan_removes_its_own_models_and_unmarks_the_users(scene):
     mine = sphere_node(scene, "Mine")
-    showPlan(scene, (), {"Shown": vessel()}, ())
+    showPlan(scene, None, {"Shown": vessel()})
     assert [node.GetName() for node in noGoNodes(scene)] == ["Shown"]
-    showPlan(scene, (), {}, ())
+    showPlan(scene, None, {})
     assert noGoNodes(scene) == []
     assert scene.GetFirstNodeByName("Shown") is None
     assert mine.GetScene() is scene

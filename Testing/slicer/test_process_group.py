@@ -4,7 +4,7 @@ import subprocess
 import sys
 import time
 
-from rastrainer.slicer.program.process_group import OPTIONS, endGroup
+from rastrainer.slicer.program.child_process import OPTIONS, endGroup
 
 SLEEP_S = 600
 PARENT = f"""

@@ -19,12 +19,7 @@ from rastrainer.slicer.scene.error_colors import TRE_SCALARS
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints, worldPoints
 from rastrainer.slicer.scene.registration_input import Choices
 from rastrainer.slicer.scene.scenario_nodes import showTask
-from rastrainer.slicer.scene.trial_scene import (
-    FIXED_REFERENCE,
-    isApplied,
-    movingNode,
-    setApplied,
-)
+from rastrainer.slicer.scene.trial_scene import FIXED_REFERENCE, isApplied, movingNode, setApplied
 from Testing.slicer.shown_scenario import show_whole
 from Testing.slicer.work_at_once import WorkAtOnce, in_turns
 

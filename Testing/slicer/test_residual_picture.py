@@ -12,11 +12,7 @@ from rastrainer.slicer.scene.error_colors import (
     magnification,
     showResidualArrows,
 )
-from rastrainer_headless.residual_picture import (
-    HEIGHT,
-    WIDTH,
-    writeResidualPicture,
-)
+from rastrainer_headless.residual_picture import HEIGHT, WIDTH, writeResidualPicture
 from Testing.domain.scenario.made_up_scenario import ball_head
 from Testing.touched_head import head_points
 

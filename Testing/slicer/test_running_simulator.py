@@ -12,7 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.journal.folder import STARTED_BY, read_holder
 from rastrainer.sections import simulator_logic
 from rastrainer.sections.simulator_logic import RunningSimulator
-from rastrainer.slicer.program.process_group import OPTIONS
+from rastrainer.slicer.program.child_process import OPTIONS
 from rastrainer_simulator.record.journal_writer import RecordsFolder
 from Testing.slicer.simulator_double import wait_until
 

@@ -186,19 +186,6 @@ def test_practice_of_another_trainee_or_task_does_not_count(practicing):
     assert practicing.logic.minutesElapsed(practicing.logic.progress()) == pytest.approx(0.1)
 
 
-def test_a_stored_trial_is_counted_even_if_it_arrived_while_slicer_was_closed(
-    practicing, played, tmp_path
-):
-    practicing.skip("has practiced in the pilot")
-    practicing.close()
-    with Study.open(tmp_path / "study.db") as study:
-        study.add_trial(played["trial"], score=played["score"])
-    again = Lab(practicing.room, tmp_path)
-    again.trainees.choose("T001")
-    assert again.next == "hmd/1/task-2"
-    again.close()
-
-
 def test_a_break_ends_after_the_protocols_minutes_which_a_later_simulator_is_told(lab):
     lab.begin(tasks=["task-1"], questionnaires=[], trialRunMin=0)
     lab.skip("the headset's battery was empty")
@@ -228,17 +215,6 @@ def test_a_trial_that_will_not_count_is_reported_while_it_is_played(practicing):
     assert practicing.logic.offProtocolSentence() == ""
     practicing.tell(phase="running", trainee="somebody", task="task-3")
     assert practicing.logic.offProtocolSentence() == ""
-
-
-def test_only_the_step_that_was_asked_about_is_skipped_and_only_with_a_reason(enrolled):
-    asked = enrolled.next
-    with pytest.raises(InputError, match="only with a reason"):
-        enrolled.skip("no")
-    assert enrolled.next == asked
-    enrolled.logic.answer([0] * 16)
-    with pytest.raises(InputError, match="The next step is hmd/trial-run"):
-        enrolled.logic.skipStep(asked, "the sheets were missing")
-    assert enrolled.next == "hmd/trial-run"
 
 
 def test_a_break_that_another_slicer_has_ended_ends_no_other_step(lab):

@@ -33,26 +33,24 @@ class Tracing(Room):
     """A room in which the skin of the ball is traced."""
 
     def __init__(self, scene, scenario):
-        self.to_world, self.places = scenario.head_to_world, np.zeros((0, 3))
+        self.to_world, self.places, self.parts = scenario.head_to_world, np.zeros((0, 3)), ()
         super().__init__(scene, scenario)
-        self.files = SceneFileLoader(scene, self.work)
         services = TrialServices(scene, self.link, None, None, self.work)
         self.traces = TraceLogic(services, lambda: self.now)
+        self.parts = SceneFileLoader(scene, self.work), self.traces
         self.logic.sceneShown.connect(self.traces.begin)
 
     def answer(self, name, arguments):
         if name != "GetTrial":
             return super().answer(name, arguments)
         trace = transforms.apply(self.to_world, self.places)
+        touched = transforms.apply(self.to_world, np.array(list(LANDMARKS.values()))).tolist()
         return {
             "task": "task-1",
             "method": "surface",
             "touches": [
-                {
-                    "label": label,
-                    "positionMm": transforms.apply(self.to_world, np.array(place)).tolist(),
-                }
-                for label, place in LANDMARKS.items()
+                {"label": label, "positionMm": place}
+                for label, place in zip(LANDMARKS, touched, strict=True)
             ],
             "trace": [[*place, float(row)] for row, place in enumerate(trace.tolist())],
         }
@@ -66,13 +64,9 @@ class Tracing(Room):
         self.tell(**{"method": "surface", "trace": values, "nextPoint": None, **state})
 
     def run_until(self, condition):
-        if not hasattr(self, "traces"):
-            super().run_until(condition)
-            return
-
         def is_met():
-            self.files.process()
-            self.traces.process()
+            for part in self.parts:
+                part.process()
             return condition()
 
         super().run_until(is_met)

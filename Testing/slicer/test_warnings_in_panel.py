@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from PySide6 import QtWidgets
 
 from rastrainer.scenario.points import LABELS
 from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
@@ -30,9 +31,8 @@ def touch(host, points):
 
 
 def warnings(host):
-    layout = host.find("warningsWidget").layout()
-    widgets = [layout.itemAt(index).widget() for index in range(layout.count())]
-    return [widget.text for widget in widgets if widget.className() == "QLabel"]
+    labels = host.find("warningsWidget")._qt.findChildren(QtWidgets.QLabel)
+    return [label.text() for label in labels]
 
 
 MENDED = {

@@ -14,7 +14,7 @@ from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.presentation.screen import Menu, MenuItem, Screen
 from rastrainer_simulator.texts.texts import LANGUAGES
-from Testing.simulator.flow.languages import LONGEST, LONGEST_OR_EACH, letters, screens_in
+from Testing.simulator.flow.every_page import LONGEST, LONGEST_OR_EACH, letters, screens_in
 from Testing.web.chromium import EYES_M, enter_headset, open_page, show, stand
 from Testing.web.test_page_access import at_work
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 import re
 
 import pytest
+from coloraide import Color
 
+from rastrainer_simulator.presentation.look import BANNERS
 from rastrainer_simulator.presentation.screen import (
     ErrorArrow,
     Fact,
@@ -139,6 +141,15 @@ def test_the_page_names_the_keys_as_the_browser_or_a_press_tells(page, served):
     page.wait_for_selector(PICTURE)
     drawn = page.evaluate(f"decodeURIComponent(document.querySelector('{PICTURE}').src)")
     assert re.findall(r">(\w)</text>", drawn)[10:13] == ["A", "Z", "E"]
+
+
+def test_banners_have_the_colors_that_everybody_can_tell_apart(page, served):
+    color = "banner => getComputedStyle(banner).backgroundColor"
+    for tone, wanted in BANNERS.items():
+        said = ScreenMessage("Touch point 1.", tone)
+        show(page, served, Screen(instruction=said, warnings=(said,)))
+        for banner in ("#instruction", "#warnings li"):
+            assert Color(page.eval_on_selector(banner, color)) == Color(wanted).convert("srgb")
 
 
 LEGEND = "Within 10\N{NO-BREAK SPACE}mm of traced points"

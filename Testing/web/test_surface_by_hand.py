@@ -11,13 +11,18 @@ import numpy as np
 import pytest
 
 from rastrainer.number_text import with_units
-from rastrainer.protocol import MIN_TRACE_POINTS
+from rastrainer.protocol import MIN_TRACE_POINTS, RegistrationMethod
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.sections.trial_logic import TrialLogic
 from rastrainer.transforms import MM_PER_M
+from rastrainer.trial.analysis import TrialAnalysis
 from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.presentation.screen import Menu
+from Testing.end_to_end.faulty_proxy import SlicerSide
 from Testing.end_to_end.hands import Controllers, GamepadHands
 from Testing.end_to_end.lab import Lab, Place
 from Testing.end_to_end.stream_trainee import LEAST_FINE_PUSH, LIFT_M, SINK_M, Trainee
+from Testing.end_to_end.window_process import wait_until
 from Testing.simulator.landmarked import LANDMARKS, write_landmarked
 from Testing.web.chromium import enter_headset, open_page
 from Testing.web.test_whole_flow import SLOW, XR
@@ -186,9 +191,23 @@ def draw(place: Place, hands: object, device: str, look=lambda: None) -> dict:
     seen["result"] = {fact.label: fact.value for fact in trainee.menu.facts}
     (registered,), (scored,) = place.entries("registration"), place.entries("scored")
     seen["registered"], seen["scored"] = registered["arguments"], scored["arguments"]
+    seen["slicers"] = scored_by_slicer(place)
     seen["touched"] = [entry["label"] for entry in place.entries("touch")]
     seen["traced"], seen["operators"] = place.entries("trace"), place.operators
     return seen
+
+
+def scored_by_slicer(place: Place) -> TrialAnalysis:
+    """Have Slicer's side, which comes later, store the trial, register it and score it."""
+    folder, scored = place.records.parent, []
+    scenario = load_scenario(folder / "scenario")
+    find = lambda _name: scenario  # noqa: E731
+    study, port = folder / "slicers.db", place.simulator.port
+    slicer = SlicerSide(study, port, TrialLogic, find, place.records)
+    slicer.logic.trialScored.connect(scored.append)
+    wait_until(lambda: slicer.run_for(10) or scored, "Slicer's score")
+    slicer.close()
+    return scored[0]
 
 
 def test_landmarks_and_trace_are_recorded_with_that_device_alone(drawn):
@@ -223,3 +242,12 @@ def test_the_trial_is_scored_and_the_true_error_revealed(drawn):
     assert drawn["scored"]["details"]["scoreVersion"] == SCORE_VERSION
     true_error = drawn["result"]["True error at the target (TRE)"]
     assert float(true_error.removesuffix("mm")) < 5.0
+
+
+def test_slicer_registers_and_scores_it_identically_to_the_last_digit_and_keeps_the_trace(drawn):
+    registered, slicers = drawn["registered"], drawn["slicers"]
+    assert registered["matrix"] == slicers.rigid.matrix.ravel().tolist()
+    assert registered["freMm"] == slicers.rigid.fre_mm
+    assert drawn["scored"]["score"] == slicers.score.score
+    assert slicers.record.method is RegistrationMethod.SURFACE
+    assert len(slicers.record.trace) == len(drawn["traced"])

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import pytest
 from playwright.sync_api import Page
 
-from rastrainer_simulator.flow.tutorial.steps import TutorialStep, steps_for
+from rastrainer_simulator.flow.session.tutorial import TutorialStep, steps_for
 from rastrainer_simulator.input.inputs import SourceKind
 from Testing.end_to_end.hands import Controllers
 from Testing.end_to_end.lab import Place

@@ -495,7 +495,6 @@ COMMANDS: Mapping[str, CommandEntry] = {
 
 
 def check_arguments(command: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the checked arguments of a command with defaults."""
     if command not in COMMANDS:
         known, given = ", ".join(COMMANDS), json.dumps(str(command)[:40])
         raise InputError(f"The command {given} is unknown; known are {known}.")

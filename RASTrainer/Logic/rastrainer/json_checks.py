@@ -104,7 +104,6 @@ def identifier_of(text: str) -> str:
 
 
 def accepted(check: Callable[[Any], T], value: Any, what: str) -> T:
-    """Return the value that a check accepts."""
     try:
         return check(value)
     except InputError:
@@ -137,7 +136,6 @@ def pseudonym(value: Any) -> str:
 
 
 def number(minimum: float, maximum: float, unit: str = "") -> Callable[[Any], float]:
-    """Accept a finite number from `minimum` to `maximum`."""
 
     def check(value: Any) -> float:
         if not is_number(value) or not minimum <= value <= maximum:
@@ -152,7 +150,6 @@ Setting = Annotated[float, number(-10_000, 10_000)]
 
 
 def whole_number(minimum: int, maximum: int) -> Callable[[Any], int]:
-    """Accept an integer from `minimum` to `maximum`."""
 
     def check(value: Any) -> int:
         if isinstance(value, bool) or not isinstance(value, int) or not minimum <= value <= maximum:
@@ -163,7 +160,6 @@ def whole_number(minimum: int, maximum: int) -> Callable[[Any], int]:
 
 
 def numbers(count: int, limit: float, unit: str = "") -> Callable[[Any], tuple[float, ...]]:
-    """Accept a list of `count` finite numbers, each within ±`limit`."""
     check_one = number(-limit, limit)
 
     def check(value: Any) -> tuple[float, ...]:
@@ -206,7 +202,6 @@ class SizeCheck:
 
 
 def list_of(minimum: int = 0, maximum: int = sys.maxsize, what: str = "items") -> SizeCheck:
-    """Accept a list of `minimum` to `maximum` values of any kind."""
 
     def check(value: Any) -> tuple[Any, ...]:
         if not isinstance(value, (list, tuple)) or not minimum <= len(value) <= maximum:
@@ -274,7 +269,6 @@ def yes_or_no(value: Any) -> bool:
 
 
 def trial_id(value: Any) -> str:
-    """Accept the UUID of a trial in its canonical spelling."""
     try:
         return str(uuid.UUID(value))
     except (ValueError, AttributeError, TypeError):

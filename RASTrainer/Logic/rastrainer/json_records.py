@@ -48,18 +48,17 @@ class RecordField:
     default: Callable[[], Any] | None
 
 
-def record_from_json(kind: type[T], value: object, what: str = "", only_known: bool = False) -> T:
+def record_from_json(
+    kind: type[T], value: object, what: str = "", only_known: bool = False, is_part: bool = False
+) -> T:
     """Return the record of a dataclass `kind` that a decoded JSON object holds.
 
     `what` begins the sentence of an error; without it, "The trial record" of a `TrialRecord`.
     `only_known` refuses unknown keys, as in files that people write: a misspelled one must not be
-    without effect.
+    without effect. `is_part` says that `what` is a place in a larger record.
     """
     what = what or "The" + re.sub("[A-Z]", lambda each: f" {each[0].lower()}", kind.__name__)
-    return _read_record(kind, value, what, f"{what}: ", only_known)
-
-
-def _read_record(kind: type[T], value: object, what: str, before_key: str, only_known: bool) -> T:
+    before_key = f"{what}." if is_part else f"{what}: "
     if not isinstance(value, Mapping):
         raise InputError(f"{what} must be a JSON object.")
     known = record_fields(cast("Any", kind))
@@ -158,7 +157,7 @@ def _builder(kind: Any, name: str) -> Reader | None:
         return lambda value, place, only_known: (
             value
             if isinstance(value, kind)
-            else _read_record(kind, value, place, f"{place}.", only_known)
+            else record_from_json(kind, value, place, only_known, is_part=True)
         )
     if origin is Literal or (isinstance(kind, type) and issubclass(kind, Enum)):
         choose = json_checks.one_of(*(parts or (str(each.value) for each in kind)))

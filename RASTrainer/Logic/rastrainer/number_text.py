@@ -18,7 +18,6 @@ def with_units(text: str) -> str:
 
 
 def fixed(value: float, digits: int) -> str:
-    """Return a number with `digits` decimals."""
     text = f"{value * PAST_HALF:.{digits}f}"
     if float(text) == 0:
         # Zero has no sign.

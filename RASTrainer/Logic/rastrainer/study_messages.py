@@ -109,9 +109,9 @@ class StudyStep:
 class Assignment:
     """A task of a curriculum that is played until a goal is reached.
 
-    An empty `scenario` or `mode` stands for any. The score of the `procedure` counts, without one
-    that of the touches. For a goal by scores, so many `trials` in a row have to reach the `mark`,
-    which is the pass mark of the study if None. It opens once those in `after` are reached.
+    An empty `scenario` or `mode` stands for any. The score of the `procedure` counts, or without
+    one the score of the touches. For a goal by scores, so many `trials` in a row have to reach the
+    `mark`, by default the pass mark of the study. It opens once the tasks in `after` are reached.
     """
 
     name: _Name
@@ -152,8 +152,8 @@ class AssignmentStanding(Assignment):
     """An assignment, and a trainee's standing in it.
 
     So many trials in a row pass now (`done`), or percent of the way to competence, of `needed`.
-    `played` counts aborted trials, too; `mean` is that of the latest scores, in which the part
-    `weakest` cost most. It waits for the assignments in `missing`. `reached_utc` is the start of
+    `played` counts aborted trials, too. The latest scores have this `mean`, and the part `weakest`
+    cost most in them. It waits for the assignments in `missing`. `reached_utc` is the start of
     the trial by which it was reached, or of a gate's where that was later.
     """
 

@@ -34,7 +34,6 @@ def print_progress(step: str, share: float) -> None:
 
 
 def print_warning(sentence: str) -> None:
-    """Print a warning as a line for `report_line`."""
     print(f"{_WARNING}{sentence}", flush=True)
 
 

@@ -29,14 +29,15 @@ NOT_BEHIND = 0.5
 
 def face_vertices(mesh: HeadMesh) -> np.ndarray:
     """Return which vertices (n,) bool are the face; none if the head ends above it."""
-    away = np.linalg.norm(mesh.vertices - nose_tip(mesh), axis=1)
-    return (away < RADIUS_MM) & ~_is_on_base(mesh)
+    return _near_nose(mesh)[0]
 
 
-def _is_on_base(mesh: HeadMesh) -> np.ndarray:
-    """Return which vertices (n,) bool are on the flat base."""
+def _near_nose(mesh: HeadMesh) -> tuple[np.ndarray, np.ndarray]:
+    """Return which vertices (n,) bool around the nose are the face, and which the flat base."""
     heights = mesh.vertices[:, 2]
-    return heights < heights.min() + FLAT_MM
+    is_near = np.linalg.norm(mesh.vertices - nose_tip(mesh), axis=1) < RADIUS_MM
+    is_on_base = heights < heights.min() + FLAT_MM
+    return is_near & ~is_on_base, is_near & is_on_base
 
 
 def nose_tip(mesh: HeadMesh) -> np.ndarray:
@@ -75,10 +76,8 @@ def _nose_height(mesh: HeadMesh) -> float:
 
 def without_face(mesh: HeadMesh) -> HeadMesh:
     """Return the head with a smooth membrane instead of its face."""
-    free = face_vertices(mesh)
     # Where the base cuts through the face its rim would keep the profile: it may slide along.
-    away = np.linalg.norm(mesh.vertices - nose_tip(mesh), axis=1)
-    rim = (away < RADIUS_MM) & _is_on_base(mesh)
+    free, rim = _near_nose(mesh)
     across, forward, height = (np.asarray(mesh.vertices, dtype=float) - mesh.centroid).T
     distance, direction = np.hypot(across, forward), np.arctan2(across, forward)
     distance, direction = (_relaxed(mesh.edges, x, free | rim) for x in (distance, direction))

@@ -13,7 +13,7 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.files.point_files import read_markups
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, outward_normals, read_head_mesh
-from rastrainer.procedure.checks import ENTRY_OFF_SKIN_MM
+from rastrainer.procedure.checks import entry_fault
 from rastrainer.scenario.library import checked_scenario
 from rastrainer.scenario.points import LABELS, Task, task_file, touch_order
 from rastrainer.scenario.scenario import Scenario
@@ -112,13 +112,8 @@ def _wrong_trajectory(planning: PlanningSetup) -> list[str]:
     trajectory = planning.scenario.trajectory
     if trajectory is None:
         return []
-    off_skin = _distance_mm(planning, trajectory.entry_ras)
-    if abs(off_skin) > ENTRY_OFF_SKIN_MM:
-        side = "above the skin" if off_skin > 0.0 else "below the skin, within the head"
-        return [
-            f"{trajectory.name} enters {abs(off_skin):.0f} mm {side}; its entry must be within "
-            f"{ENTRY_OFF_SKIN_MM:g} mm of the skin."
-        ]
+    if fault := entry_fault(_distance_mm(planning, trajectory.entry_ras)):
+        return [f"{trajectory.name} {fault}"]
     to_world = planning.scenario.head_to_world
     entry, target = (
         transforms.apply(to_world, point) / MM_PER_M

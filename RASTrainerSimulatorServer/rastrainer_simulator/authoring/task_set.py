@@ -36,16 +36,13 @@ def smooth_places(mesh: HeadMesh, spacing_mm: float) -> np.ndarray:
     height = mesh.vertices[:, 2] - mesh.vertices[:, 2].min()
     allowed = (height > ABOVE_BASE_MM) & (mesh.vertex_normals[:, 2] > DOWNWARD)
     allowed = np.flatnonzero(allowed)
-    spread = spread_out(mesh.vertices[allowed], spacing_mm)
-    return np.array([vertex for vertex in allowed[spread] if is_smooth(mesh, vertex)])
-
-
-def is_smooth(mesh: HeadMesh, vertex: int) -> bool:
-    """Return whether the skin around a vertex bends little."""
-    away = np.linalg.norm(mesh.vertices - mesh.vertices[vertex], axis=1)
-    around = mesh.vertex_normals[away < SMOOTH_WITHIN_MM]
-    least = np.cos(np.radians(MAX_BENDING_DEG))
-    return bool((around @ mesh.vertex_normals[vertex]).min() >= least)
+    smooth, least = [], np.cos(np.radians(MAX_BENDING_DEG))
+    for vertex in allowed[spread_out(mesh.vertices[allowed], spacing_mm)]:
+        away = np.linalg.norm(mesh.vertices - mesh.vertices[vertex], axis=1)
+        around = mesh.vertex_normals[away < SMOOTH_WITHIN_MM]
+        if (around @ mesh.vertex_normals[vertex]).min() >= least:
+            smooth.append(vertex)
+    return np.array(smooth)
 
 
 def spread_out(points: np.ndarray, spacing_mm: float) -> list[int]:

@@ -16,7 +16,6 @@ Lengths are never shorter than the geodesic and, on a sphere, about 2.5 % longer
 
 from __future__ import annotations
 
-import heapq
 import itertools
 from dataclasses import dataclass
 from functools import cache
@@ -209,57 +208,46 @@ class SurfaceGraph:
     """The paths over a mesh; distances in mm."""
 
     def __init__(self, mesh: HeadMesh) -> None:
-        self._mesh = mesh
+        # Only here: a simulator that loads a scenario needs no paths, and need not wait for scipy.
+        from scipy.sparse import csr_array
+
+        self._mesh, count = mesh, len(mesh.vertices)
         across, across_mm = _paths_across(mesh)
         straight = np.linalg.norm(np.diff(mesh.vertices[mesh.edges], axis=1)[:, 0], axis=1)
-        pairs = np.concatenate([mesh.edges, across])
+        pairs = np.sort(np.concatenate([mesh.edges, across]), axis=1)
         lengths = np.concatenate([straight, across_mm])
-        both = np.concatenate([pairs, pairs[:, ::-1]])
-        order = np.argsort(both[:, 0], kind="stable")
-        self._starts = np.searchsorted(both[order, 0], np.arange(len(mesh.vertices) + 1)).tolist()
-        self._ends = both[order, 1].tolist()
-        self._lengths = np.concatenate([lengths, lengths])[order].tolist()
+        # Of two paths between the same vertices the shorter one.
+        order = np.lexsort((lengths, *pairs.T))
+        pairs, first = np.unique(pairs[order], axis=0, return_index=True)
+        self._paths = csr_array((lengths[order][first], pairs.T), shape=(count, count))
         self._known: dict[tuple[float, ...], float] = {}
 
     def distance(self, start: np.ndarray, end: np.ndarray) -> float:
         """Return the length of the path over the surface between two points (3,) on it."""
+        from scipy.sparse.csgraph import dijkstra
+
         # Complexity and shortest path of a task need the same paths.
         key = (*map(float, start), *map(float, end))
         if key not in self._known:
             first, last = nearest_on_mesh(self._mesh, start), nearest_on_mesh(self._mesh, end)
+            straight = float(np.linalg.norm(first.position - last.position))
             if first.triangle == last.triangle:
-                self._known[key] = float(np.linalg.norm(first.position - last.position))
+                self._known[key] = straight
             else:
-                reached = self._from_corners(first, last)
-                leaving = self._leaving(last).items()
-                self._known[key] = min(reached.get(v, np.inf) + length for v, length in leaving)
+                near, far = (self._mesh.triangles[each.triangle] for each in (first, last))
+                # Nearly all paths are shorter than twice the straight line.
+                for limit in (2.0 * straight + 20.0, np.inf):
+                    between = dijkstra(self._paths, directed=False, indices=near, limit=limit)
+                    whole = self._to(first)[:, None] + between[:, far] + self._to(last)
+                    if np.isfinite(whole).any():
+                        break
+                self._known[key] = float(whole.min())
         return self._known[key]
 
-    def _leaving(self, point: NearestPoint) -> dict[int, float]:
-        corners = self._mesh.triangles[point.triangle].tolist()
-        lengths = np.linalg.norm(self._mesh.vertices[corners] - point.position, axis=1)
-        return dict(zip(corners, lengths.tolist(), strict=True))
-
-    def _from_corners(self, first: NearestPoint, last: NearestPoint) -> dict[int, float]:
-        """Return the distances of vertices until the corners of the last triangle are reached.
-
-        Vertices are visited by distance plus straight line to the goal (A*, Hart 1968).
-        """
-        left = np.linalg.norm(self._mesh.vertices - last.position, axis=1).tolist()
-        missing, shortest = set(self._leaving(last)), self._leaving(first)
-        waiting = [(length + left[vertex], length, vertex) for vertex, length in shortest.items()]
-        heapq.heapify(waiting)
-        while waiting and missing:
-            _, length, vertex = heapq.heappop(waiting)
-            if length > shortest[vertex]:
-                continue
-            missing.discard(vertex)
-            for edge in range(self._starts[vertex], self._starts[vertex + 1]):
-                end, further = self._ends[edge], length + self._lengths[edge]
-                if further < shortest.get(end, np.inf):
-                    shortest[end] = further
-                    heapq.heappush(waiting, (further + left[end], further, end))
-        return shortest
+    def _to(self, point: NearestPoint) -> np.ndarray:
+        """Return the distances (3,) to the corners of a point's triangle."""
+        corners = self._mesh.vertices[self._mesh.triangles[point.triangle]]
+        return np.asarray(np.linalg.norm(corners - point.position, axis=1))
 
 
 def _paths_across(mesh: HeadMesh) -> tuple[np.ndarray, np.ndarray]:

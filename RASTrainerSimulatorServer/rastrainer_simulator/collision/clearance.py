@@ -120,7 +120,6 @@ class HeadClearance:
         self.set_pose(np.eye(4))
 
     def set_pose(self, head_to_world: np.ndarray) -> None:
-        """Set the head's pose, HeadToWorld (4, 4) float, m."""
         pose = np.array(head_to_world, dtype=float)
         rotation = pose[:3, :3]
         is_orthogonal = np.abs(rotation @ rotation.T - np.eye(3)).max() <= _RIGID

@@ -170,7 +170,7 @@ class Simulation:
         return StepResult(self.state, tuple(events), tuple(answers))
 
     def _carry_out(self, command: OperatorCommand, sim_time: float) -> TrainingReply:
-        if self._training.handles(command.name):
+        if command.name in self._training.handlers:
             return self._training.handle(command, self._moment_of(command, sim_time))
         sentence = refusal(command, self._training.state)
         if sentence is not None:
@@ -251,7 +251,6 @@ class Simulation:
         self._planned_target = None
 
     def _place(self, moved: Moved) -> None:
-        """Set where the arm is."""
         self._moved = moved
         poses = moved.link_to_world
         self._link_to_world = tuple(poses[name] for name in self._link_names)
@@ -337,7 +336,6 @@ class Simulation:
 
 
 def listed(scenario: Scenario) -> dict[str, Any]:
-    """Return the answer to ListTasks, ready for JSON."""
     return {
         "scenario": scenario.name,
         "title": scenario.title,

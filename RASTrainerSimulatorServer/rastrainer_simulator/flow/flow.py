@@ -18,13 +18,13 @@ from rastrainer_simulator.flow.procedure_screen import ProcedureScreen
 from rastrainer_simulator.flow.session.chosen_trial import begin_ghost, needs_tutorial
 from rastrainer_simulator.flow.session.open_pages import Page
 from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.flow.session.tutorial import Tutorial
 from rastrainer_simulator.flow.trial_screen import (
     TrialScreen,
     practice_page,
     preparing_page,
     trial_page,
 )
-from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
 from rastrainer_simulator.flow.tutorial_screen import TutorialScreen
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.feedback_event import touch_feedback

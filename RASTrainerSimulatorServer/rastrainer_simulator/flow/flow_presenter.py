@@ -145,7 +145,7 @@ class FlowPresenter(Presenter):
     def seat(self) -> Seat:
         session, screen = self._session, self.screen
         training, curriculum = session.training, session.curriculum
-        is_open, assignment_texts = session.has_open_trial, session.assignment_texts
+        is_open = session.has_open_trial
         trainee = training.trainee if is_open else session.trainee_id
         scores = [trial.score for trial in session.history.of(trainee) if not trial.is_aborted]
         wrong = (each for each in screen.warnings if each.tone in (Tone.WARNING, Tone.ERROR))
@@ -160,7 +160,7 @@ class FlowPresenter(Presenter):
             holder=self.control.holder,
             slicer=session.services.is_slicer_connected(),
             language=screen.language,
-            assignments="" if curriculum is None else assignment_texts.in_brief(curriculum),
+            assignments="" if curriculum is None else session.assignment_texts.in_brief(curriculum),
         )
 
     def instruct(self, order: InstructorOrder, text: str) -> str:
@@ -168,8 +168,7 @@ class FlowPresenter(Presenter):
         is_running = self._session.training.is_running or self._session.tutorial is not None
         problem = ""
         if order is InstructorOrder.SAY:
-            said = say("instructor.says", text=text)
-            self._session.notices.add(said, seconds=SENTENCE_S)
+            self._session.notices.add(say("instructor.says", text=text), seconds=SENTENCE_S)
         elif order is InstructorOrder.PAUSE and (is_running or self._flow.playback is not None):
             self._flow.pause("unseen.instructor")
         elif order is InstructorOrder.PAUSE:
@@ -317,13 +316,12 @@ class FlowPresenter(Presenter):
 
     def refused(self, _source: Source) -> None:
         holder, say = self.controls.holder, self._session.texts.say
-        if holder is None:
-            return
-        name, menu = say(f"source.{holder.kind.value}"), say("control.menu")
-        key = "control.locked" if self._session.lock.is_locked else "control.held"
-        text = say(key, source=name, menu=menu, seconds=IDLE_S)
-        self._session.notices.add(text, Tone.WARNING)
-        self._is_changed = True
+        if holder is not None:
+            name, menu = say(f"source.{holder.kind.value}"), say("control.menu")
+            key = "control.locked" if self._session.lock.is_locked else "control.held"
+            text = say(key, source=name, menu=menu, seconds=IDLE_S)
+            self._session.notices.add(text, Tone.WARNING)
+            self._is_changed = True
 
     def unplugged(self, source: Source) -> None:
         if source == self.controls.holder:
@@ -373,13 +371,12 @@ class FlowPresenter(Presenter):
         """Return whether the view goes automatically to the best view of each next point."""
         session, tutorial = self._session, self._session.tutorial
         practiced = session.training if tutorial is None else tutorial
-        # In a headset the trainee looks around by turning the head.
-        has_not_learned = tutorial is not None and not tutorial.has_learned_view
-        if practiced.mode == Mode.HMD.value or has_not_learned:
-            return False
-        choice = session.preferences.view
+        has_learned = tutorial is None or tutorial.has_learned_view
         is_led = practiced.trainee in session.services.assigned.steps
-        return choice == "always" or (choice == "practice" and not is_led)
+        choice = session.preferences.view
+        is_chosen = choice == "always" or (choice == "practice" and not is_led)
+        # In a headset the trainee looks around by turning the head.
+        return is_chosen and has_learned and practiced.mode != Mode.HMD.value
 
     def _advance_view(self, dt: float) -> None:
         """Move the view by `dt` seconds, and have the trial's journal say where it is."""

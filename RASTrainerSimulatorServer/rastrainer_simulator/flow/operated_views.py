@@ -13,22 +13,18 @@ LONGEST_WAIT_S = 300.0
 
 @dataclass
 class OperatedView:
-    """A view that has joined.
-
-    Attributes:
-        is_silent: whether it has stopped reporting that it draws.
-        yaw_deg: where the eyes of a headset look, degrees from World's x; None before they do.
-        task, share: whose scene it has loaded, and how much of it; None if it reports nothing.
-        waited_s: how long its picture has been awaited since the last progress.
-    """
+    """A view that has joined; silent once it no longer reports that it draws."""
 
     hello: Hello
     is_silent: bool = False
     is_touched: bool = False
     yaw_deg: float | None = None
+    """Where the eyes of a headset look, from World's x; None before they do."""
     task: str | None = None
+    """Whose scene it has loaded, by a share; None if it reports nothing."""
     share: float = 0.0
     waited_s: float = 0.0
+    """How long its picture has been awaited since the last progress."""
 
     def awaited_share(self, dt: float, task: str) -> float | None:
         """Return its share of a task's picture, 0 to 1; None if nothing needs to be awaited."""

@@ -141,27 +141,28 @@ class TrialScreen(ArmScreen):
 
     def pressed(self, control: ControlName) -> None:
         session = self._session
-        phase = session.training.phase
-        if control is ControlName.CAMERA:
-            self._change_camera()
-        elif control is ControlName.BEST_VIEW and session.training.is_tracing:
-            orbit = session.places.orbit(session.scenario.cameras[session.state.camera])
-            if orbit is not None:
-                session.view.control.go(orbit)
-        elif control is ControlName.BEST_VIEW:
-            session.view.is_best_wanted = True
-        elif control is ControlName.UNDO:
-            session.do(CommandName.UNDO)
-        elif control is ControlName.TOUCH and session.training.is_tracing:
-            trace = session.training.trace
-            session.do(CommandName.TRACE, {"on": trace is None or not trace.is_on})
-        elif control is ControlName.TOUCH and phase is Phase.COMPLETE:
-            session.pages.open(complete_page(session))
-        elif control is ControlName.TOUCH:
-            session.do(CommandName.CAPTURE)
-        elif control in (ControlName.MENU, ControlName.PAUSE):
-            self.has_requested_menu = True
-            self.open_menu()
+        training = session.training
+        match control:
+            case ControlName.CAMERA:
+                self._change_camera()
+            case ControlName.BEST_VIEW if training.is_tracing:
+                orbit = session.places.orbit(session.scenario.cameras[session.state.camera])
+                if orbit is not None:
+                    session.view.control.go(orbit)
+            case ControlName.BEST_VIEW:
+                session.view.is_best_wanted = True
+            case ControlName.UNDO:
+                session.do(CommandName.UNDO)
+            case ControlName.TOUCH if training.is_tracing:
+                trace = training.trace
+                session.do(CommandName.TRACE, {"on": trace is None or not trace.is_on})
+            case ControlName.TOUCH if training.phase is Phase.COMPLETE:
+                session.pages.open(complete_page(session))
+            case ControlName.TOUCH:
+                session.do(CommandName.CAPTURE)
+            case ControlName.MENU | ControlName.PAUSE:
+                self.has_requested_menu = True
+                self.open_menu()
 
     def open_menu(self) -> None:
         """Open the menu; a trial that runs is paused, and the menu opens when it is."""

@@ -10,14 +10,16 @@ from rastrainer_simulator.flow.arm_screen import ArmEvents, ArmScreen
 from rastrainer_simulator.flow.pages.introduction import tutorial_page
 from rastrainer_simulator.flow.pages.trial_review import POOR_MM, error_arrow, error_tone
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.flow.tutorial.steps import (
+from rastrainer_simulator.flow.session.tutorial import (
+    CENTERED_M,
     DONE_DEG,
     DONE_MM,
     STEPS,
+    WAYS,
+    Tutorial,
     TutorialObservation,
     TutorialStep,
 )
-from rastrainer_simulator.flow.tutorial.tutorial import CENTERED_M, Tutorial
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 from rastrainer_simulator.presentation.screen import ErrorArrow, Hint, Screen, ScreenMessage, Tone
@@ -28,9 +30,6 @@ from rastrainer_simulator.vectors import Vector, distance
 LIMIT_MM = f"{MM_PER_M * CENTERED_M:g}"
 STEP_MM, STEP_DEG = 5, 5
 """Progress is shown in these steps: a constantly changing figure is unreadable."""
-_MOVES = tuple(TutorialStep)[:6]
-"""Steps that move the tip in one direction."""
-_WITH_UNDO = (TutorialStep.UNDO, TutorialStep.GUIDED)
 NEAR_M = 0.02
 """Within this distance the arm counts as arrived."""
 SPEED_MM_S = 250.0
@@ -134,7 +133,7 @@ class TutorialScreen(ArmScreen):
             session.view.is_best_wanted = True
         elif control is ControlName.TOUCH and tutorial.may_touch:
             self._play_reply(tutorial.touch(session.state))
-        elif control is ControlName.UNDO and tutorial.step in _WITH_UNDO:
+        elif control is ControlName.UNDO and tutorial.may_undo:
             self._play_reply(tutorial.practice.handle(CommandName.UNDO, session.state))
         elif control in (ControlName.MENU, ControlName.PAUSE):
             self.open_menu()
@@ -199,7 +198,7 @@ class TutorialScreen(ArmScreen):
         names: dict[ControlName, str] = {}
         if step is TutorialStep.TURN_VIEW:
             moving.append(Hint(operator.pair_label(*controls), say("hint.turn_view")))
-        elif step in (*_MOVES, TutorialStep.LOOK_AROUND):
+        elif step in WAYS or step is TutorialStep.LOOK_AROUND:
             (control,) = controls
             moving.append(Hint(operator.label(control), say(f"control.{control.value}")))
         else:

@@ -167,7 +167,6 @@ class ControlLoop:
         return self.submit(_BEGIN_REPLACEMENT)
 
     def replace_simulation(self, simulation: Simulation) -> Future[Answer]:
-        """Continue with another simulation, such as one of another scenario."""
         assert self.is_being_replaced, "a trial could be open"
         ticket, future = self._answers.expect()
         self._successor = (simulation, ticket)
@@ -237,21 +236,18 @@ class ControlLoop:
             if self._is_for_the_archive(command):
                 self._query_archive(command)
                 continue
-            if command.name == CommandName.START_TASK and (reason := self._why_none_starts()):
-                self._answers.give(Answer(command.ticket, False, reason))
-                continue
+            # The simulation itself reports an open trial.
+            if command.name == CommandName.START_TASK and not self._is_trial_open:
+                reason = BEING_SET_UP if self.is_being_replaced else ""
+                if not reason and not self._starts.allows(self._state.sim_time):
+                    reason = TOO_MANY_STARTS
+                if reason:
+                    self._answers.give(Answer(command.ticket, False, reason))
+                    continue
             commands.append(command)
             if changes_trial:
                 break
         return tuple(commands)
-
-    def _why_none_starts(self) -> str:
-        """Return why the loop lets no trial start; the simulation itself reports an open one."""
-        if self._is_trial_open:
-            return ""
-        if self.is_being_replaced:
-            return BEING_SET_UP
-        return "" if self._starts.allows(self._state.sim_time) else TOO_MANY_STARTS
 
     @property
     def _is_trial_open(self) -> bool:

@@ -178,7 +178,6 @@ class PendingAnswers:
         self._futures: dict[int, Future[Answer]] = {}
 
     def expect(self) -> tuple[int, Future[Answer]]:
-        """Return a new ticket and the future of its answer."""
         future: Future[Answer] = Future()
         ticket = next(self._tickets)
         self._futures[ticket] = future

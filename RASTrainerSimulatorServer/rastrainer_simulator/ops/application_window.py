@@ -151,7 +151,6 @@ class ApplicationWindow:
             announce(GONE.format(status=status, url=self._url, code=self._code))
 
     async def close(self) -> None:
-        """Close the window if it is still open, and remove its profile."""
         process = self._process
         if process is not None and process.returncode is None:
             with contextlib.suppress(ProcessLookupError):

@@ -43,7 +43,6 @@ class GuessLimit:
         self._open_from = -float("inf")
 
     def seconds_to_wait(self) -> float:
-        """Return how long no guess is checked; 0 if one may be made."""
         return max(0.0, self._open_from - self._clock())
 
     def guessed(self, is_right: bool) -> bool:

@@ -158,7 +158,6 @@ class BackgroundHandler(logging.Handler):
         self._thread.start()
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Put a record into the queue, or lose it where that is full."""
         try:
             if self._lost:
                 self._waiting.put_nowait(_gap(self._lost))

@@ -18,7 +18,6 @@ _log = logging.getLogger(__name__)
 
 
 def has_display() -> bool:
-    """Return whether a window can be seen."""
     names = ("DISPLAY", "WAYLAND_DISPLAY")
     return not sys.platform.startswith("linux") or any(map(os.environ.get, names))
 

@@ -92,12 +92,9 @@ class ViewMessage:
 
 @dataclass(frozen=True)
 class HeadsetPose:
-    """Where a headset and its controllers are.
+    """Where a worn headset's eyes and its controllers are; None without one.
 
-    Attributes:
-        eyes: middle between the eyes, which look along −z with y up; None while nobody wears the
-            headset.
-        left, right: controllers, which point along −z; None without one.
+    The eyes' middle looks along −z with y up, and the controllers point along −z.
     """
 
     eyes: HeadsetPart
@@ -120,12 +117,9 @@ class WelcomeNews(ViewMessage):
 
 @dataclass(frozen=True)
 class SceneNews(ViewMessage):
-    """The scene's file, and what goes with it.
+    """The scene's file, and what goes with it: fiducials by label in the head's frame, m.
 
-    Attributes:
-        sticks: whose right, forward and up the sticks follow.
-        fiducials: positions in the head's frame, m, by label.
-        no_go: nodes of the no-go structures of each procedure.
+    `no_go` has the nodes of the no-go structures of each procedure.
     """
 
     type = "scene"
@@ -149,11 +143,9 @@ class GuideAim:
 
 @dataclass(frozen=True)
 class ProcedureNews:
-    """State of the tool in a procedure.
+    """State of the tool in a procedure: how far it is fed beyond the guide's tip.
 
-    Attributes:
-        feed_mm: how far drill or electrode is beyond the guide's tip.
-        aim: None unless a guide is being aligned.
+    `aim` is None unless a guide is being aligned.
     """
 
     name: Words
@@ -216,12 +208,9 @@ class ScreenNews(ViewMessage):
 
 @dataclass(frozen=True)
 class Feedback(ViewMessage):
-    """A sound and a vibration, to be played once.
+    """A sound and a vibration of a `FeedbackEvent`, to be played once.
 
-    Attributes:
-        number: counts from 1 without a gap.
-        kind: what happened; a `FeedbackEvent`.
-        volume: 0 while sounds are muted.
+    The numbers count from 1 without a gap. The volume is 0 while sounds are muted.
     """
 
     type = "event"
@@ -261,12 +250,9 @@ class SkinPlace:
 
 @dataclass(frozen=True)
 class TraceNews(ViewMessage):
-    """New points of a trace over the skin.
+    """New points of a trace over the skin, in the head's frame; `known` earlier points remain.
 
-    Attributes:
-        known: how many of the points sent before remain.
-        points: new points after these, in the head's frame, mm.
-        covered_mm: distance around the points within which the skin is painted; 0 for no paint.
+    Within `covered_mm` around the points the skin is painted; 0 for no paint.
     """
 
     type = "trace"
@@ -305,10 +291,8 @@ Points = Annotated[int, whole_number(0, 1000)]
 class Seat:
     """State of a seat on a teacher's board, except for its trial.
 
-    Attributes:
-        count: points of the open trial's task; 0 without one.
-        screen: title of the open menu, "" while the trainee works.
-        assignments: where the trainee stands in a curriculum, a sentence; "" without one.
+    `count` is of the points of the open trial's task, `screen` the title of the open menu, and
+    `assignments` a sentence about the trainee's curriculum; each is empty without one.
     """
 
     trainee: SeatName = ""
@@ -399,8 +383,7 @@ class PadInput(ViewMessage):
 class SticksInput(ViewMessage):
     """Sticks of XR controllers or on the screen, as in `OperatorInput`.
 
-    Attributes:
-        yaw_deg: where the eyes look, counterclockwise from World's x: forward is there.
+    Forward is where the eyes look: `yaw_deg`, counterclockwise from World's x.
     """
 
     type = "sticks"

@@ -21,12 +21,9 @@ from rastrainer_simulator.viewpoint.view_control import Pictures
 
 @dataclass(frozen=True)
 class Control:
-    """The source that drives the arm.
+    """The source that drives the arm, as people read it; "" while no one drives.
 
-    Attributes:
-        holder: what people read, such as "gamepad" or "keyboard"; "" while no one drives.
-        view: number of the view that the holder's input comes from; None for a gamepad at the
-            simulator, and while no one drives.
+    `view` is where its input comes from; None for a gamepad at the simulator.
     """
 
     holder: str = ""
@@ -38,11 +35,9 @@ ViewUpdate = Screen | Feedback | Control
 
 @dataclass(frozen=True)
 class TraceGuidance:
-    """How a trainee who traces the skin is guided.
+    """How a trainee who traces the skin is guided: by paint, and where to draw next.
 
-    Attributes:
-        covered_mm: distance around the traced points that is painted on the skin; 0 for none.
-        next_place: place where the next points would help most; None if it is not shown.
+    `covered_mm` is the distance around the traced points that is painted on the skin; 0 for none.
     """
 
     covered_mm: float = 0.0

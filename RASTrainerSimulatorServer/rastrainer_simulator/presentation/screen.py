@@ -50,14 +50,10 @@ class ItemKind(str, Enum):
 
 @dataclasses.dataclass(frozen=True)
 class MenuItem:
-    """One line of a menu.
+    """One line of a menu; a view sends its name back when it is clicked.
 
-    Attributes:
-        name: unique in its menu; a view sends it back when the item is clicked.
-        value: the chosen option, the typed text or the axis's position, ready to be shown.
-        help: a sentence shown while the item has the focus, such as why it cannot be chosen.
-        picture: shown while the item has the focus, a path of the simulator's HTTP server such as
-            "/scenarios/colin27.png"; "" for none.
+    The value is ready to be shown. While the item has the focus, its help is shown, such as why it
+    cannot be chosen, and the picture at a path of the simulator's HTTP server.
     """
 
     name: Words
@@ -80,12 +76,9 @@ class Fact:
 
 @dataclasses.dataclass(frozen=True)
 class ScoreTrend:
-    """A trainee's scores as a small plot of bars.
+    """A trainee's scores as a small plot of bars, oldest first; as text for who cannot see it.
 
-    Attributes:
-        text: every score in words, for people who cannot see the plot.
-        scores: oldest first, at least one.
-        mark: score that passes, drawn as a line; 0 for none.
+    `mark` is the score that passes, drawn as a line; 0 for none.
     """
 
     text: Words
@@ -95,13 +88,10 @@ class ScoreTrend:
 
 @dataclasses.dataclass(frozen=True)
 class Menu:
-    """A panel over the picture.
+    """A panel over the picture; its name is never shown.
 
-    Attributes:
-        name: of the screen, such as "start" or "experiment"; for tests and logs, never shown.
-        focus: name of the item that has the focus; "" without one.
-        picture: drawing of the controls next to the text, in which the inputs named by the facts
-            are colored.
+    `focus` is the name of an item, or "". The picture is of the controls, in which the inputs
+    named by the facts are colored.
     """
 
     name: Words
@@ -159,9 +149,7 @@ class DepthRuler:
 class Hint:
     """Which control does what at the moment, such as "A" and "Touch".
 
-    Attributes:
-        item: name of the item that a view sends back when the hint is clicked, for people who
-            have only a mouse; "" if a click does nothing.
+    `item` is what a view sends back when the hint is clicked, by a mouse alone; "" for nothing.
     """
 
     control: Words

@@ -170,7 +170,6 @@ class Journal:
         return descriptor, self._size
 
     def _append_to(self, reading: JournalReading) -> int:
-        """Continue after the whole lines of a file, and return their size."""
         self._count = len(reading.entries)
         self.last_hash = reading.entries[-1]["sha256"] if reading.entries else NO_LINE
         self._size = reading.end

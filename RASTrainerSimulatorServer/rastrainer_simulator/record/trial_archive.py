@@ -88,7 +88,6 @@ class ArchivedTrial:
         return {**data, "seed": self.seed, **self.revealed()}
 
     def revealed(self) -> dict[str, Any]:
-        """Return the data that SubmitRegistration reveals."""
         if self.registration is None or self.truth is None:
             raise InputError("No registration of the trial was submitted.")
         matrix = np.array(self.registration["matrix"], dtype=np.float64).reshape(4, 4)

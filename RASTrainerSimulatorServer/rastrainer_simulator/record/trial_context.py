@@ -51,7 +51,6 @@ for _package in PACKAGES:
 def setup_of(
     header: JournalHeader, scenario_folder: Path | None = None, robot_meshes: Path | None = None
 ) -> SimulationSetup:
-    """Return the setup that a journal's header describes."""
     # A setting that is unknown here would be without effect.
     settings = record_from_json(
         SimulationSettings, header.settings, "The journal's settings", only_known=True

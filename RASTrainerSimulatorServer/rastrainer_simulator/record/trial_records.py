@@ -144,7 +144,6 @@ class UnmeasuredRecord:
 
 
 def with_record(lines: Iterable[Line], record: TrialRecord) -> list[Line]:
-    """Return the lines of a trial with its record in the entry of Register."""
     whole = record_to_json(record)
     return [
         Line(at, replace(entry, record=whole) if isinstance(entry, Registered) else entry)

@@ -117,7 +117,6 @@ class SceneMoment:
     proximity: Proximity = Proximity.FREE
 
     def poses(self, robot: RobotModel) -> dict[str, np.ndarray]:
-        """Return the pose of each moving node, (4, 4) float, m."""
         first = {
             link_node_name(link.joint): self.link_to_world[link.name]
             for link in reversed(robot.links)

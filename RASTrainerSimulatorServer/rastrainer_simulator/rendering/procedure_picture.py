@@ -186,6 +186,5 @@ def _line_node(name: str, line: Line, material: Material, thickness: float) -> N
 
 
 def _camera(place: np.ndarray, angle_deg: float) -> Camera:
-    """Return a camera that looks at a point from the patient's right front."""
     position = place + AWAY_MM * FROM / np.linalg.norm(FROM)
     return Camera(position, place, np.array([0.0, 0.0, 1.0]), angle_deg)

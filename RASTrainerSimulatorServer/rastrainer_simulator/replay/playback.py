@@ -43,7 +43,6 @@ class Playback:
         self._shown_s = -math.inf
 
     def play_from(self, time_s: float, until_s: float | None = None, speed: float = 1.0) -> None:
-        """Play from a time in s, up to another or the end."""
         self.time_s = min(max(0.0, time_s), self.trial.duration_s)
         end_s = self.trial.duration_s
         self.until_s = end_s if until_s is None else min(until_s, end_s)
@@ -63,7 +62,6 @@ class Playback:
         self._show(is_jump=True)
 
     def advance(self, seconds: float) -> None:
-        """Advance by an amount of wall time, s."""
         if not self.is_playing:
             # For views that have just joined.
             self._subscribers.publish(StepResult(self.latest, ()))

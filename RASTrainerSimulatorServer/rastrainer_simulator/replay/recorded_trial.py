@@ -188,7 +188,6 @@ TrialLoading = JournalLoading[RecordedTrial]
 
 
 def load_trial(journal: Path, setup: SimulationSetup) -> TrialLoading:
-    """Start loading a trial; its journal is only read."""
     return JournalLoading(lambda check: RecordedTrial(read_track(journal, check), setup))
 
 

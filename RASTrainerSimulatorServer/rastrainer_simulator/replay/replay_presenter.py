@@ -169,7 +169,6 @@ class ReplayPresenter(Presenter):
         self._play(playback, blinded)
 
     def _play(self, playback: Playback, blinded: str) -> None:
-        """Show a trial from its beginning."""
         self._playback = playback
         self._view = ViewControl()
         self._best = BestViews()

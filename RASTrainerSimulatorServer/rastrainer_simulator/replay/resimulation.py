@@ -157,7 +157,6 @@ class _Player:
 
 
 def _inputs(recorded: Sequence[Line], before: int, last: int, seed: int) -> Iterator[OperatorInput]:
-    """Yield the operator's input of every tick after `before` up to `last`."""
     sticks: dict[int, OperatorInput] = {}
     commands: dict[int, list[OperatorCommand]] = defaultdict(list)
     for at, entry in recorded:

@@ -20,7 +20,6 @@ Span = tuple[float, float]
 
 
 def box(x: Span, y: Span, z: Span, material: Material) -> Surface:
-    """Return a box with sharp edges."""
     ring = np.array([(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])])
     return _stack([(ring, z[0]), (ring, z[1])], material)
 
@@ -125,7 +124,6 @@ def surface(
 
 
 def vtk_matrix(matrix: np.ndarray) -> vtkMatrix4x4:
-    """Return a (4, 4) float matrix as VTK's."""
     made = vtkMatrix4x4()
     made.DeepCopy(np.asarray(matrix, dtype=float).reshape(16).tolist())
     return made

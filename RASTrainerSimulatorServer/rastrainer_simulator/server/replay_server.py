@@ -82,7 +82,6 @@ async def _show_until(
 
 
 def _preferred_language() -> str:
-    """Return the language of the user's settings, a BCP 47 tag."""
     with contextlib.suppress(InputError):
         return read_preferences(config_folder() / PREFERENCES_FILE).language
     return Preferences().language

@@ -189,7 +189,6 @@ class SimulatorServer:
                 _log.info("The simulator has ended.", extra={"data": self._health()})
 
     def _load_interrupted_trial(self) -> tuple[Simulation, JournalReading] | None:
-        """Return a simulation with the trial that was interrupted, and its journal."""
         try:
             found = find_interrupted(self._options.records)
             if found is None:

@@ -62,7 +62,6 @@ ROBOT_AXES = Axes(right=(0.0, -1.0, 0.0), forward=(1.0, 0.0, 0.0), up=WORLD_UP)
 
 
 def axes_of(camera: Camera) -> Axes:
-    """Return right, forward and up as a scenario's camera sees them, leveled."""
     direction = vector((camera.focal_point_mm - camera.position_mm).tolist())
     return camera_axes(direction, vector(camera.view_up.tolist()))
 

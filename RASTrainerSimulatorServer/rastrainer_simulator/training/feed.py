@@ -91,7 +91,6 @@ class Feed:
 
     @property
     def instrument_limit(self) -> float:
-        """How far an instrument can go, m."""
         if self.is_through:
             return LONGEST_FEED_M
         assert self.ahead.outer is not None, "without bone it is through"

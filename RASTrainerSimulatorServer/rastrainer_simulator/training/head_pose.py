@@ -32,7 +32,6 @@ class Truth(RecordedTruth):
         return points @ self.head_to_world[:3, :3].T + self.head_to_world[:3, 3]
 
     def in_head(self, point: np.ndarray) -> np.ndarray:
-        """Return a point of World (mm) in the head (RAS mm)."""
         return self.head_to_world[:3, :3].T @ (point - self.head_to_world[:3, 3])
 
     def target_error_mm(self, world_to_head: np.ndarray) -> float:
@@ -133,7 +132,6 @@ class RegisteredPlan:
         )
 
     def in_head(self, position: Vector) -> Vector:
-        """Return a point of World, m, in the MRI, RAS mm."""
         scaled = scale(position, MM_PER_M)
         return vector(
             dot(row, scaled) + shift for row, shift in zip(self.rows, self.shift, strict=True)

@@ -68,7 +68,6 @@ class TrialStep:
 
 
 def phase_change(state: TrainingState, feed: Feed = NO_FEED, **data: Any) -> PhaseChange:
-    """Return the entry of a trial that enters the phase of a state."""
     procedure, trace, is_drilled = state.procedure, state.trace, feed.drilled > 0.0
     at = None
     if procedure is not None:

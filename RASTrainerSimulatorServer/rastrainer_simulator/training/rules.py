@@ -151,12 +151,17 @@ def refused_touch(
 ) -> str | None:
     """Return why a touch does not count, None if it does; `fiducials` are in World, m."""
     away, radius = distance(now.tip, fiducials[next_point]), settings.radius(method)
+    is_marked = method is RegistrationMethod.FIDUCIALS
     if away > radius:
         label = min(fiducials, key=lambda key: distance(now.tip, fiducials[key]))
         nearest = distance(now.tip, fiducials[label])
         if nearest <= radius:
             return say("wrong point", point=next_point, label=label, nearest=MM_PER_M * nearest)
-        return _too_far(next_point, MM_PER_M * away, MM_PER_M * radius, method)
+        radius_mm, step = MM_PER_M * radius, 1 if is_marked else UNMARKED_STEP_MM
+        away_mm = step * max(round(MM_PER_M * away / step), math.floor(radius_mm / step) + 1)
+        most = max(TOLD_MM, TOLD_RADII * radius_mm)
+        key = "too far" if away_mm <= most else "much too far"
+        return say(key, point=next_point, distance=away_mm, most=f"{most:g}", radius=radius_mm)
     is_above = now.tip_clearance > settings.skin_tolerance
     if settings.touch_rule is TouchRule.ON_SKIN and is_above:
         return say("above the skin", point=next_point, height=MM_PER_M * now.tip_clearance)
@@ -168,14 +173,6 @@ TOLD_MM, TOLD_RADII = 15.0, 1.5
 touches count: told from anywhere, three would lead to the point without a look at the head."""
 UNMARKED_STEP_MM = 10
 """Where a point that is not marked is, is what the trainee has to know: its distance is rounded."""
-
-
-def _too_far(point: str, away_mm: float, radius_mm: float, method: RegistrationMethod) -> str:
-    step = 1 if method is RegistrationMethod.FIDUCIALS else UNMARKED_STEP_MM
-    away = step * max(round(away_mm / step), math.floor(radius_mm / step) + 1)
-    most = max(TOLD_MM, TOLD_RADII * radius_mm)
-    key = "too far" if away <= most else "much too far"
-    return say(key, point=point, distance=away, most=f"{most:g}", radius=radius_mm)
 
 
 _TOUCHING = (Phase.RUNNING, Phase.COMPLETE)

@@ -36,7 +36,6 @@ def tip_places(tip: Vector, measured: Vector) -> dict[str, Any]:
 
 
 def stroke_entry(trace: TraceState, undone: bool = False) -> Stroke:
-    """Return the entry of a trace when a stroke begins, ends or is undone."""
     return Stroke(trace.is_on, len(trace.points), len(trace.strokes), undone)
 
 

@@ -96,7 +96,7 @@ class Training:
         self._kept: dict[int, tuple[TrainingState, Feed | None]] = {0: (self.state, None)}
         # Until when (simulated s) a refusal is shown, and the instruction that it stands for.
         self._refused_over: tuple[float, str] | None = None
-        self._handlers: dict[str, Callable[[OperatorCommand, TouchMoment], Outcome]] = {
+        self.handlers: dict[str, Callable[[OperatorCommand, TouchMoment], Outcome]] = {
             **dict.fromkeys(ProcedurePhases.HANDLERS, self._in_procedure),
             CommandName.START_TASK: self._start,
             CommandName.CAPTURE: self._capture,
@@ -145,22 +145,22 @@ class Training:
         """Return where the next fiducial is in a state of the trial, World, m; None without one."""
         return self._head.fiducials.get(state.next_point or "")
 
-    def handles(self, command: str) -> bool:
-        return command in self._handlers
-
     def handle(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         """Carry out a command, or refuse it with a sentence about what would be right."""
         sentence = refusal(command, self.state, self._count)
         if sentence is not None:
             return TrainingReply(False, sentence)
         left = self.state.revision
-        outcome = self._handlers[command.name](command, now)
+        outcome = self.handlers[command.name](command, now)
         if isinstance(outcome, TrialStep):
             reply = self._taken(outcome, now)
         else:
             reply = outcome
             if not reply.ok and reply.events:
-                self._show_refusal(reply.message, now)
+                # A touch does not count: why stands in place of the instruction for some seconds.
+                task = self._refused_over[1] if self._refused_over else self.state.instruction
+                self._refused_over = now.sim_time + REFUSAL_S, task
+                self.state = replace(self.state, instruction=reply.message)
         if self.state.revision != left and left in self._kept:
             self._kept[left] = self._kept[left][0], now.feed
         return reply
@@ -258,12 +258,6 @@ class Training:
             change = phase_change(self.state, now.feed, **step.data, ahead=step.ahead)
             events.append(Event(now.sim_time, change))
         return TrainingReply(True, data=answer, events=tuple(events), feed=step.feed)
-
-    def _show_refusal(self, sentence: str, now: TouchMoment) -> None:
-        """Show why a touch does not count, in place of the instruction."""
-        task = self.state.instruction if self._refused_over is None else self._refused_over[1]
-        self._refused_over = now.sim_time + REFUSAL_S, task
-        self.state = replace(self.state, instruction=sentence)
 
     def _capture(self, command: OperatorCommand, now: TouchMoment) -> Outcome:
         if self.state.phase is Phase.VERIFYING:
@@ -386,5 +380,4 @@ class Training:
         return interrupted(self.state)
 
     def _forget(self, state: TrainingState) -> None:
-        """Go on from a state without the states before it."""
         self.state, self._kept = state, {state.revision: (state, None)}

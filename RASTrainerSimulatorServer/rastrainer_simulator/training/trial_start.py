@@ -63,7 +63,6 @@ class TrialClock:
 
 
 def paused(state: TrainingState) -> TrainingState:
-    """Return the state of a trial that is paused; no stroke is being drawn."""
     trace = None if state.trace is None else state.trace.ended()
     return replace(state, phase=Phase.PAUSED, trace=trace)
 

@@ -24,7 +24,7 @@ export interface CameraPose {
   readonly viewAngleDeg: number;
 }
 
-/** The scene's file, and what goes with it. */
+/** The scene's file, and what goes with it: fiducials by label in the head's frame, m. */
 export interface SceneNews {
   readonly type: "scene";
   readonly url: string;
@@ -64,7 +64,7 @@ export interface GuideAim {
   readonly angleDeg: number;
 }
 
-/** State of the tool in a procedure. */
+/** State of the tool in a procedure: how far it is fed beyond the guide's tip. */
 export interface ProcedureNews {
   readonly name: string;
   readonly tool: Tool;
@@ -72,7 +72,7 @@ export interface ProcedureNews {
   readonly aim: GuideAim | null;
 }
 
-/** Where a headset and its controllers are. */
+/** Where a worn headset's eyes and its controllers are; None without one. */
 export interface HeadsetPose {
   readonly eyes: Pose | null;
   readonly left: Pose | null;
@@ -107,16 +107,12 @@ export interface StateNews {
 export type Tone = "plain" | "good" | "warning" | "error";
 
 /** One line of a table of results, its value with the unit. */
-export interface Fact {
-  readonly label: string;
-  readonly value: string;
-  readonly tone: Tone;
-}
+export interface Fact { readonly label: string; readonly value: string; readonly tone: Tone; }
 
 /** The kind of an item. */
 export type ItemKind = "button" | "choice" | "text" | "axis";
 
-/** One line of a menu. */
+/** One line of a menu; a view sends its name back when it is clicked. */
 export interface MenuItem {
   readonly name: string;
   readonly label: string;
@@ -127,14 +123,14 @@ export interface MenuItem {
   readonly picture: string;
 }
 
-/** A trainee's scores as a small plot of bars. */
+/** A trainee's scores as a small plot of bars, oldest first; as text for who cannot see it. */
 export interface ScoreTrend {
   readonly text: string;
   readonly scores: readonly number[];
   readonly mark: number;
 }
 
-/** A panel over the picture. */
+/** A panel over the picture; its name is never shown. */
 export interface Menu {
   readonly name: string;
   readonly title: string;
@@ -147,17 +143,10 @@ export interface Menu {
 }
 
 /** A sentence to the trainee. */
-export interface ScreenMessage {
-  readonly text: string;
-  readonly tone: Tone;
-}
+export interface ScreenMessage { readonly text: string; readonly tone: Tone; }
 
 /** Which control does what at the moment, such as "A" and "Touch". */
-export interface Hint {
-  readonly control: string;
-  readonly action: string;
-  readonly item: string;
-}
+export interface Hint { readonly control: string; readonly action: string; readonly item: string; }
 
 /** The error of one touch, or a line of a procedure, drawn in the scene in its tone's color. */
 export interface ErrorArrow {
@@ -196,12 +185,9 @@ export interface Screen {
 }
 
 /** A new screen: everything that the trainee reads. */
-export interface ScreenNews {
-  readonly type: "screen";
-  readonly screen: Screen;
-}
+export interface ScreenNews { readonly type: "screen"; readonly screen: Screen; }
 
-/** A sound and a vibration, to be played once. */
+/** A sound and a vibration of a `FeedbackEvent`, to be played once. */
 export interface Feedback {
   readonly type: "event";
   readonly number: number;
@@ -227,12 +213,9 @@ export interface PairingNews {
 }
 
 /** A point on the skin in the head's frame (RAS), and the outward unit normal there. */
-export interface SkinPlace {
-  readonly positionMm: Vector;
-  readonly normal: Vector;
-}
+export interface SkinPlace { readonly positionMm: Vector; readonly normal: Vector; }
 
-/** New points of a trace over the skin. */
+/** New points of a trace over the skin, in the head's frame; `known` earlier points remain. */
 export interface TraceNews {
   readonly type: "trace";
   readonly known: number;
@@ -288,23 +271,13 @@ export interface OrbitInput {
 }
 
 /** One press of a control, by its name in the settings of the controls. */
-export interface PressInput {
-  readonly type: "press";
-  readonly control: string;
-}
+export interface PressInput { readonly type: "press"; readonly control: string; }
 
 /** A click on an item of the menu or of a hint. */
-export interface ItemInput {
-  readonly type: "item";
-  readonly name: string;
-}
+export interface ItemInput { readonly type: "item"; readonly name: string; }
 
 /** The new text of a text item. */
-export interface TextInput {
-  readonly type: "text";
-  readonly name: string;
-  readonly value: string;
-}
+export interface TextInput { readonly type: "text"; readonly name: string; readonly value: string; }
 
 /** How much of a task's scene a view has loaded; 1 once it is drawn. */
 export interface PictureProgress {
@@ -322,10 +295,7 @@ export interface Frames {
 }
 
 /** Whether the trainee sees the view: the headset was doffed, the page hidden. */
-export interface Visibility {
-  readonly type: "visibility";
-  readonly isVisible: boolean;
-}
+export interface Visibility { readonly type: "visibility"; readonly isVisible: boolean; }
 
 /** Where a headset and its controllers are, at most 30 times a second. */
 export interface HeadsetInput {
@@ -336,9 +306,7 @@ export interface HeadsetInput {
 }
 
 /** A sign of life: everything held is still held. */
-export interface Alive {
-  readonly type: "alive";
-}
+export interface Alive { readonly type: "alive"; }
 
 /** State of the connection to a seat. */
 export type SeatLink = "connecting" | "watching" | "away" | "unpaired" | "other certificate";
@@ -373,10 +341,7 @@ export interface TileNews {
 }
 
 /** The seats of a board, at most four times a second. */
-export interface TilesNews {
-  readonly type: "tiles";
-  readonly seats: readonly TileNews[];
-}
+export interface TilesNews { readonly type: "tiles"; readonly seats: readonly TileNews[]; }
 
 /** An assignment in the table of a class, in the page's language. */
 export interface AssignmentColumn {

@@ -171,3 +171,26 @@ def test_a_recording_excludes_pauses_and_undone_touches():
 def test_a_malformed_entry_raises_a_one_sentence_error_that_names_the_key(change, key):
     with pytest.raises(InputError, match=f"^A journal entry is malformed: .*{key}"):
         read_line({**at(1.0, touch("1")).to_json(), **change})
+
+
+def test_waiting_for_the_result_after_the_last_touch_is_not_idle_time(trajectory):
+    waiting = np.arange(1, 60 * 50) / 50.0
+    waited = replace(
+        trajectory,
+        times_s=np.concatenate([trajectory.times_s, trajectory.times_s[-1] + waiting]),
+        tip_mm=np.concatenate([trajectory.tip_mm, np.repeat([CORNERS[-1]], len(waiting), axis=0)]),
+        clearance_mm=np.full(len(trajectory.times_s) + len(waiting), 30.0),
+    )
+    idle_s = trial_motion(trajectory)["idle_time_s"]
+    assert trial_motion(waited)["idle_time_s"] == pytest.approx(idle_s)
+    assert idle_s < trial_motion(waited)["completion_time_s"]
+
+
+def test_touches_that_could_not_be_written_do_not_count():
+    lines = [
+        at(0.004, header()),
+        at(1.0, touch("1")),
+        at(2.0, touch("2", kept=2)),
+        at(2.1, phase(Phase.PAUSED, "2")),
+    ]
+    assert [touch.label for touch in Recording.of(lines).trajectory().touches] == ["1"]

@@ -79,6 +79,13 @@ def test_quantiles_are_those_of_simulated_lengths(weights, dof, added):
         assert again == pytest.approx(probability, abs=1e-6)
 
 
+@pytest.mark.parametrize("dof", [2, 39, 2994])
+def test_the_quantile_of_equally_weighted_squares_is_that_of_f(dof):
+    for probability in (0.001, 0.5, 0.975, 0.999):
+        expected = 3 * stats.f.ppf(probability, 3, dof)
+        assert ratio_quantile(probability, np.ones(3), dof) == pytest.approx(expected, rel=1e-6)
+
+
 def test_without_an_offset_the_quantile_is_that_of_the_ratio():
     weights = np.array([0.1, 0.05, 0.02])
     for probability in (0.025, 0.5, 0.975):

@@ -13,7 +13,7 @@ from rastrainer_simulator.authoring.task_proposal import (
     TaskProposer,
     places_seen_from,
 )
-from rastrainer_simulator.authoring.task_set import is_smooth, smooth_places
+from rastrainer_simulator.authoring.task_set import smooth_places
 from rastrainer_simulator.authoring.touch_order import (
     crossing_order,
     transitions_between,
@@ -93,13 +93,10 @@ def test_a_head_without_room_for_a_task_is_refused_with_a_message(mesh, places):
 def test_no_fiducial_is_placed_near_an_edge():
     drum = trimesh.creation.cylinder(radius=80.0, height=120.0, sections=96).subdivide_to_size(6.0)
     mesh = HeadMesh(np.array(drum.vertices), np.array(drum.faces))
-
-    def nearest_vertex(point):
-        return int(np.linalg.norm(mesh.vertices - point, axis=1).argmin())
-
-    assert is_smooth(mesh, nearest_vertex([80.0, 0.0, 0.0]))
-    assert is_smooth(mesh, nearest_vertex([0.0, 0.0, 60.0]))
-    assert not is_smooth(mesh, nearest_vertex([80.0, 0.0, 54.0]))
+    places = mesh.vertices[smooth_places(mesh, 8.0)]
+    to_edge = np.hypot(80.0 - np.hypot(*places[:, :2].T), 60.0 - places[:, 2])
+    assert len(places) > 100
+    assert to_edge.min() > 6.0
 
 
 def ways_of(points):

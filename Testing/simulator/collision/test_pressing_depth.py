@@ -138,12 +138,6 @@ def test_every_touch_in_a_journal_reports_the_depth_of_the_sample_after_it(press
         assert samples[touch["tick"]] == touch["depthMm"]
 
 
-def test_a_journal_with_depths_replays_to_the_last_bit(setup, pressed, tmp_path):
-    report = replay(written(pressed.entries, tmp_path / "new.journal"), setup)
-    assert report.difference is None
-    assert report.motion == pressed.record.motion
-
-
 @pytest.fixture
 def seed(pressed):
     """Seed of the head's pose, which the entries of `begun` do not reveal."""

@@ -9,6 +9,9 @@ from functools import partial
 from importlib import import_module
 from pkgutil import iter_modules
 from types import MappingProxyType, SimpleNamespace
+from unicodedata import east_asian_width
+
+import pytest
 
 from rastrainer.procedure.record import UsedRegistration
 from rastrainer.protocol import MAX_ASSIGNMENTS, AssignmentState, GoalKind, Phase
@@ -22,7 +25,6 @@ from rastrainer_simulator.flow.pages import (
     controls,
     experiment,
     introduction,
-    procedure,
     result,
     start,
     trainee_id,
@@ -38,6 +40,7 @@ from rastrainer_simulator.presentation.screen import Screen, without_secrets
 from rastrainer_simulator.rating.rating_presenter import DomainPage, LoadingPage, RatedPage
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.state import TrainingState, TrialResult
+from rastrainer_simulator.texts.texts import LANGUAGES
 from rastrainer_simulator.trial_state import (
     PlannedLine,
     ProcedureState,
@@ -303,7 +306,7 @@ def _pages(session) -> Iterator[SessionPage]:
     session.state = replace(session.state, training=AT_PROCEDURE)
     yield procedure_screen.procedure_page(session)
     session.state = replace(session.state, training=PROCEDURE_SCORED)
-    yield procedure.procedure_errors_page(session)
+    yield result.procedure_errors_page(session)
     yield trial_review.ErrorsPage(session, has_lines=True)
     session.state = replace(session.state, training=SCORED)
     yield introduction.tutorial_page(session)
@@ -312,3 +315,31 @@ def _pages(session) -> Iterator[SessionPage]:
     session.history.own = lambda _trainee: OWN_TRIALS
     yield trial_review.own_trials_page(session)
     yield trial_review.ReplayPage(session, _Loading(), begins_at_worst=False)
+
+
+LONGEST = "longest"
+"""Each screen in the language that has the most letters on it."""
+LONGEST_OR_EACH = [LONGEST, *(pytest.param(tag, marks=pytest.mark.soak) for tag in LANGUAGES)]
+
+
+def screens_in(presenter: FlowPresenter, language: str) -> dict[str, Screen]:
+    """Return a screen of each page in a language, or each in the language where it is longest."""
+    if language != LONGEST:
+        session = presenter._session
+        session.prefer(language=language)
+        return every_screen(presenter)
+    spoken = [screens_in(presenter, tag) for tag in LANGUAGES]
+    return {name: max((screens[name] for screens in spoken), key=letters) for name in spoken[0]}
+
+
+def letters(screen: Screen) -> int:
+    """Return how many letters are on a screen; a Chinese character is as wide as two."""
+    said = [*screen.status, *(hint.control + hint.action for hint in screen.hints)]
+    said += [message.text for message in (screen.instruction, *screen.warnings) if message]
+    if menu := screen.menu:
+        said += [menu.title, *menu.paragraphs]
+        said += [fact.label + fact.value for fact in menu.facts]
+        said += [item.label + item.value + item.help for item in menu.items]
+    return sum(
+        len(text) + sum(east_asian_width(letter) in "FW" for letter in text) for text in said
+    )

@@ -37,14 +37,21 @@ def write_aborted(folder, number, **changes) -> Path:
 
 
 def _write(folder, number, record, *entries) -> Path:
-    names = {"trialId": record.trial_id, "trainee": record.trainee, "task": record.task}
-    header = {"kind": "header", **names, "scenario": {"name": record.scenario}}
+    name = f"20240517T{number:06d}Z_{record.trial_id}"
+    who = record.trainee, record.task
+    return write_journal(folder, name, *who, *entries, scenario=record.scenario)
+
+
+def write_journal(folder, name, trainee, task, *entries, scenario="colin27") -> Path:
+    """Write a journal with these entries, or kinds of entries, after its header."""
+    header = {"kind": "header", "trainee": trainee, "scenario": {"name": scenario}, "task": task}
     lines, previous = [], NO_LINE
-    for n, entry in enumerate((header, *entries), 1):
-        line, previous = encode_line(n, previous, entry)
+    for number, entry in enumerate((header, *entries), 1):
+        entry = {"kind": entry} if isinstance(entry, str) else entry
+        line, previous = encode_line(number, previous, entry)
         lines.append(line)
     folder.mkdir(exist_ok=True)
-    path = folder / f"20240517T{number:06d}Z_{record.trial_id}.journal"
+    path = folder / f"{name}.journal"
     path.write_bytes(b"".join(lines))
     return path
 

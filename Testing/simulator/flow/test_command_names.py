@@ -9,8 +9,7 @@ import pytest
 
 from rastrainer.commands import CommandName
 from rastrainer_simulator.texts.texts import LANGUAGES
-from Testing.simulator.flow.every_page import names_of_pages
-from Testing.simulator.flow.languages import screens_in
+from Testing.simulator.flow.every_page import names_of_pages, screens_in
 
 COMMANDS = [name for key, name in vars(CommandName).items() if key.isupper()]
 OF_SEVERAL_WORDS = re.compile("|".join(each for each in COMMANDS if not each[1:].islower()))

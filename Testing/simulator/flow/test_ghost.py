@@ -14,7 +14,6 @@ from rastrainer.study_messages import StudyStep
 from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.flow.pages.trial_review import ReplayPage
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.loop.timing import TrialLimits
 from rastrainer_simulator.replay.ghost import Ghost
@@ -168,15 +167,3 @@ def test_the_ghost_disappears_soon_after_its_last_touch(place, anywhere):
     last = read_track(place.best).trajectory.touches[-1].time_s
     assert ghost.poses(last) is not None
     assert ghost.poses(last + 1.0) is None
-
-
-def test_no_ghost_is_shown_during_a_replay(place):
-    place.prefer(ghost="own best")
-    session = place.presenter._session
-    loading = session.load_trial(place.best.stem.rpartition("_")[2])
-    session.pages.open(ReplayPage(session, loading, begins_at_worst=False))
-    place.until(lambda: place.presenter._flow.playback is not None, "the replay")
-    place.step(20)
-    assert place.replay.training.phase == "running"
-    assert place.ghost is None
-    session.pages.close()

@@ -6,31 +6,19 @@ import pytest
 
 from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
 from rastrainer_simulator.input.inputs import ControlName
-from Testing.simulator.flow.mouse import VIEW, ClickingTrainee, Mouse
-from Testing.simulator.flow.trainee import Trainee
+from Testing.simulator.flow.trainee import VIEW, ClickingTrainee, Mouse
 
 
 @pytest.fixture
 def clicking(loop, presenter):
-    trainee = Trainee(loop, presenter, lambda it: Mouse(it, "page"))
+    trainee = ClickingTrainee(loop, presenter, lambda it: Mouse(it, "page"))
     trainee.until_menu("start")
     yield trainee
     trainee.close()
 
 
-def go_to_experiment(clicking):
-    for menu, item in (
-        ("start", "train"),
-        ("introduction", "skip"),
-        ("controls", "next"),
-    ):
-        clicking.until_menu(menu)
-        clicking.hands.click(item)
-    clicking.until_menu("experiment")
-
-
 def test_a_new_id_is_clicked_character_by_character(clicking):
-    go_to_experiment(clicking)
+    clicking.open_experiment()
     for item in ("clicked", "row 1", "P", "row 0", "A", "delete", "row 3", "7"):
         clicking.hands.click(item)
     assert clicking.menu.facts[0].value == "P7_"
@@ -53,7 +41,7 @@ def test_the_arm_is_driven_and_touches_are_made_and_undone_by_clicks_and_dragged
     session = clicking.presenter._session
     session.prefer(order="any")
     session.trainee = "P07"
-    go_to_experiment(clicking)
+    clicking.open_experiment()
     clicking.hands.click("trial-run")
     clicking.until_menu(None)
     assert not clicking.presenter.screen.has_sticks
@@ -100,35 +88,14 @@ def test_a_trainee_with_a_gamepad_is_not_shown_mouse_controls(pilot):
     assert f"press {ControlName.TOUCH.value}" in items
 
 
-@pytest.fixture
-def newcomer(loop, outside):
-    """A trainee with a mouse who has to do the tutorial, as at the first start."""
-    presenter = outside.presenter(loop)
-    trainee = ClickingTrainee(loop, presenter, lambda it: Mouse(it, "desktop"))
-    trainee.until_menu("start")
-    yield trainee
-    trainee.close()
-    presenter.close()
-
-
-def enter_id(newcomer):
-    for menu, item in (("start", "train"), ("introduction", "skip"), ("controls", "next")):
-        newcomer.until_menu(menu)
-        newcomer.choose(item)
-    newcomer.until_menu("experiment")
+def test_an_optional_tutorial_is_skipped_and_a_trial_run_ended_with_the_mouse_alone(clicking):
+    clicking.presenter._session.prefer(tutorial="optional", order="fixed")
+    clicking.open_experiment()
     for item in ("clicked", "row 1", "P", "row 3", "7", "done"):
-        newcomer.choose(item)
-    assert newcomer.item("trainee").value == "P7"
-
-
-def test_an_optional_tutorial_is_skipped_and_a_trial_run_ended_with_the_mouse_alone(newcomer):
-    newcomer.presenter._session.prefer(tutorial="optional")
-    enter_id(newcomer)
-    newcomer.choose("tutorial", None)
-    newcomer.tap_until("menu", "tutorial")
-    newcomer.choose("leave", "experiment")
-    newcomer.choose("trial-run", None)
-    newcomer.hands.click("press sticks")
-    newcomer.touch_point("1")
-    newcomer.tap_until("menu", "trial")
-    newcomer.choose("finish", "experiment")
+        clicking.choose(item)
+    clicking.choose("tutorial", None)
+    clicking.tap_until("menu", "tutorial")
+    clicking.choose("leave", "experiment")
+    clicking.choose("trial-run", None)
+    clicking.tap_until("menu", "trial")
+    clicking.choose("finish", "experiment")

@@ -12,6 +12,7 @@ from rastrainer.protocol import FREE
 from rastrainer.study_messages import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.flow.pages.result import ResultPage
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.presentation.messages import Hello, InstructorOrder
 from rastrainer_simulator.replay import recorded_trial
@@ -22,8 +23,6 @@ from Testing.simulator.flow.trainee import PATIENCE_S, Keys, Trainee
 WAYS = ((1, 0, 0), (0, 1, 0), (0, 0, 1), (-1, 0, 0), (0, -1, 0))
 """The tip has to be at another position at each touch; which one does not matter here."""
 PAGE = 2
-A, B, X, START = 0, 1, 2, 9
-"""Buttons of the W3C standard gamepad."""
 
 
 class Place(Trainee):
@@ -74,14 +73,14 @@ class Place(Trainee):
         assert self.submit("TrialScored", trialId=trial_id, **score).ok
         self.until_menu("result")
 
+    def open_anew(self):
+        """Open the page of the result, which loads the trial when it is first asked for."""
+        session = self.presenter._session
+        session.pages.show(ResultPage(session))
+        self.step()
+
     def show_again(self, item="replay"):
         self.choose(item, None)
-
-    def pad(self, *buttons):
-        """Press buttons of a gamepad that the page's browser reads."""
-        for held in (buttons, ()):
-            self.presenter.on_pad(PAGE, [], [float(number in held) for number in range(17)])
-            self.step()
 
 
 @pytest.fixture(scope="module")
@@ -260,6 +259,35 @@ def test_the_result_says_what_a_study_asks_for_next_and_offers_nothing_else(resu
     assert not any(paragraph.startswith("Step") for paragraph in result.menu.paragraphs)
 
 
+def test_until_the_trial_is_loaded_the_views_say_so_and_the_trainee_can_go_back(
+    result, monkeypatch
+):
+    may_load = threading.Event()
+
+    def read(path, rest):
+        may_load.wait(PATIENCE_S)
+        return read_track(path, rest)
+
+    monkeypatch.setattr(recorded_trial, "read_track", read)
+    result.open_anew()
+    result.choose("replay", "replay")
+    assert result.menu.title == "Your trial is being loaded"
+    result.tap_until("accept", "result")
+    may_load.set()
+
+
+def test_a_trial_whose_journal_is_gone_is_reported_in_one_sentence(result):
+    journal = result.journal
+    gone = journal.rename(result.outside.services.config.with_name("elsewhere"))
+    result.open_anew()
+    result.choose("replay")
+    result.step(20)
+    assert result.menu.name == "result"
+    warning = result.presenter.screen.warnings[-1].text
+    assert "its journal is no longer in the records folder" in warning
+    gone.rename(journal)
+
+
 def test_a_trial_started_by_slicer_ends_the_replay_and_is_what_the_views_show(place):
     place.show_again()
     before = place.state.training.trial_id
@@ -270,32 +298,3 @@ def test_a_trial_started_by_slicer_ends_the_replay_and_is_what_the_views_show(pl
     assert place.state.training.trial_id != before
     place.submit("Abort")
     place.until_menu("experiment")
-
-
-def test_until_the_trial_is_loaded_the_views_say_so_and_the_trainee_can_go_back(place, monkeypatch):
-    may_load = threading.Event()
-
-    def read(path, rest):
-        may_load.wait(PATIENCE_S)
-        return read_track(path, rest)
-
-    monkeypatch.setattr(recorded_trial, "read_track", read)
-    place.play_and_be_scored()
-    place.choose("replay", "replay")
-    assert place.menu.title == "Your trial is being loaded"
-    place.tap_until("accept", "result")
-    may_load.set()
-    place.submit("StartTask", task="task-1", trainee="P07")
-    place.submit("Abort")
-    place.until_menu("experiment")
-
-
-def test_a_trial_whose_journal_is_gone_is_reported_in_one_sentence(place):
-    place.play_and_be_scored()
-    place.journal.rename(place.outside.services.config.with_name("elsewhere"))
-    place.choose("replay")
-    place.step(20)
-    assert place.menu.name == "result"
-    assert (
-        "its journal is no longer in the records folder" in place.presenter.screen.warnings[-1].text
-    )

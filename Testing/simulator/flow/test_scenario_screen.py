@@ -25,10 +25,7 @@ def heads(outside):
 
 @pytest.fixture
 def at_heads(heads, trainee):  # noqa: ARG001
-    for menu, item in (("start", "train"), ("introduction", "skip"), ("controls", "next")):
-        trainee.until_menu(menu)
-        trainee.choose(item)
-    trainee.until_menu("experiment")
+    trainee.open_experiment()
     trainee.presenter.on_text(1, "trainee", "P07")
     trainee.step()
     assert trainee.item("scenario").value == "Colin27 head"

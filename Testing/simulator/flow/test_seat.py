@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
-
 from rastrainer_simulator.flow.flow_presenter import SENTENCE_S
 from rastrainer_simulator.presentation.messages import InstructorOrder
 from rastrainer_simulator.presentation.screen import Tone
@@ -55,9 +53,6 @@ def test_a_teacher_pauses_a_trial_and_the_trainee_sees_who_did(trainee, presente
     assert "Paused by your instructor." not in said(trainee)
 
 
-@pytest.mark.parametrize("is_running", [False, True])
-def test_a_replay_needs_a_result_on_the_screen(trainee, presenter, is_running):
-    if is_running:
-        trainee.start("task-1")
+def test_a_replay_needs_a_result_on_the_screen(presenter):
     sentence = presenter.instruct(InstructorOrder.REPLAY, "")
     assert sentence.startswith("A replay can be shown while the result of a trial is on the screen")

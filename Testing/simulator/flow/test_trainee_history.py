@@ -1,25 +1,22 @@
-"""The history of each trainee is read from the journals, among any other files."""
+"""The history and the scores of each trainee are read from the journals, among any other files."""
 
 from __future__ import annotations
 
 import pytest
 
-from rastrainer.journal.journal_file import NO_LINE, encode_line
 from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
+from Testing.domain.trial.trial_records import make_traced
+from Testing.simulator.flow.scored_journals import (
+    SCORES,
+    TRAINEE,
+    task_menu,
+    write_aborted,
+    write_journal,
+    write_scored,
+)
 
 HEAD = "colin27"
 ORDER = ("trial-run", "task-1", "task-2")
-
-
-def write_journal(folder, name, trainee, task, *kinds, scenario=HEAD):
-    lines, previous = [], NO_LINE
-    head = {"name": scenario}
-    entries = [{"kind": "header", "trainee": trainee, "scenario": head, "task": task}]
-    entries += [{"kind": kind} if isinstance(kind, str) else kind for kind in kinds]
-    for number, entry in enumerate(entries, 1):
-        line, previous = encode_line(number, previous, entry)
-        lines.append(line)
-    (folder / f"{name}.journal").write_bytes(b"".join(lines))
 
 
 @pytest.mark.parametrize(
@@ -79,3 +76,64 @@ def test_files_that_are_not_journals_count_for_nothing(tmp_path):
 
 def test_a_missing_folder_counts_for_nothing(tmp_path):
     assert "task-1" not in TraineeHistory(tmp_path / "later").done["P01", HEAD]
+
+
+def test_only_scores_of_the_same_mode_by_fiducials_are_compared(tmp_path):
+    write_scored(tmp_path, 1, 40.0, 45.0)
+    write_scored(tmp_path, 2, 99.0, task="trial-run")
+    write_scored(tmp_path, 3, 98.0, make=make_traced)
+    write_scored(tmp_path, 5, 60.0, mode="hmd")
+    write_scored(tmp_path, 6)
+    write_scored(tmp_path, 7, 55.0, task="task-2")
+    write_aborted(tmp_path, 8)
+    history = TraineeHistory(tmp_path)
+    # The last score counts if a trial was scored again.
+    assert history.trend(TRAINEE, "desktop") == (45.0, 55.0)
+    assert history.trend(TRAINEE, "hmd") == (60.0,)
+    assert history.trend("P08", "desktop") == ()
+
+
+def test_the_best_acceptable_trials_of_a_task_come_first(tmp_path):
+    second = write_scored(tmp_path, 1, 60.0)
+    best = write_scored(tmp_path, 2, 50.0, 75.0, mode="hmd")
+    write_scored(tmp_path, 3, 90.0, task="task-2")
+    write_scored(tmp_path, 4, 95.0, make=make_traced)
+    write_scored(tmp_path, 5, 80.0, is_safe=False)
+    assert TraineeHistory(tmp_path).best(TRAINEE, "task-1") == (best, second)
+    assert TraineeHistory(tmp_path).best("P08", "task-1") == ()
+
+
+def test_a_trial_failed_by_aborting_counts_toward_competence_though_it_has_no_score(tmp_path):
+    write_scored(tmp_path, 1, 40.0)
+    write_aborted(tmp_path, 2)
+    write_aborted(tmp_path, 3, touches=0)
+    assert [trial.is_aborted for trial in TraineeHistory(tmp_path).of(TRAINEE)] == [False, True]
+
+
+def test_a_score_whose_journal_was_altered_is_left_out(tmp_path):
+    path = write_scored(tmp_path, 1, 41.25)
+    write_scored(tmp_path, 2, 50.0)
+    path.write_bytes(path.read_bytes().replace(b"41.25", b"91.25"))
+    assert TraineeHistory(tmp_path).trend(TRAINEE, "desktop") == (50.0,)
+
+
+def test_a_new_trial_enters_the_trend_at_once_and_only_the_newest_are_shown(tmp_path):
+    history = TraineeHistory(tmp_path)
+    for number in range(1, 26):
+        path = write_scored(tmp_path, number, float(number))
+        history.changed(TRAINEE, path.stem.rpartition("_")[2])
+    assert history.trend(TRAINEE, "desktop") == tuple(map(float, range(6, 26)))
+    write_scored(tmp_path, 25, 25.0, 30.0)
+    history.changed(TRAINEE, path.stem.rpartition("_")[2])
+    assert history.trend(TRAINEE, "desktop")[-1] == 30.0
+
+
+@pytest.mark.parametrize(
+    ("language", "sentence"),
+    [("en", "the line is the pass mark, 70."), ("de", "die Linie ist die Marke zum Bestehen, 70.")],
+)
+def test_the_task_menu_shows_the_trend_and_describes_it_in_words(loop, outside, language, sentence):
+    menu = task_menu(loop, outside.services, language=language).menu
+    assert (menu.trend.scores, menu.trend.mark) == (SCORES, 70.0)
+    assert menu.paragraphs[0].endswith(sentence)
+    assert "38, 52, 47, 67, 71, 69, 88" in menu.trend.text

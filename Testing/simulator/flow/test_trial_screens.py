@@ -8,7 +8,6 @@ import pytest
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.study_messages import StudyStep
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow import trial_screen
 from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
 from rastrainer_simulator.presentation.screen import ScreenMessage, Tone
@@ -260,18 +259,6 @@ def test_quitting_asks_for_confirmation(trainee, outside):
     assert outside.has_quit
 
 
-def test_replacing_the_simulation_after_a_trial_leaves_the_settings_open(trainee, loop, setup):
-    trainee.start("task-1")
-    abort_and_open_settings(trainee)
-    begun = loop.begin_replacement()
-    trainee.until(begun.done)
-    handover = loop.replace_simulation(Simulation(setup, 4))
-    trainee.until(handover.done)
-    loop.end_replacement()
-    trainee.step(5)
-    assert trainee.menu.name == "settings"
-
-
 def test_straying_from_the_path_to_the_next_point_is_reported_and_staying_on_it_is_not(pilot):
     pilot.start("task-1")
     center, second = pilot.place(), pilot.place("2")
@@ -301,24 +288,6 @@ def test_a_correct_touch_raises_no_alarm_and_names_the_button(pilot):
     assert on_skin[0] == ScreenMessage("On the skin: press A.", Tone.GOOD)
     assert pilot.watcher.kinds.count("on-skin") == 1
     assert "contact" not in pilot.watcher.kinds
-
-
-def test_a_contact_that_happens_while_the_presenter_advances_raises_one_alarm(pilot, monkeypatch):
-    pilot.start("task-1")
-    above = pilot.place() + np.array([0.0, 0.0, 0.13])
-    pilot.steer_to(above, 0.01)
-    controls = pilot.presenter.controls
-    advance = controls.advance
-
-    def advance_and_tick(dt):
-        advance(dt)
-        pilot._lock_step.tick()
-
-    monkeypatch.setattr(controls, "advance", advance_and_tick)
-    pilot.ticks_a_step = 0
-    pilot.steer_to(above - (0.0, 0.0, 0.13), 0.0, fine=True, ends_in_contact=True)
-    pilot.step(3)
-    assert pilot.watcher.kinds.count("contact") == 1
 
 
 def test_a_pressed_tool_is_reported_with_its_depth_in_both_languages(pilot):

@@ -40,11 +40,9 @@ SCORE = {
 }
 
 
-def go_to_the_experiment_menu(trainee):
-    trainee.choose("train", "introduction")
-    trainee.tap("accept", "accept", "accept")
-    trainee.until_menu("controls")
-    trainee.choose("next", "experiment")
+@pytest.fixture(scope="module")
+def shared(simulation):
+    return simulation
 
 
 def train_and_view_the_result(trainee, outside, monkeypatch):
@@ -54,7 +52,7 @@ def train_and_view_the_result(trainee, outside, monkeypatch):
     trainee.choose("trial-run", "practice")
     trainee.choose("finish", "experiment")
     trainee.choose("task-1", None)
-    trainee.play("task-1")
+    trainee.touch_anywhere()
     trainee.register()
     training = trainee.state.training
     assert (training.trainee, training.task, training.mode) == ("P07", "task-1", "desktop")
@@ -79,9 +77,12 @@ def train_and_view_the_result(trainee, outside, monkeypatch):
 
 
 def test_the_whole_flow_is_done_with_a_gamepad_alone_and_its_trial_replays_bit_for_bit(
-    pilot, outside, setup, tmp_path, monkeypatch
+    pilot, outside, anywhere, tmp_path, monkeypatch
 ):
-    go_to_the_experiment_menu(pilot)
+    pilot.choose("train", "introduction")
+    pilot.tap("accept", "accept", "accept")
+    pilot.until_menu("controls")
+    pilot.choose("next", "experiment")
     pilot.choose("trainee", "keyboard")
     for row, steps in (("row1", 5), ("row3", 0), ("row3", 7)):
         pilot.focus(row)
@@ -93,7 +94,7 @@ def test_the_whole_flow_is_done_with_a_gamepad_alone_and_its_trial_replays_bit_f
     assert reading.integrity is Integrity.INTACT
     assert reading.header.trainee == "P07"
     assert {entry["operator"] for entry in reading.of_kind("input")} <= {"gamepad", ""}
-    assert replay(reading, setup).difference is None
+    assert replay(reading, anywhere).difference is None
 
 
 AXIS_OF = {RIGHT_ALONE: "right", LEFT_ALONE: "left"}
@@ -169,10 +170,11 @@ def test_one_hand_works_the_menus_and_touches_points(pilot, tmp_path, preset, ti
         pilot.tap("back")
         pilot.until(lambda b=before: pilot.menu.name != b, "the previous menu")
     pilot.start("task-1")
-    for label in ("1", "2"):
-        pilot.touch_point(label)
+    start = pilot.tip
+    pilot.touch_anywhere()
+    assert min(np.abs(np.subtract(pilot.tip, start))) > 0.002, "moved in all directions"
     pilot.tap("undo")
-    pilot.until(lambda: pilot.touched == 1, "the undo")
+    pilot.until(lambda: pilot.touched == 14, "the undo")
     (path,) = (tmp_path / "records").glob("*.journal")
     entries = read_journal(path).of_kind("input")
     assert {entry["operator"] for entry in entries} <= {"gamepad", ""}

@@ -1,11 +1,10 @@
-"""A trainee at a presenter: presses keys, reads the screen, and steers the tool by the sticks."""
+"""Trainees at a presenter, by keys, gamepad or mouse: they read the screen and steer the tool."""
 
 from __future__ import annotations
 
 import threading
 import time
 from collections.abc import Callable, Mapping
-from typing import Protocol
 
 import numpy as np
 
@@ -31,16 +30,6 @@ ATTEMPTS = 3
 SHORT_PUSHES = 40
 LIFT_M = 0.035
 """How far the tip is taken off the skin before it is carried to the next fiducial."""
-
-
-class Hands(Protocol):
-    """The input device of a trainee."""
-
-    def tap(self, control: str) -> None:
-        """Press a control and release it."""
-
-    def push(self, right: float, forward: float, up: float, fine: bool) -> None:
-        """Push the sticks, −1…1."""
 
 
 class Watcher:
@@ -94,17 +83,9 @@ class LockStep:
 
 
 class Trainee:
-    """Goes through menus by their names, and to fiducials by the sticks.
+    """Goes through menus by their names, and to fiducials by the sticks of its hands.
 
-    Args:
-        loop: a control loop that ticks as fast as it can, `RATE_HZ` times a simulated second.
-        presenter: its presenter.
-        make_hands: gives what the trainee works with.
-        advance: lets the presenter, and what belongs to it, go on for some seconds.
-
-    Attributes:
-        step_s: duration of a step, s.
-        ticks_a_step: how often the loop ticks in it.
+    In a step of `step_s` seconds the presenter advances, and the loop ticks `ticks_a_step` times.
     """
 
     step_s, ticks_a_step = STEP_S, 1
@@ -113,7 +94,7 @@ class Trainee:
         self.loop, self.presenter, self._advance = loop, presenter, advance or presenter.advance
         self.watcher = Watcher(presenter)
         self._lock_step = LockStep(loop)
-        self.hands: Hands = make_hands(self)
+        self.hands = make_hands(self)
 
     def close(self) -> None:
         self._lock_step.free()
@@ -210,12 +191,9 @@ class Trainee:
 
     def open_experiment(self) -> None:
         """Go from the start menu past introduction and controls to the experiment menu."""
-        for choice, menu in (
-            ("train", "introduction"),
-            ("skip", "controls"),
-            ("next", "experiment"),
-        ):
-            self.choose(choice, menu)
+        self.choose("train", "introduction")
+        self.choose("skip", "controls")
+        self.choose("next", "experiment")
 
     def start(self, task: str, trainee: str = "P07", procedure: str = "") -> None:
         """Begin a task as Slicer would, and wait for its screen."""
@@ -426,3 +404,86 @@ class Pad:
     def push(self, right: float, forward: float, up: float, fine: bool) -> None:
         right, forward, up = (max(-1.0, min(1.0, value)) for value in (right, forward, up))
         self.plugged.move(leftx=right, lefty=-forward, righty=-up, righttrigger=float(fine))
+
+
+class FlowLearner:
+    """Does what `TutorialPlayer` asks for in the flow's own process."""
+
+    def __init__(self, trainee):
+        self.trainee = trainee
+        self.hands, self.until = trainee.hands, trainee.until
+
+    @property
+    def screen(self):
+        return self.trainee.presenter.screen
+
+    def turn_view(self):
+        self.hands.hold("view_right", True)
+        self.trainee.step(30)
+        self.hands.hold("view_right", False)
+        self.trainee.step()
+
+    def lower(self):
+        self.trainee.lower_onto(*self._next())
+
+    def touch_next(self):
+        self.trainee.touch(*self._next())
+
+    def resume(self):
+        self.trainee.choose("resume", None)
+
+    def _next(self):
+        practice = self.trainee.presenter._session.tutorial.practice
+        truth = practice.training.truth
+        point = truth.in_world(truth.fiducials_ras[practice.training.state.next_point]) / MM_PER_M
+        return point, truth.in_world(truth.target_ras) / MM_PER_M
+
+
+VIEW = 1
+
+
+class Mouse:
+    """The input of a mouse as a view sends it: clicks on items and hints, and dragged sticks."""
+
+    def __init__(self, trainee: Trainee, kind: str):
+        self._trainee = trainee
+        trainee.presenter.view_joined(VIEW, Hello(kind))
+
+    def tap(self, control: str) -> None:
+        """Click on the hint of a control."""
+        self.click(f"press {control}")
+
+    def click(self, item: str) -> None:
+        """Click on a hint or an item of the menu, which must be there."""
+        screen = self._trainee.presenter.screen
+        shown = [hint.item for hint in screen.hints]
+        shown += [] if screen.menu is None else [each.name for each in screen.menu.items]
+        assert item in shown
+        self._trainee.presenter.on_item(VIEW, item)
+        self._trainee.step(2)
+
+    def push(self, right: float, forward: float, up: float, fine: bool) -> None:
+        """Drag the sticks; slow motion is switched by a click."""
+        presenter = self._trainee.presenter
+        assert presenter.screen.has_sticks
+        is_pushed = bool(right or forward or up)
+        if is_pushed and fine != presenter._session.screen_sticks.is_slow:
+            presenter.on_sticks(VIEW, (0.0, 0.0, 0.0), (0.0, 0.0), False, 0.0)
+            self.click("press fine")
+        presenter.on_sticks(VIEW, (right, forward, up), (0.0, 0.0), False, 0.0)
+
+    def turn_view(self, around_deg: float) -> None:
+        """Drag with the right button."""
+        self._trainee.presenter.on_orbit(VIEW, around_deg, 0.0, 1.0)
+        self._trainee.step()
+
+
+class ClickingTrainee(Trainee):
+    """Goes through the menus by clicks."""
+
+    def choose(self, item: str, *menu: str | None) -> None:
+        """Click on an item, once its menu takes clicks."""
+        self.until(lambda: self.menu.focus, "a focus")
+        self.hands.click(item)
+        for name in menu:
+            self.until_menu(name)

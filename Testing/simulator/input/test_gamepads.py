@@ -21,59 +21,59 @@ def poll_until(gamepads, condition):
 
 
 @pytest.mark.parametrize("button", BUTTONS)
-def test_each_button_is_reported_by_sdls_name_alone(gamepads, ear, plugged, button):
+def test_each_button_is_reported_by_sdls_name_alone(gamepads, plugged, button):
     gamepad, _felt = plugged
     gamepad.press(button)
     gamepads.poll()
-    pressed = {name for name, value in ear.inputs[-1][1].items() if value > 0.0}
+    pressed = {name for name, value in gamepads.moved.inputs.items() if value > 0.0}
     assert pressed == {button}
 
 
 @pytest.mark.parametrize("axis", AXES[:4])
-def test_each_direction_of_a_stick_is_a_separate_input(gamepads, ear, plugged, axis):
+def test_each_direction_of_a_stick_is_a_separate_input(gamepads, plugged, axis):
     gamepad, _felt = plugged
     for position, pushed, rests in ((0.5, "+" + axis, "-" + axis), (-1.0, "-" + axis, "+" + axis)):
         gamepad.move(**{axis: position})
         gamepads.poll()
-        inputs = ear.inputs[-1][1]
+        inputs = gamepads.moved.inputs
         assert inputs[pushed] == pytest.approx(abs(position), abs=1e-4)
         assert inputs[rests] == 0.0
 
 
 @pytest.mark.parametrize("trigger", AXES[4:])
-def test_a_trigger_goes_from_zero_to_one(gamepads, ear, plugged, trigger):
+def test_a_trigger_goes_from_zero_to_one(gamepads, plugged, trigger):
     gamepad, _felt = plugged
     gamepad.move(**{trigger: 1.0})
     gamepads.poll()
-    assert ear.inputs[-1][1]["+" + trigger] == pytest.approx(1.0)
+    assert gamepads.moved.inputs["+" + trigger] == pytest.approx(1.0)
     gamepad.move(**{trigger: 0.0})
     gamepads.poll()
-    assert ear.inputs[-1][1]["+" + trigger] == pytest.approx(0.0, abs=1e-4)
+    assert gamepads.moved.inputs["+" + trigger] == pytest.approx(0.0, abs=1e-4)
 
 
-def test_a_gamepad_can_be_plugged_and_unplugged_repeatedly(gamepads, ear, plugged):
+def test_a_gamepad_can_be_plugged_and_unplugged_repeatedly(gamepads, plugged):
     gamepad, _felt = plugged
     for times in (1, 2, 3):
         gamepad.unplug()
         gamepads.poll()
-        assert [name for _, name in ear.went] == ["Virtual F310"] * times
+        assert gamepads.names("removed") == ["Virtual F310"] * times
         gamepad.plug_in()
         gamepads.poll()
-        assert len(ear.came) == times + 1
+        assert len(gamepads.names("added")) == times + 1
     gamepad.press("a")
     gamepads.poll()
-    assert ear.inputs[-1][1]["a"] == 1.0
+    assert gamepads.moved.inputs["a"] == 1.0
 
 
 @pytest.mark.usefixtures("plugged")
-def test_two_gamepads_are_told_apart(gamepads, ear):
+def test_two_gamepads_are_told_apart(gamepads):
     second = VirtualGamepad(name="Second")
     second.plug_in()
     gamepads.poll()
     second.press("x")
     gamepads.poll()
-    numbers = {name: number for number, name in ear.came}
-    assert ear.inputs[-1][0] == numbers["Second"] != numbers["Virtual F310"]
+    numbers = {news.name: news.number for news in gamepads.news if news.kind == "added"}
+    assert gamepads.moved.number == numbers["Second"] != numbers["Virtual F310"]
     second.unplug()
 
 
@@ -85,13 +85,13 @@ def test_the_motors_run_as_strong_and_as_long_as_asked(gamepads, plugged):
     assert felt[-1] == (0.0, 0.0)
 
 
-def test_a_joystick_of_unknown_layout_is_named_once(gamepads, ear):
+def test_a_joystick_of_unknown_layout_is_named_once(gamepads):
     wheel = VirtualGamepad(name="Odd wheel", kind=WHEEL)
     wheel.plug_in()
     for _ in range(3):
         gamepads.poll()
-    assert ear.unknown == ["Odd wheel"]
-    assert ear.came == []
+    assert gamepads.names("unknown") == ["Odd wheel"]
+    assert gamepads.names("added") == []
     wheel.unplug()
 
 

@@ -270,23 +270,6 @@ def test_a_disk_that_fills_up_between_two_touches_pauses_the_trial(running, monk
         wait_for(lambda: running.loop.latest.training.phase is Phase.PAUSED)
 
 
-def test_a_finished_trial_waits_for_its_acknowledgment_even_across_a_restart(
-    running, tmp_path, successor
-):
-    trial_id = running.start()
-    running.finish()
-    running.loop.stop()
-    with ControlLoop(successor, tmp_path / "records", speed=None) as loop:
-        client = Client(loop)
-        assert [record.trial_id for record in loop.archive.unacknowledged()] == [trial_id]
-        client.start()
-        assert client.register(trial_id).data["trueTreMm"] > 0.0
-        assert client.score(trial_id).ok
-        assert loop.latest.training.phase is Phase.RUNNING
-        assert client.do(CommandName.ACKNOWLEDGE_TRIAL, trialId=trial_id).ok
-        assert loop.archive.unacknowledged() == ()
-
-
 def test_a_request_about_an_older_trial_is_answered_even_if_it_fails_unexpectedly(running, caplog):
     trial_id = running.start()
     running.finish()
@@ -370,16 +353,6 @@ def test_the_simulation_is_replaced_only_once_the_last_trials_score_is_on_disk(
     may_sync.set()
     assert score.result(TIMEOUT_S).ok
     assert handover.result(TIMEOUT_S).ok
-
-
-def test_replacing_the_simulation_is_refused_once_the_loop_has_ended(running, successor):
-    assert running.loop.begin_replacement().result(TIMEOUT_S).ok
-    running.loop.stop()
-    late = (
-        running.loop.begin_replacement(),
-        running.loop.replace_simulation(successor),
-    )
-    assert [answer.result(TIMEOUT_S).message for answer in late] == [control_loop.SHUTTING_DOWN] * 2
 
 
 def test_trials_started_too_often_are_refused_and_create_no_journal(successor, tmp_path):

@@ -142,19 +142,19 @@ def test_the_trial_continues_at_the_next_fiducial_and_its_single_journal_replays
     ]
 
 
-def test_ten_interruptions_of_one_trial_leave_one_intact_journal(simulation, anywhere, tmp_path):
+def test_seven_interruptions_of_one_trial_leave_one_intact_journal(simulation, anywhere, tmp_path):
     rng = random.Random(8)
     with Server(simulation, tmp_path) as server:
         trial_id = server.start()
     touched = 0
-    for _ in range(10):
+    for _ in range(7):
         with Server(simulation, tmp_path) as server:
             training = server.taken_up.training
             assert len(training.touches) >= touched
             if training.phase is Phase.PAUSED:
                 assert server.do(CommandName.RESUME).ok
             server.move(tuple(rng.uniform(-0.5, 0.5) for _ in range(3)), rng.randrange(1, 30))
-            for _ in range(2):
+            for _ in range(3):
                 if server.training.phase is Phase.RUNNING:
                     assert server.do(CommandName.CAPTURE).ok
             touched = len(server.training.touches)

@@ -107,7 +107,7 @@ def test_a_journal_cut_at_any_byte_is_resumed_with_every_complete_traced_point(
         stroke(server, 40, (-0.9, 0.0, 0.1))
     data = server.path.read_bytes()
     rng = random.Random(6)
-    for number in range(20):
+    for number in range(10):
         folder = tmp_path / str(number)
         folder.mkdir()
         path = folder / server.path.name

@@ -10,13 +10,10 @@ import pytest
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
-from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.record.journal_writer import RecordsFolder
-from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.server import server
 from Testing.forked_child import in_child
-
-TIMEOUT_S = 120.0
+from Testing.simulator.record.test_interrupted_trial import Server
 
 
 def take(folder):
@@ -58,14 +55,12 @@ def test_a_read_only_folder_is_reported_before_anyone_plays():
 
 def journal_of_two_touches(simulation, folder):
     """Return the path of an interrupted trial's journal, and where its second touch begins."""
-    with ControlLoop(simulation, folder, speed=None) as loop:
-        loop.submit(CommandName.ABORT).result(TIMEOUT_S)
-        start = {"task": "task-1", "trainee": "P01", "mode": "desktop"}
-        assert loop.submit(CommandName.START_TASK, start).result(TIMEOUT_S).ok
-        assert loop.submit(CommandName.CAPTURE).result(TIMEOUT_S).ok
-        (path,) = folder.glob(f"*{SUFFIX}")
+    with Server(simulation, folder) as running:
+        running.start()
+        assert running.do(CommandName.CAPTURE).ok
+        path = running.path
         size = path.stat().st_size
-        assert loop.submit(CommandName.CAPTURE).result(TIMEOUT_S).ok
+        assert running.do(CommandName.CAPTURE).ok
     return path, path.read_bytes()[:size].rindex(b"\n") + 1
 
 

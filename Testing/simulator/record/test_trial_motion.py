@@ -23,33 +23,32 @@ DT = 0.02
 BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04)
 
 
-def play(setup, folder):
-    """Play and record a whole trial; return the reading of its journal."""
-    simulation = Simulation(setup, 5)
-    with ThreadPoolExecutor(1) as writer:
-        recorder = TrialRecorder(folder, TrialArchive(folder), writer, DT)
-        play_virtual_trial(simulation, "task-1", 3, BRISK, DT, recorder.record)
-    (path,) = folder.glob("*.journal")
-    return read_journal(path)
-
-
 @pytest.fixture(scope="module")
-def journal(setup, tmp_path_factory):
-    """Return the reading of a whole trial's journal."""
-    return play(setup, tmp_path_factory.mktemp("records"))
-
-
-def test_the_register_tick_leaves_the_metrics_to_the_journal_writer(setup, tmp_path, monkeypatch):
-    measured_in = []
+def played(setup, tmp_path_factory):
+    """Play and record a whole trial; return its journal, and the threads that measured it."""
+    folder, threads = tmp_path_factory.mktemp("records"), []
 
     def measure(trajectory):
-        measured_in.append(threading.current_thread())
+        threads.append(threading.current_thread())
         return trial_motion(trajectory)
 
-    monkeypatch.setattr(trial_records, "trial_motion", measure)
-    play(setup, tmp_path)
-    assert len(measured_in) == 1
-    assert measured_in[0] is not threading.current_thread()
+    with pytest.MonkeyPatch.context() as patch, ThreadPoolExecutor(1) as writer:
+        patch.setattr(trial_records, "trial_motion", measure)
+        recorder = TrialRecorder(folder, TrialArchive(folder), writer, DT)
+        play_virtual_trial(Simulation(setup, 5), "task-1", 3, BRISK, DT, recorder.record)
+        writer.submit(int).result()
+    (path,) = folder.glob("*.journal")
+    return read_journal(path), threads
+
+
+@pytest.fixture
+def journal(played):
+    return played[0]
+
+
+def test_the_register_tick_leaves_the_metrics_to_the_journal_writer(played):
+    (thread,) = played[1]
+    assert thread is not threading.main_thread()
 
 
 def test_the_record_has_the_same_metrics_as_the_journal_to_the_last_bit(journal):

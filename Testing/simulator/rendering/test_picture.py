@@ -92,7 +92,7 @@ def _skin(pixels: np.ndarray) -> float:
 
 @pytest.fixture(scope="module")
 def far(picture) -> np.ndarray:
-    return picture(camera=FAR, shadows=Shadows.FULL)
+    return picture(camera=FAR)
 
 
 def test_the_far_picture_shows_an_orange_and_gray_robot_beside_a_head(far):

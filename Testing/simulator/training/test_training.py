@@ -47,6 +47,14 @@ def in_phase(scenario, phase):
     return trial
 
 
+@pytest.fixture
+def trial(scenario):
+    """Return a trial that has begun."""
+    trial = Trial(scenario)
+    trial.start()
+    return trial
+
+
 RIGHT = {
     CommandName.START_TASK: {Phase.IDLE, Phase.REGISTERED, Phase.SCORED},
     CommandName.CAPTURE: {Phase.RUNNING, Phase.VERIFYING},
@@ -103,9 +111,7 @@ def test_every_command_of_the_simulation_has_its_phases_defined():
     assert {key for phases in REFUSALS.values() for key in phases.values()} <= set(ENGLISH)
 
 
-def test_a_whole_trial_goes_through_its_phases_and_says_what_comes_next(scenario):
-    trial = Trial(scenario)
-    trial.start()
+def test_a_whole_trial_goes_through_its_phases_and_says_what_comes_next(trial):
     assert trial.state.instruction == "P01, touch point 1."
     trial.touch(14)
     assert "point 14 is recorded. Now touch point 15" in trial.state.instruction
@@ -120,9 +126,7 @@ def test_a_whole_trial_goes_through_its_phases_and_says_what_comes_next(scenario
     assert "81 of 100" in trial.state.instruction
 
 
-def test_a_touch_records_where_the_tip_was_and_when(scenario):
-    trial = Trial(scenario)
-    trial.start()
+def test_a_touch_records_where_the_tip_was_and_when(trial):
     trial.now += 2.5
     tip = tuple(v + 0.003 for v in trial.fiducial("1"))
     reply = trial.do(CommandName.CAPTURE, tip)
@@ -141,9 +145,7 @@ def test_a_touch_counts_within_the_acceptance_radius(scenario, away_mm, counts):
 
 
 @pytest.mark.parametrize(("above_mm", "counts"), [(-1.0, True), (0.49, True), (0.51, False)])
-def test_a_touch_counts_on_the_skin(scenario, above_mm, counts):
-    trial = Trial(scenario)
-    trial.start()
+def test_a_touch_counts_on_the_skin(trial, above_mm, counts):
     assert trial.do(CommandName.CAPTURE, trial.fiducial("1"), above_mm).ok is counts
 
 
@@ -166,10 +168,8 @@ def test_under_the_papers_rule_a_touch_counts_at_any_height_within_the_radius(sc
     ],
 )
 def test_a_touch_too_far_away_is_refused_with_the_distance_where_it_does_not_lead_there(
-    scenario, away_m, said
+    trial, away_m, said
 ):
-    trial = Trial(scenario)
-    trial.start()
     x, y, z = trial.fiducial("1")
     reply = trial.do(CommandName.CAPTURE, (x, y, z + away_m))
     assert reply.message == f"Too far from point 1: {said}; a touch counts within 10 mm."
@@ -178,9 +178,7 @@ def test_a_touch_too_far_away_is_refused_with_the_distance_where_it_does_not_lea
     assert [type(event.entry) for event in reply.events] == [Rejected]
 
 
-def test_a_refusal_gives_way_to_the_instruction_after_some_seconds(scenario):
-    trial = Trial(scenario)
-    trial.start()
+def test_a_refusal_gives_way_to_the_instruction_after_some_seconds(trial):
     asked = trial.state.instruction
     for _ in range(2):
         trial.do(CommandName.CAPTURE, (0.0, 0.0, 2.0))
@@ -208,9 +206,7 @@ def test_undo_removes_the_last_touch_even_after_the_fifteenth(scenario):
     assert {type(event.entry) for event in reply.events} == {Undo, PhaseChange}
 
 
-def test_completion_time_runs_from_the_start_to_the_last_kept_touch_without_pauses(scenario):
-    trial = Trial(scenario)
-    trial.start()
+def test_completion_time_runs_from_the_start_to_the_last_kept_touch_without_pauses(trial):
     trial.now += 4.0
     trial.touch(14)
     trial.do(CommandName.PAUSE)
@@ -232,9 +228,7 @@ def test_the_head_pose_stays_secret_until_a_registration_is_submitted(scenario):
     assert trial.do(CommandName.GET_TRIAL).data["headToWorld"] == answer["headToWorld"]
 
 
-def test_the_true_errors_of_a_shifted_registration_are_the_shift(scenario):
-    trial = Trial(scenario)
-    trial.start()
+def test_the_true_errors_of_a_shifted_registration_are_the_shift(trial):
     trial.touch(14)
     x, y, z = trial.fiducial("15")
     trial.do(CommandName.CAPTURE, (x, y + 0.004, z))
@@ -275,9 +269,7 @@ def test_a_score_that_arrives_twice_counts_once(scenario):
     assert second.events == ()
 
 
-def test_an_abort_that_arrives_late_does_not_end_the_next_trial(scenario):
-    trial = Trial(scenario)
-    trial.start()
+def test_an_abort_that_arrives_late_does_not_end_the_next_trial(trial):
     over = trial.state.trial_id
     assert trial.do(CommandName.ABORT, trialId=over).ok
     assert "No trial is running" in trial.do(CommandName.ABORT, trialId=over).message
@@ -334,9 +326,7 @@ def test_only_changes_that_must_persist_raise_the_revision(scenario):
     assert trial.state.revision == revisions[-1]
 
 
-def test_a_touch_that_could_not_be_written_is_undone_and_the_trial_pauses(scenario):
-    trial = Trial(scenario)
-    trial.start()
+def test_a_touch_that_could_not_be_written_is_undone_and_the_trial_pauses(trial):
     trial.touch(3)
     kept = trial.state
     trial.touch()
@@ -359,3 +349,13 @@ def test_a_start_that_could_not_be_written_leaves_no_trial(scenario):
     assert trial.state.phase is Phase.IDLE
     assert trial.state.trial_id == ""
     assert np.array_equal(trial.training.truth.head_to_world, scenario.head_to_world)
+
+
+@pytest.mark.parametrize("task", ["trial-run", "task-3"])
+def test_each_touch_must_be_at_its_own_fiducial(scenario, task):
+    trial = Trial(scenario)
+    trial.start(task)
+    first = trial.fiducial("1")
+    trial.touch()
+    assert not trial.do(CommandName.CAPTURE, first).ok
+    assert trial.state.next_point == "2"

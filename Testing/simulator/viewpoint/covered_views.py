@@ -1,15 +1,14 @@
 """How often arm, tool or head cover tip or point in a view, for random postures of the arm.
 
 Rays to the meshes that are drawn, not to the collision shapes by which views are chosen.
-`python -m Testing.simulator.viewpoint.covered_views` counts all points of all tasks.
 """
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from types import SimpleNamespace
 
 import numpy as np
@@ -20,7 +19,7 @@ from rastrainer.head.mesh import HeadMesh, outward_normals, read_head_mesh
 from rastrainer.scenario.points import Task
 from rastrainer.transforms import MM_PER_M, apply
 from rastrainer_simulator.collision.collision import head_collision
-from rastrainer_simulator.core.setup import SimulationSetup, load_setup
+from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.robot.fabrik import Fabrik
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import RobotModel
@@ -188,73 +187,31 @@ def _is_hit(
     return bool(locator.IntersectWithLine(start, end, 1e-6, along, hit, local, *numbers))
 
 
-@dataclass
-class Count:
-    """Counts of views of many postures in which tip or point are covered, or translucent.
-
-    Attributes:
-        views: all.
-        covered: those in which something covers tip or point.
-        hidden: those in which something covers them that is not drawn translucent.
-        needless: those in which a body is translucent that covers neither.
-        by: how often each body covers them.
-    """
-
-    views: int = 0
-    covered: int = 0
-    hidden: int = 0
-    needless: int = 0
-    by: Counter[str] = field(default_factory=Counter)
-
-    def add(self, covering: set[str], translucent: set[str]) -> None:
-        """Count another view."""
-        self.views += 1
-        self.covered += bool(covering)
-        self.hidden += bool(covering - translucent)
-        self.needless += bool(translucent - covering)
-        self.by.update(covering)
-
-    def __str__(self) -> str:
-        shares = (self.covered, self.hidden, self.needless)
-        covered, hidden, needless = (100.0 * each / max(1, self.views) for each in shares)
-        by = ", ".join(f"{name} {count}" for name, count in self.by.most_common())
-        return (
-            f"{self.views} views: {covered:.2f} % covered, {hidden:.2f} % with translucent bodies; "
-            f"{needless:.2f} % translucent without need ({by})"
-        )
-
-
 def count_covered(
-    setup: SimulationSetup, seed: int, tasks: Iterable[str], count: int, every: int = 1
-) -> dict[str, Count]:
-    """Count them for `count` postures that touch, and as many on the way, at every nth point.
+    setup: SimulationSetup, seed: int, task: Task, count: int, every: int
+) -> dict[str, Counter[str]]:
+    """Count views of `count` postures that touch, and as many on the way, at every nth point.
 
-    The counts are for the best view of the touch as planned ("planned"), for the best view of the
-    posture ("present"), and for its view along the skin ("beside").
+    They are counted for the best view of the touch as planned, for the best view of the posture,
+    and for its view along the skin: all "views"; those in which something is "covered"; those in
+    which it is "hidden" by what is not translucent; those with a "needless" translucent body.
     """
     postures, cover, views = RandomPostures(setup, seed), ArmCover(setup), TouchViews(setup)
     drawn = DrawnBodies(postures)
-    counts = {name: Count() for name in ("planned", "present", "beside")}
-    for task in map(setup.scenario.task, tasks):
-        planned = dict(views.of(task, setup.scenario.head_to_world))
-        for point in postures.points(task)[::every]:
-            for posture in postures.at(point, count):
-                best, state = views.best(point.label, posture.q), posture.state(setup.robot)
-                eyes = dict(
-                    zip(counts, (planned[point.label].eye, best.eye, best.beside), strict=True)
-                )
-                # No posture follows another: what covered something before does not count.
-                cover.covering(state, eyes, ())
-                places = (state.tool_tip_to_world[:3, 3], point.position)
-                translucent = cover.covering(state, eyes, places)
-                for name, eye in eyes.items():
-                    covering = drawn.covering(eye, point, posture)
-                    counts[name].add(covering, set(translucent[name]))
+    counts = {name: Counter[str]() for name in ("planned", "present", "beside")}
+    planned = dict(views.of(task, setup.scenario.head_to_world))
+    for point in postures.points(task)[::every]:
+        for posture in postures.at(point, count):
+            best, state = views.best(point.label, posture.q), posture.state(setup.robot)
+            seen_from = planned[point.label].eye, best.eye, best.beside
+            eyes = dict(zip(counts, seen_from, strict=True))
+            # No posture follows another: what covered something before does not count.
+            cover.covering(state, eyes, ())
+            places = (state.tool_tip_to_world[:3, 3], point.position)
+            translucent = cover.covering(state, eyes, places)
+            for name, eye in eyes.items():
+                covering, clear = drawn.covering(eye, point, posture), set(translucent[name])
+                found = {"covered": covering, "hidden": covering - clear}
+                found |= {"needless": clear - covering}
+                counts[name].update(["views", *(kind for kind in found if found[kind])])
     return counts
-
-
-if __name__ == "__main__":
-    loaded = load_setup()
-    names = [task.name for task in loaded.scenario.tasks]
-    for kind, counted in count_covered(loaded, 33, names, 25).items():
-        print(f"{kind}: {counted}")

@@ -14,13 +14,13 @@ STEP_M = 0.001
 
 
 def test_the_best_view_of_any_posture_shows_tip_and_point_which_the_planned_one_hides(setup):
-    counts = count_covered(setup, 7, ("task-5",), count=5, every=4)
+    counts = count_covered(setup, 7, setup.scenario.task("task-5"), count=5, every=4)
     planned, *present = counts.values()
-    assert planned.covered > 0.05 * planned.views
-    assert [count.covered for count in present] == [0, 0], counts
+    assert planned["covered"] > 0.05 * planned["views"]
+    assert [count["covered"] for count in present] == [0, 0], counts
     # Elsewhere what covers them is translucent, and besides it only what almost does.
-    assert planned.hidden == 0, planned
-    assert planned.needless < 0.4 * planned.views
+    assert planned["hidden"] == 0, planned
+    assert planned["needless"] < 0.4 * planned["views"]
 
 
 @pytest.fixture

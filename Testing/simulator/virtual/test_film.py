@@ -42,13 +42,14 @@ def next_point_pixels(picture):
 
 def test_a_film_shows_the_trial_at_the_chosen_speed(monkeypatch, tmp_path, journal, capsys):
     monkeypatch.setattr(film, "SIZE", (320, 180))
+    monkeypatch.setattr(film, "RATE_HZ", 10)
     target = tmp_path / "trial.webm"
     assert main(["replay", str(journal), "--film", str(target), "--speed", str(SPEED)]) == 0
     assert [path.name for path in tmp_path.iterdir()] == ["trial.webm"]
     assert "100 %" in capsys.readouterr().err
     shown = frames_of(target)
     duration_s = float(read_track(journal).trajectory.times_s[-1])
-    assert len(shown) == pytest.approx(duration_s / SPEED * film.RATE_HZ, abs=3)
+    assert len(shown) == pytest.approx(duration_s / SPEED * film.RATE_HZ, abs=2)
     moved = np.abs(np.subtract(shown[0], shown[len(shown) // 2], dtype=float))
     assert moved.mean() > 2.0
     assert max(map(next_point_pixels, shown[: len(shown) // 2])) > 5

@@ -30,6 +30,12 @@ def depth_mm(ras, size=1.0):
     return size * np.maximum(np.maximum(egg, neck), nose)
 
 
+def voxel_depths(values, to_ras, size):
+    """Return how deep below the skin each voxel of an image is, (i, j, k), mm."""
+    ijk = np.indices(values.shape).reshape(3, -1).T
+    return depth_mm(ijk @ to_ras[:3, :3].T + to_ras[:3, 3], size).reshape(values.shape)
+
+
 def phantom(
     values=MRI,
     spacing=(1.0, 1.0, 1.0),

@@ -9,7 +9,7 @@ from rastrainer.slicer.head.extraction import findHead, skinOf
 from rastrainer.slicer.head.head_draft import HOUNSFIELD, imageOf
 from rastrainer.slicer.head.volume import HeadSettings, Volume
 from rastrainer_headless.volume_files import readVolume
-from Testing.slicer.head.phantoms import CT, DOUBLE_OBLIQUE, MRI, depth_mm, phantom
+from Testing.slicer.head.phantoms import CT, DOUBLE_OBLIQUE, MRI, phantom, voxel_depths
 
 SIZE = 0.5
 """Size of the phantom's head: a small head tests the same, and faster."""
@@ -23,9 +23,7 @@ def images(scan):
 
 def depths(volume):
     """How deep below the skin of the phantom each voxel is, (i, j, k), mm."""
-    indices = np.indices(volume.values.shape).reshape(3, -1).T
-    places = indices @ volume.ijk_to_ras[:3, :3].T + volume.ijk_to_ras[:3, 3]
-    return depth_mm(places, SIZE).reshape(volume.values.shape)
+    return voxel_depths(volume.values, volume.ijk_to_ras, SIZE)
 
 
 @pytest.mark.parametrize(

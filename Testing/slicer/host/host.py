@@ -11,8 +11,7 @@ from typing import Any
 import slicer
 from PySide6 import QtCore, QtWidgets
 
-from rastrainer_headless.command import HeadlessCommand
-from rastrainer_headless.connector import HeadlessConnector
+from rastrainer_headless.connector import HeadlessCommand, HeadlessConnector
 from Testing.slicer.host import appearance
 from Testing.slicer.host.answers import ANSWERS, Message
 from Testing.slicer.host.application import Application

@@ -139,10 +139,6 @@ class ThreeDWidget(Checked):
 
     def __init__(self, layout: LayoutManager) -> None:
         self.visible = layout.layout not in LAYOUTS_WITHOUT_3D
-        self._layout = layout
-
-    def mrmlViewNode(self) -> Any:
-        return self._layout.three_d_view_of_host().node
 
 
 class SliceWidget(Checked):

@@ -160,7 +160,6 @@ def _columns(elements: list[_Element], body: bytes, order: str) -> dict[str, dic
 
 
 def _uneven_columns(element: _Element, take: Callable[[str, int], np.ndarray]) -> dict[str, Column]:
-    """Return the columns of an element, read row by row."""
     columns: dict[str, Column] = {}
     cells: list[list[np.ndarray]] = [[] for _ in element.properties]
     for _ in range(element.rows):

@@ -83,7 +83,6 @@ def read_record(kind: type[T], path: Path) -> T:
 
 
 def format_version(version: int) -> Callable[[Any], int]:
-    """Accept the version of a file's format that is read."""
 
     def check(value: Any) -> int:
         if isinstance(value, bool) or value != version:

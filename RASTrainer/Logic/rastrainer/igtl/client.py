@@ -78,7 +78,6 @@ class Client:
         self.close()
 
     def close(self) -> None:
-        """Close the connection and wait for the receiving thread."""
         with contextlib.suppress(OSError):  # The peer may have closed it first.
             self._socket.shutdown(socket.SHUT_RDWR)
         if threading.current_thread() is not self._thread:

@@ -62,7 +62,6 @@ def decode_text(data: bytes, keep_bytes: bool = False) -> str:
 
 
 def check_float32(values: Sequence[float], what: str) -> None:
-    """Check that every value is a finite 32-bit number."""
     for value in values:
         # NaN compares as false, too.
         if not -_FLOAT32_MAX <= value <= _FLOAT32_MAX:

@@ -233,8 +233,8 @@ class MessageReader:
     header is rejected at once: a web page can make a browser send an HTTP request with messages in
     its body to any port.
 
-    `taken` counts processed messages and stretches of garbage, `errors` those of each kind;
-    `version` is that of the last header, usable or not. `refusal` says why reading stopped.
+    `taken` counts processed messages and stretches of garbage, `errors` each kind of error;
+    `version` is the last header's, usable or not. `refusal` says why reading stopped.
     """
 
     def __init__(self, kept: Mapping[str, int] | None = None):
@@ -254,7 +254,6 @@ class MessageReader:
         return not self._buffer and not self._to_skip
 
     def feed(self, data: bytes) -> list[Message]:
-        """Return the messages that `data` completes, in order."""
         if self.refusal:
             return []
         self._buffer += data

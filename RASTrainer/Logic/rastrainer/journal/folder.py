@@ -13,7 +13,7 @@ import os
 import re
 import sys
 import uuid
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -146,12 +146,12 @@ def erase_journals(
         owner = _trainee_of(path)
         if owner == trainee or path.stem.rpartition("_")[2] in trial_ids:
             try:
-                with _locked(path) as descriptor:
-                    left = os.fstat(descriptor).st_size
-                    os.lseek(descriptor, 0, os.SEEK_SET)
+                with path.open("r+b", buffering=0) as file:
+                    lock(file.fileno())
+                    left = os.fstat(file.fileno()).st_size
                     while left > 0:
-                        left -= os.write(descriptor, _ZEROS[: min(left, len(_ZEROS))])
-                    os.fsync(descriptor)
+                        left -= file.write(_ZEROS[: min(left, len(_ZEROS))])
+                    os.fsync(file.fileno())
                 path.unlink()
                 path.with_suffix(SEED_SUFFIX).unlink(missing_ok=True)
             except OSError as error:
@@ -171,16 +171,6 @@ def _trainee_of(path: Path) -> str | None:
         trainee = decode_finite_json(file.readline(MAX_LINE_BYTES).decode("ascii")).get("trainee")
         return trainee if isinstance(trainee, str) else None
     return None
-
-
-@contextlib.contextmanager
-def _locked(path: Path) -> Iterator[int]:
-    descriptor = os.open(path, os.O_RDWR | getattr(os, "O_BINARY", 0))
-    try:
-        lock(descriptor)
-        yield descriptor
-    finally:
-        os.close(descriptor)
 
 
 _HEADER_BYTES = 512

@@ -175,18 +175,23 @@ def unusable_lines(procedure: Procedure, head: HeadMesh, skull: HeadMesh) -> lis
     ]
 
 
+def entry_fault(off_skin_mm: float) -> str | None:
+    """Return what is wrong with an entry so far above the skin; below 0 it is below it."""
+    if abs(off_skin_mm) <= ENTRY_OFF_SKIN_MM:
+        return None
+    side = "above the skin" if off_skin_mm > 0.0 else "below the skin, within the head"
+    entry = f"its entry must be within {ENTRY_OFF_SKIN_MM:g} mm of the skin."
+    return f"enters {abs(off_skin_mm):.0f} mm {side}; {entry}"
+
+
 def _unusable(trajectory: ProcedureTrajectory, head: HeadMesh, skull: HeadMesh) -> str | None:
     entry, target, direction = trajectory.entry_ras, trajectory.target_ras, trajectory.direction
     if not is_inside(head, target):
         outside = nearest_on_mesh(head, target).distance
         return f"has its target {outside:.0f} mm outside of the head."
     off_skin = nearest_on_mesh(head, entry).distance
-    if off_skin > ENTRY_OFF_SKIN_MM:
-        side = "below the skin, within the head" if is_inside(head, entry) else "above the skin"
-        return (
-            f"enters {off_skin:.0f} mm {side}; its entry must be within {ENTRY_OFF_SKIN_MM:g} mm "
-            "of the skin."
-        )
+    if fault := entry_fault(-off_skin if is_inside(head, entry) else off_skin):
+        return fault
     crossings = mesh_crossings(head, entry, direction, trajectory.length_mm)
     leaving = [crossing for crossing in crossings if not crossing.is_entering]
     if leaving:

@@ -141,6 +141,7 @@ LEAST_SPREAD_MM = 15.0
 ASIDE_MM = 3.0
 """How far a landmark of one side may be beyond the middle of the head."""
 _SIDES = {"right": 1.0, "left": -1.0}
+_OTHER = {"right": "left", "left": "right"}
 
 
 def on_skin(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
@@ -178,7 +179,16 @@ def check_landmarks(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> list[str]:
                 f"{one.name} and {other.name} are {apart:.1f} mm apart; landmarks must be "
                 f"{APART_MM:g} mm apart."
             )
-    return wrong + _in_line(landmarks[:COARSE_LANDMARKS])
+    three = landmarks[:COARSE_LANDMARKS]
+    places = np.array([landmark.position_ras for landmark in three], dtype=float)
+    spread = np.linalg.svd(places - places.mean(axis=0), compute_uv=False)[1]
+    if spread < LEAST_SPREAD_MM:
+        wrong.append(
+            f"The first three landmarks ({', '.join(each.name for each in three)}) are almost in a "
+            "line, which leaves the head free to turn about it; let three that are spread come "
+            "first."
+        )
+    return wrong
 
 
 def spread_first(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
@@ -188,14 +198,14 @@ def spread_first(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
     """
     if len(landmarks) <= COARSE_LANDMARKS:
         return tuple(landmarks)
-    first = max(combinations(landmarks, COARSE_LANDMARKS), key=_area)
+
+    def area(three: Sequence[Landmark]) -> float:
+        a, b, c = (landmark.position_ras for landmark in three)
+        return float(np.linalg.norm(np.cross(b - a, c - a)))
+
+    first = max(combinations(landmarks, COARSE_LANDMARKS), key=area)
     names = {landmark.name for landmark in first}
     return (*first, *(each for each in landmarks if each.name not in names))
-
-
-def _area(three: Sequence[Landmark]) -> float:
-    a, b, c = (landmark.position_ras for landmark in three)
-    return float(np.linalg.norm(np.cross(b - a, c - a)))
 
 
 def _on_other_side(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> list[str]:
@@ -217,18 +227,3 @@ def _on_other_side(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> list[str]:
             swapped.append(name)
             wrong.append(f"{name} and {other} are swapped; R is positive on the patient's right.")
     return wrong
-
-
-_OTHER = {"right": "left", "left": "right"}
-
-
-def _in_line(three: Sequence[Landmark]) -> list[str]:
-    places = np.array([landmark.position_ras for landmark in three], dtype=float)
-    spread = np.linalg.svd(places - places.mean(axis=0), compute_uv=False)[1]
-    if spread >= LEAST_SPREAD_MM:
-        return []
-    names = ", ".join(landmark.name for landmark in three)
-    return [
-        f"The first three landmarks ({names}) are almost in a line, which leaves the head free to "
-        "turn about it; let three that are spread come first."
-    ]

@@ -152,9 +152,8 @@ class ScenarioMaker:
 
         def make(report: Progress) -> tuple[HeadDraft, list[str]]:
             kept = {"segment": segment, "hasVolume": options.hasVolume}
-            made: tuple[HeadDraft, list[str]] = self._run(
-                MAKE_DRAFT, report, image, settings, options.hasSkull, **kept
-            )
+            found = image, settings, options.hasSkull
+            made: tuple[HeadDraft, list[str]] = self._run(MAKE_DRAFT, report, *found, **kept)
             return made
 
         with tempfile.TemporaryDirectory() as temporary:
@@ -189,12 +188,11 @@ def editedHead(volume: Any, settings: HeadSettings) -> SegmentImage | None:
     if node is None or node.GetAttribute(PREVIEWED_ATTRIBUTE) != volume.GetID():
         return None
     if node.GetAttribute(SETTINGS_ATTRIBUTE) != repr(settings):
-        raise InputError(
-            _(
-                "The threshold or the cut has been changed since the head was found: find the "
-                "head again, or reset it."
-            )
+        problem = _(
+            "The threshold or the cut has been changed since the head was found: find the head "
+            "again, or reset it."
         )
+        raise InputError(problem)
     return readSegment(node, node.GetSegmentation().GetSegmentIdBySegmentName(SEGMENT_NAME))
 
 
@@ -258,16 +256,13 @@ def planScenario(
             write_draft(Path(temporary), draft)
             return warnings
 
-        warnings = inBackground(
-            makeAndWrite, lambda step, share: progress(step, HEAD_SHARE * share)
-        )
+        def plan(step: str, share: float) -> None:
+            progress(step, HEAD_SHARE + (1.0 - HEAD_SHARE) * share)
+
+        head = inBackground(makeAndWrite, lambda step, share: progress(step, HEAD_SHARE * share))
         planner = [*command, "scenario", "tasks", temporary, "-o", str(folder), *words]
-        ended = runChild(
-            planner,
-            lambda step, share: progress(step, HEAD_SHARE + (1.0 - HEAD_SHARE) * share),
-            "Placing fiducials",
-        )
+        ended = runChild(planner, plan, "Placing fiducials")
     if ended.exitStatus != 0:
         reason = ended.lastLine.removeprefix("rastrainer: ") or "it wrote nothing"
         raise InputError(f"The tasks could not be made: {reason}")
-    return [*warnings, *ended.warnings]
+    return [*head, *ended.warnings]

@@ -99,9 +99,7 @@ class NewScenarioPanel(Panel):
         """Download an MRI through Slicer's Sample Data, and choose it."""
         with showErrors(_("The sample could not be loaded."), waitCursor=True):
             logic = slicer.util.getModuleLogic("SampleData")
-            volume = self._work.run(
-                lambda report: downloadSample(slicer.mrmlScene, logic, SAMPLE, report)
-            )
+            volume = self._work.run(partial(downloadSample, slicer.mrmlScene, logic, SAMPLE))
             if volume is None:
                 return
             application = slicer.app.applicationLogic()
@@ -211,14 +209,10 @@ class LandmarksPanel(Panel):
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
         self._logic = session.landmarks
+        propose = partial(self._run, self._logic.propose)
         failure = _("No landmarks could be proposed.")
-        self._work = CancelableWork(
-            ui.proposeLandmarksButton,
-            partial(self._run, self._logic.propose),
-            failure,
-            self._showMessage,
-            self.showState,
-        )
+        shows = self._showMessage, self.showState
+        self._work = CancelableWork(ui.proposeLandmarksButton, propose, failure, *shows)
         fillComboBox(ui.landmarkNameComboBox, ENTRIES, FACE_LANDMARKS[0])
         connectClick(ui.showLandmarksButton, self.show, _("The landmarks cannot be shown."))
         connectClick(ui.placeLandmarkButton, self.place, _("No landmark can be placed."))
@@ -289,10 +283,9 @@ class LandmarksPanel(Panel):
 
     def _showMessage(self, sentence: str) -> None:
         self._message = sentence
-        names = [landmark.name for landmark in self._logic.points.placed(areSelected=False)]
-        if names:
-            leftOut = _("Left out, as they are deselected in the module Markups: {names}.").format(
-                names=", ".join(NAMES.get(name, name) for name in names)
-            )
-            sentence = f"{sentence} {leftOut}".strip()
+        others = self._logic.points.placed(areSelected=False)
+        if others:
+            leftOut = _("Left out, as they are deselected in the module Markups: {names}.")
+            names = ", ".join(NAMES.get(each.name, each.name) for each in others)
+            sentence = f"{sentence} {leftOut.format(names=names)}".strip()
         setText(self._ui.landmarksText, sentence)

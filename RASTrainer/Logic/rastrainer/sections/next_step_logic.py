@@ -119,28 +119,20 @@ def nextStep(now: WorkflowState) -> NextStep:
 
 _STARTS = (NextAction.START_TRIAL_RUN, NextAction.START_TASK, NextAction.START_STUDY_STEP)
 _TOUCHED = _("{touched} of {total} points are touched.")
+_COMPLETE = _("All points are touched: the trainee registers them, or undoes some.")
+_ALIGNING = _("The trainee aligns the guide with the planned trajectory.")
+_SCORING = _("The trial is registered, and is being scored.")
 _PAUSE = NextStep(NextAction.PAUSE, _("Pause"), _TOUCHED, Section.TRAINING)
+_WAIT = NextStep(NextAction.WAIT, _("Scoring…"), _SCORING, Section.REGISTRATION)
 _DURING_TRIAL = {
     Phase.RUNNING.value: _PAUSE,
     Phase.PAUSED.value: NextStep(NextAction.RESUME, _("Resume"), _TOUCHED, Section.TRAINING),
-    Phase.COMPLETE.value: NextStep(
-        NextAction.WAIT,
-        _("Waiting…"),
-        _("All points are touched: the trainee registers them, or undoes some."),
-        Section.REGISTRATION,
-    ),
+    Phase.COMPLETE.value: replace(_WAIT, title=_("Waiting…"), sentence=_COMPLETE),
     Phase.VERIFYING.value: replace(_PAUSE, sentence=_("The trainee verifies the registration.")),
-    Phase.ALIGNING.value: replace(
-        _PAUSE, sentence=_("The trainee aligns the guide with the planned trajectory.")
-    ),
+    Phase.ALIGNING.value: replace(_PAUSE, sentence=_ALIGNING),
     Phase.DRILLING.value: replace(_PAUSE, sentence=_("The trainee drills through the skull.")),
     Phase.INSERTING.value: replace(_PAUSE, sentence=_("The trainee inserts the instrument.")),
-    Phase.REGISTERED.value: NextStep(
-        NextAction.WAIT,
-        _("Scoring…"),
-        _("The trial is registered, and is being scored."),
-        Section.REGISTRATION,
-    ),
+    Phase.REGISTERED.value: _WAIT,
 }
 
 

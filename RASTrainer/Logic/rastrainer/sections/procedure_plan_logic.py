@@ -69,12 +69,9 @@ class ProcedurePlanLogic:
 
     def edit(self, scenario: Scenario, name: str) -> Procedure | None:
         """Show a procedure in the scene, to be changed; an empty one without a name."""
-        if not name:
-            showPlan(self._scene, (), {}, ())
-            return None
-        procedure = scenario.procedure(name)
-        meshes = read_procedure_meshes(procedure, scenario.skull_path)
-        showPlan(self._scene, procedure.trajectories, dict(meshes.no_go), procedure.checkpoints)
+        procedure = scenario.procedure(name) if name else None
+        meshes = procedure and read_procedure_meshes(procedure, scenario.skull_path)
+        showPlan(self._scene, procedure, meshes.no_go if meshes else {})
         return procedure
 
     def read(self, plan: PlanDescription) -> tuple[Procedure, dict[str, HeadMesh]]:

@@ -62,7 +62,8 @@ class ProcedurePlanPanel(Panel):
         self._problem = ""
         self._removed: list[tuple[Any, int]] = []
         failure = _("The lines were not checked.")
-        shows = (self._showProblem, self.showState, partial(showPercent, ui.procedurePlanText))
+        note = partial(setattr, self, "_problem")
+        shows = (note, self.showState, partial(showPercent, ui.procedurePlanText))
         self._work = CancelableWork(ui.checkLinesButton, self.check, failure, *shows)
         fillComboBox(ui.procedureKindComboBox, KINDS, ProcedureKind.BIOPSY.value)
         connectClick(ui.editProcedureButton, self.edit, _("The procedure cannot be edited."))
@@ -247,9 +248,6 @@ class ProcedurePlanPanel(Panel):
         combo = self._ui.procedurePlanComboBox
         offerEntries(combo, entries, *([chosenData(combo)] if combo.count else []))
         self.showState()
-
-    def _showProblem(self, sentence: str) -> None:
-        self._problem = sentence
 
 
 def _row(line: Any, measured: LineMeasures | None) -> tuple[str, ...]:

@@ -82,9 +82,8 @@ def compareFits(
     Errors are those at `target`, (3,) float, RAS mm, and at `headPoints`, (v, 3), of a head that is
     to be colored.
     """
-    fits = register_all_kinds(
-        pairs.moving, pairs.fixed, pairs.labels, choices.weights(pairs.labels)
-    )
+    weights = choices.weights(pairs.labels)
+    fits = register_all_kinds(pairs.moving, pairs.fixed, pairs.labels, weights)
     # Errors stated for single points replace those estimated from the skin.
     localizations = {
         kind: None if skin is None or fit.weights is not None else skin.localizationError(fit)
@@ -158,12 +157,9 @@ class RegistrationLogic:
 
         The lists of the trial and its task stand in for lists that are not chosen.
         """
-        pairs = zip(self._chosen, ROLES, strict=True)
-        return [
-            (self._scene.GetNodeByID(chosen) if chosen else None)
-            or findNode(self._scene, LIST, role)
-            for chosen, role in pairs
-        ]
+        chosen = [self._scene.GetNodeByID(each) if each else None for each in self._chosen]
+        pairs = zip(chosen, ROLES, strict=True)
+        return [node or findNode(self._scene, LIST, role) for node, role in pairs]
 
     def chooseLists(self, *lists: Any | None) -> None:
         """Choose `lists`; None means the list of the trial or its task."""

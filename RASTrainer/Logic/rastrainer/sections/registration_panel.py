@@ -46,9 +46,7 @@ class RegistrationPanel(Panel):
         entries = [(title, kind) for kind, title in TITLES.items()]
         bindChosen(ui.kindComboBox, entries, session.settings, FIT)
         self._logic.kind = chosenData(ui.kindComboBox)
-        ui.kindComboBox.connect(
-            "activated(int)", lambda _index: self._logic.chooseKind(chosenData(ui.kindComboBox))
-        )
+        ui.kindComboBox.connect("activated(int)", self._chooseKind)
         for combo in (ui.movingComboBox, ui.fixedComboBox, ui.targetComboBox):
             combo.connect("currentNodeChanged(vtkMRMLNode*)", self._chooseLists)
         ui.residualsTable.connect("itemSelectionChanged()", self._chooseFiducial)
@@ -78,11 +76,12 @@ class RegistrationPanel(Panel):
         return row if row < len(self._labels) else -1
 
     def _showApplied(self) -> None:
-        transform = self._logic.transform
-        setSilently(
-            self._ui.appliedCheckBox, "checked", transform is not None and isApplied(transform)
-        )
-        self._ui.appliedCheckBox.enabled = transform is not None
+        box, transform = self._ui.appliedCheckBox, self._logic.transform
+        setSilently(box, "checked", transform is not None and isApplied(transform))
+        box.enabled = transform is not None
+
+    def _chooseKind(self, _index: int) -> None:
+        self._logic.chooseKind(chosenData(self._ui.kindComboBox))
 
     def _chooseLists(self, _node: Any = None) -> None:
         ui = self._ui
@@ -115,12 +114,9 @@ class RegistrationPanel(Panel):
             shown, sizes = comparison.shown, dict(self._logic.choices.fle)
             self._labels = shown.labels
             without = comparison.leaveOneOut.get(shown.kind, [None] * len(shown.labels))
-            rows = [
-                (label, *(numberOrDash(each, 2) for each in (residual, alone, sizes.get(label))))
-                for label, residual, alone in zip(
-                    shown.labels, shown.residuals_mm, without, strict=True
-                )
-            ]
+            for row, label in enumerate(shown.labels):
+                lengths = shown.residuals_mm[row], without[row], sizes.get(label)
+                rows.append((label, *(numberOrDash(each, 2) for each in lengths)))
         with blockedSignals(table):
             fillTable(table, rows)
             newRow = self._labels.index(chosen) if chosen in self._labels else -1
@@ -168,13 +164,11 @@ def _summary(comparison: Comparison) -> str:
     if pairs.missing:
         sentence += " " + _("Not touched yet: {labels}.").format(labels=", ".join(pairs.missing))
     if pairs.excluded:
-        sentence += " " + _(
-            "Left out: {labels}; the score of the trial still uses all pairs."
-        ).format(labels=", ".join(pairs.excluded))
+        leftOut = _("Left out: {labels}; the score of the trial still uses all pairs.")
+        sentence += " " + leftOut.format(labels=", ".join(pairs.excluded))
     if comparison.fits[RIGID].weights is not None:
-        sentence += " " + _(
-            "The rigid fit is weighted by the stated FLE; the score of the trial is not."
-        )
+        weighted = _("The rigid fit is weighted by the stated FLE; the score of the trial is not.")
+        sentence += " " + weighted
     return sentence
 
 

@@ -149,10 +149,8 @@ class ScenarioFiles:
 
         `plan` are arguments of `rastrainer scenario plan`, such as `--landmarks` with a file.
         """
-        source, words = str(self._cache.find(name).folder), [f"--title={title}", *plan]
-        return self.add(
-            title, lambda folder: self.run(["plan", source, "-o", str(folder), *words], progress)
-        )
+        words = ["plan", str(self._cache.find(name).folder), f"--title={title}", *plan]
+        return self.add(title, lambda folder: self.run([*words, "-o", str(folder)], progress))
 
     def run(self, words: list[str], progress: Progress, mayFail: bool = False) -> str:
         """Run `rastrainer scenario`; see `SimulatorLogic.run`."""

@@ -13,20 +13,10 @@ from rastrainer.sections.scenario_files import ScenarioCache
 from rastrainer.slicer.background_work import BackgroundWork, inBackground
 from rastrainer.slicer.polydata import meshPolyData
 from rastrainer.slicer.program.child_process import Run
-from rastrainer.slicer.scene.nodes import (
-    ROLE_ATTRIBUTE,
-    Role,
-    capturedPointsNode,
-    findNode,
-)
+from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, Role, capturedPointsNode, findNode
 from rastrainer.slicer.scene.robot import addLink, missingLinks, robotNode, setRobotVisible
 from rastrainer.slicer.scene.robot_description import READ_LINKS, LinkMesh
-from rastrainer.slicer.scene.scenario_nodes import (
-    SKIN_COLOR,
-    showImages,
-    showScenario,
-    showTask,
-)
+from rastrainer.slicer.scene.scenario_nodes import SKIN_COLOR, showImages, showScenario, showTask
 from rastrainer.slicer.scene.trial_scene import (
     KIND_ATTRIBUTE,
     PLANNED,

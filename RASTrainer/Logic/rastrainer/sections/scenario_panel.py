@@ -52,10 +52,8 @@ class ScenarioPanel(Panel):
         failure = _("The scenario was not saved.")
         says = (self._showMessage, self._showUsable, no_progress)
         self._writing = CancelableWork(ui.exportScenarioButton, self.exportScenario, failure, *says)
-        failure = _("The scenario was not added.")
-        self._adding = CancelableWork(
-            ui.importScenarioButton, self.importScenario, failure, self._showMessage
-        )
+        button, failure = ui.importScenarioButton, _("The scenario was not added.")
+        self._adding = CancelableWork(button, self.importScenario, failure, self._showMessage)
         ui.scenarioComboBox.connect("activated(int)", self._showTasks)
         ui.taskComboBox.connect("activated(int)", self._chooseTask)
         for combo in (ui.scenarioComboBox, ui.taskComboBox):
@@ -93,10 +91,9 @@ class ScenarioPanel(Panel):
     def loadIntoSimulator(self) -> None:
         with showErrors(_("The scenario was not loaded.")):
             scenario = self._scenarios.find(chosenData(self._ui.scenarioComboBox))
-            self._showMessage(
-                _("The simulator was asked to load {title}.").format(title=scenario.title)
-            )
+            asked = _("The simulator was asked to load {title}.")
             loaded = _("The simulator now uses {title}.").format(title=scenario.title)
+            self._showMessage(asked.format(title=scenario.title))
             self._session.training.loadScenario(scenario.name, lambda: self._showMessage(loaded))
 
     def useHead(self) -> None:
@@ -110,9 +107,8 @@ class ScenarioPanel(Panel):
 
     def importScenario(self) -> None:
         """Add a scenario that comes as a zip file, and choose it."""
-        path = qt.QFileDialog.getOpenFileName(
-            slicer.util.mainWindow(), _("Add a scenario"), "", "Zip (*.zip)"
-        )
+        window, caption = slicer.util.mainWindow(), _("Add a scenario")
+        path = qt.QFileDialog.getOpenFileName(window, caption, "", "Zip (*.zip)")
         if not path:
             return
         added = self._adding.run(lambda report: self._files.importScenario(Path(path), report))
@@ -121,7 +117,7 @@ class ScenarioPanel(Panel):
             self._showMessage(_("{title} was added.").format(title=added.title))
 
     def exportScenario(self) -> None:
-        name = chosenData(self._ui.scenarioComboBox)
+        name, files = chosenData(self._ui.scenarioComboBox), self._files
         keepsFace = not self._ui.removeFaceCheckBox.checked
         keepsNames = not self._ui.removeNamesCheckBox.checked
         # A file named after the patient would reveal the name, too.
@@ -129,9 +125,8 @@ class ScenarioPanel(Panel):
         path = askWhereToSave(_("Save the scenario"), proposed, "Zip (*.zip)")
         if path is None or not (keepsFace or self._isFaceGone(name)):
             return
-        taken = self._writing.run(
-            lambda report: self._files.exportScenario(name, path, keepsFace, keepsNames, report)
-        )
+        write = partial(files.exportScenario, name, path, keepsFace, keepsNames)
+        taken = self._writing.run(write)
         if taken is not None:
             self._showMessage(_("{path} was written.").format(path=path) + f" {taken}")
 
@@ -139,14 +134,12 @@ class ScenarioPanel(Panel):
         """Show a scenario's head before and after its face is removed, and ask the user."""
         with tempfile.TemporaryDirectory() as temporary:
             picture = Path(temporary) / "before-and-after.png"
-            drawn = self._writing.run(
-                lambda report: self._files.drawFaceRemoval(name, picture, report)
-            )
-            return drawn is not None and slicer.util.confirmYesNoDisplay(
-                toolTip(f"{drawn} " + _("Is the face gone?")),
-                _("Save the scenario without its face"),
-                iconPixmap=qt.QPixmap(str(picture)),
-            )
+            drawn = self._writing.run(partial(self._files.drawFaceRemoval, name, picture))
+            if drawn is None:
+                return False
+            text, title = _("Is the face gone?"), _("Save the scenario without its face")
+            ask, shown = slicer.util.confirmYesNoDisplay, qt.QPixmap(str(picture))
+            return bool(ask(toolTip(f"{drawn} {text}"), title, iconPixmap=shown))
 
     def continueWith(self, name: str) -> None:
         """Choose a scenario that has just been made, show it, and have the simulator take it."""
@@ -159,11 +152,12 @@ class ScenarioPanel(Panel):
 
     def _frame(self, node: Any) -> None:
         """Fit the views to a newly loaded head, or to newly loaded images."""
+        later = self._session.work.later
         if node.IsA("vtkMRMLModelNode"):
             fitThreeDViews()
-            return
-        fitSliceViews(self._session.work.later)
-        self._session.work.later(self._session.slices.showAgain)
+        else:
+            fitSliceViews(later)
+            later(self._session.slices.showAgain)
 
     def _fill(self, wanted: str = "") -> None:
         """Offer the available scenarios, and choose one; the first if it is missing."""
@@ -202,11 +196,9 @@ class ScenarioPanel(Panel):
         scenario = self._scenarios.find(chosenData(self._ui.scenarioComboBox))
         task = scenario.task(chosenData(self._ui.taskComboBox))
         self._session.chooseTask(task, scenario)
-        self._showMessage(
-            _("{count} fiducials, complexity {complexity:.2f}; target: {target}.").format(
-                count=len(task.labels), complexity=task.complexity, target=scenario.target.name
-            )
-        )
+        text = _("{count} fiducials, complexity {complexity:.2f}; target: {target}.")
+        count, target = len(task.labels), scenario.target.name
+        self._showMessage(text.format(count=count, complexity=task.complexity, target=target))
 
     def _keepChoice(self, _index: int = 0) -> None:
         settings, ui = self._session.settings, self._ui
@@ -244,10 +236,8 @@ class MethodsPanel(Panel):
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
         self._showMessage = partial(setText, ui.methodsText)
-        failure = _("The methods were not compared.")
-        self._work = CancelableWork(
-            ui.compareMethodsButton, self.compare, failure, self._showMessage
-        )
+        button, failure = ui.compareMethodsButton, _("The methods were not compared.")
+        self._work = CancelableWork(button, self.compare, failure, self._showMessage)
         self._showMessage("")
 
     def compare(self) -> None:
@@ -256,22 +246,15 @@ class MethodsPanel(Panel):
         scenario = chosenScenario(ui, self._session)
         trials, shift = ui.methodTrialsSpinBox.value, ui.methodShiftSpinBox.value
         self._showMessage(_("Trials are being simulated and registered."))
-        found = self._work.run(
-            lambda report: compareMethods(simulator, scenario, trials, shift, report)
-        )
+        found = self._work.run(partial(compareMethods, simulator, scenario, trials, shift))
         if found is not None:
-            interval = _("{low} to {high}")
-            rows = [
-                (
-                    METHOD_NAMES.get(each.name, each.name),
-                    fixed(each.residual, 2),
-                    fixed(each.true, 2),
-                    fixed(each.expected, 2),
-                    interval.format(low=fixed(each.low, 2), high=fixed(each.high, 2)),
-                    _("{share} %").format(share=fixed(100.0 * each.held, 0)),
-                )
-                for each in found
-            ]
+            interval, percent = _("{low} to {high}"), _("{share} %")
+            rows = []
+            for each in found:
+                lengths = (fixed(mm, 2) for mm in (each.residual, each.true, each.expected))
+                ends = interval.format(low=fixed(each.low, 2), high=fixed(each.high, 2))
+                held = percent.format(share=fixed(100.0 * each.held, 0))
+                rows.append((METHOD_NAMES.get(each.name, each.name), *lengths, ends, held))
             fillTable(ui.methodsTable, rows)
             text = _(
                 "Residuals of different methods are of different points: they do not show which "

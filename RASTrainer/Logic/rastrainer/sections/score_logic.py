@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -46,7 +46,6 @@ class ReplayLogic:
         shown: emits nothing, whenever another trial is shown, with its touches to be registered.
         procedureShown: emits `ProcedureOutcome`, `ProcedureRecord` and `RevealedTruth` of that
             trial; None for each that it has not.
-        isReleasing: whether states of a closed scene's replay are left, which `process` releases.
     """
 
     def __init__(
@@ -67,8 +66,6 @@ class ReplayLogic:
         self._awaitedId = ""
         self._known: tuple[str, TrialFeedback | Exception | None] = ("", None)
         self._until: float | None = None
-        self._outdated: Iterator[None] = iter(())
-        self.isReleasing = False
 
     def feedback(self, trial: StoredTrial) -> TrialFeedback | None:
         """Return the feedback on a trial; None while it is being prepared."""
@@ -100,7 +97,13 @@ class ReplayLogic:
 
     def keepStates(self) -> None:
         """Have the states of the replay released slice by slice, before the scene is closed."""
-        self._outdated = itertools.chain(self._outdated, emptyReplay(self._services.scene))
+        slices, later = emptyReplay(self._services.scene), self._services.work.later
+
+        def release() -> None:
+            if list(itertools.islice(slices, SLICES_A_TURN)):
+                later(release)
+
+        later(release)
 
     def forgetScene(self) -> None:
         self._until = None
@@ -127,7 +130,6 @@ class ReplayLogic:
 
     def process(self) -> None:
         """Stop where the worst touch was made; request feedback that no score has given."""
-        self.isReleasing = len(list(itertools.islice(self._outdated, SLICES_A_TURN))) > 0
         if self._awaitedId and not self._isBeingScored(self._awaitedId):
             self._awaitedId = ""
             self.feedbackFound.emit()

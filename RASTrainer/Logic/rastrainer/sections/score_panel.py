@@ -39,7 +39,6 @@ from rastrainer.widgets.controls import (
     setText,
     showPercent,
 )
-from rastrainer.widgets.shown_errors import showErrors
 
 
 class ScorePanel(Panel):
@@ -59,7 +58,7 @@ class ScorePanel(Panel):
         ui.trialComboBox.connect("activated(int)", self._showTrial)
         connectClick(ui.showTablesButton, self.showTables, _("The tables cannot be shown."))
         connectClick(ui.exportScoresButton, self.exportScores, _("The trials were not exported."))
-        ui.reportButton.connect("clicked()", self.writeReport)
+        connectClick(ui.reportButton, self.writeReport, _("The report was not written."))
         ui.scoreCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
         replayTouch = partial(self.replay, isWorstTouch=True)
         connectClick(ui.worstTouchButton, replayTouch, _("The touch is not shown."))
@@ -92,8 +91,8 @@ class ScorePanel(Panel):
         path = askWhereToSave(_("Export all trials"), "trials.csv", "CSV (*.csv)")
         if path is None:
             return
-        read, write = self._trainees.inStudy, lambda study: write_histories(study, path)
-        written = self._work.run(lambda report: read(write, report))
+        write = partial(self._trainees.inStudy, lambda study: write_histories(study, path))
+        written = self._work.run(write)
         if written is not None:
             text = _(
                 "{count} trials were written to {path}. Trainees left out because they did not "
@@ -103,30 +102,25 @@ class ScorePanel(Panel):
 
     def writeReport(self) -> None:
         """Have the simulator write the report of the study into a folder, and open it."""
-        simulator = self._session.simulator
-        with showErrors(_("The report was not written.")):
-            if simulator.needsSetup:
-                raise InputError(
-                    _(
-                        "The simulator writes it, and is not set up yet: in the section "
-                        "Simulator, press Set up."
-                    )
-                )
-            caption = _("Folder for the report")
-            folder = qt.QFileDialog.getExistingDirectory(slicer.util.mainWindow(), caption)
-            if not folder:
-                return
-            command = ["report", str(self._session.studyPlace), "-o", folder]
-            if self._work.run(lambda report: simulator.run(command, report)) is not None:
-                page = str(Path(folder, "report.html"))
-                self._showMessage(_("The report is {path}.").format(path=page))
-                qt.QDesktopServices.openUrl(qt.QUrl.fromLocalFile(page))
+        simulator, caption = self._session.simulator, _("Folder for the report")
+        if simulator.needsSetup:
+            problem = _(
+                "The simulator writes it, and is not set up yet: in the section Simulator, press "
+                "Set up."
+            )
+            raise InputError(problem)
+        folder = qt.QFileDialog.getExistingDirectory(slicer.util.mainWindow(), caption)
+        command = ["report", str(self._session.studyPlace), "-o", folder]
+        if folder and self._work.run(partial(simulator.run, command)) is not None:
+            page = str(Path(folder, "report.html"))
+            self._showMessage(_("The report is {path}.").format(path=page))
+            qt.QDesktopServices.openUrl(qt.QUrl.fromLocalFile(page))
 
     def replay(self, isWorstTouch: bool = False) -> None:
         trial, replay = self._trial, self._session.replay
         if trial is not None:
             show = replay.showWorstTouch if isWorstTouch else replay.show
-            self._work.run(lambda report: show(trial, report))
+            self._work.run(partial(show, trial))
             if not isWorstTouch:
                 fitThreeDViews()
 
@@ -153,13 +147,10 @@ class ScorePanel(Panel):
             self._named = None
             self._showMessage(str(error))
             return
-        text = _("{number}: {task}, {day}")
-        entries: list[tuple[str, str]] = []
-        for number, trial in enumerate(history, start=1):
-            record = trial.record
-            day = record.started_utc[:16].replace("T", " ")
-            entry = text.format(number=number, task=task_title(record.task), day=day)
-            entries.insert(0, (entry, record.trial_id))
+        text, entries = _("{number}: {task}, {day}"), list[tuple[str, str]]()
+        for number, record in enumerate((trial.record for trial in history), start=1):
+            day, task = record.started_utc[:16].replace("T", " "), task_title(record.task)
+            entries.insert(0, (text.format(number=number, task=task, day=day), record.trial_id))
         wanted = self._newTrial or chosenData(self._ui.trialComboBox)
         self._newTrial = ""
         offerEntries(self._ui.trialComboBox, entries, wanted)
@@ -184,17 +175,13 @@ class ScorePanel(Panel):
         for table, parts in ((ui.ctpsTable, ctps), (ui.motionTable, motion)):
             fillTable(table, [(row.title, row.text) for row in parts], [row.note for row in parts])
         setText(ui.ctpsText, CTPS_WARNING if ctps else "")
-        comparisons = [
-            (
-                f"{each.title} ({each.unit})" if each.unit else each.title,
-                fixed(each.value, 2),
-                each.group,
-                str(each.count),
-                fixed(each.median, 2),
-                f"{100 * each.betterThan:.0f} %",
+        comparisons = []
+        for each in beside:
+            title = f"{each.title} ({each.unit})" if each.unit else each.title
+            group = each.group, str(each.count), fixed(each.median, 2)
+            comparisons.append(
+                (title, fixed(each.value, 2), *group, f"{100 * each.betterThan:.0f} %")
             )
-            for each in beside
-        ]
         fillTable(ui.standingsTable, comparisons)
         # Once for each trial, so that messages about an export or a report stay.
         if trialId != self._named:
@@ -239,8 +226,6 @@ class ScorePanel(Panel):
 def _title(trial: StoredTrial | None) -> str:
     if trial is None:
         return _("Choose a trainee with a scored trial.")
-    return _("{trainee}, {task}, {mode}").format(
-        trainee=trial.record.trainee,
-        task=task_title(trial.record.task),
-        mode=short_mode_title(trial.record.mode),
-    )
+    trainee, task, mode = trial.record.trainee, trial.record.task, trial.record.mode
+    text = _("{trainee}, {task}, {mode}")
+    return text.format(trainee=trainee, task=task_title(task), mode=short_mode_title(mode))

@@ -17,8 +17,7 @@ from rastrainer.errors import InputError
 from rastrainer.journal.folder import FolderHolder, read_holder
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.program.child_process import KILL_AFTER_S, SLICER, runChild
-from rastrainer.slicer.program.process_group import endProcess
+from rastrainer.slicer.program.child_process import KILL_AFTER_S, SLICER, endProcess, runChild
 from rastrainer.slicer.program.simulator_program import ProgramState, SimulatorProgram
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from rastrainer.slicer.settings import PROGRAM, Settings

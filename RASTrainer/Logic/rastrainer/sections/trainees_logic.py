@@ -47,10 +47,9 @@ class TraineeLogic:
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """`openPatiently` opens the study in any thread, which may wait for a lock."""
-        self._openPatiently = openPatiently or openStudy
         self.changed = Signal()
         self.chosen = ""
-        self._openStudy = openStudy
+        self._openStudy, self._openPatiently = openStudy, openPatiently or openStudy
         self._records = records
         self._study: Study | None = None
         self._clock = clock

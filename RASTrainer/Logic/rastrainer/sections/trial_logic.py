@@ -41,11 +41,7 @@ from rastrainer.study.delivered_trial import (
     store_delivered,
     with_progress,
 )
-from rastrainer.trial.analysis import (
-    RevealedTruth,
-    TrialAnalysis,
-    score_arguments,
-)
+from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, score_arguments
 from rastrainer.trial.record import AbortedTrial, TrialRecord
 from rastrainer.trial.trial_row import TrialRow
 
@@ -195,9 +191,8 @@ class TrialLogic(Listening):
 
     def _store(self, delivery: Delivery) -> tuple[TrialRecord, TrialAnalysis | InputError | None]:
         isUnderWay = str(delivery.get("trialId")) in self._beingScored
-        return self._services.inStudy(
-            lambda s: store_delivered(delivery, s, self._analyze, isUnderWay)
-        )
+        analyze = self._analyze
+        return self._services.inStudy(lambda s: store_delivered(delivery, s, analyze, isUnderWay))
 
     def _accept(self, record: TrialRecord, analysis: TrialAnalysis | InputError | None) -> None:
         """Score a trial that is stored and acknowledged."""
@@ -303,17 +298,11 @@ class TrialLogic(Listening):
     def _storeScore(
         self, analysis: TrialAnalysis, truth: RevealedTruth, journal: bytes | None
     ) -> TrialAnalysis:
-        record = analysis.record
-        with self._services.openStudy() as study:
-            scored = self._services.runWanted(
-                SCORE,
-                analysis,
-                truth,
-                self._services.findScenario(record.scenario),
-                score_references(study),
-                self._services.records,
-                journal,
-            )
+        record, services = analysis.record, self._services
+        with services.openStudy() as study:
+            scenario, records = services.findScenario(record.scenario), services.records
+            given = analysis, truth, scenario, score_references(study), records, journal
+            scored = services.runWanted(SCORE, *given)
             study.add_results(record.trial_id, score=scored.score, procedure=scored.procedure)
             return with_progress(scored, study)
 

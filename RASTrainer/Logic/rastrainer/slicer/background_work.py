@@ -30,7 +30,6 @@ CallLater = Callable[[Callable[[], object]], None]
 
 
 def callNow(function: Callable[[], object]) -> None:
-    """Call a function at once, where there are no turns."""
     function()
 
 
@@ -150,7 +149,6 @@ class BackgroundWork:
         self.later(lambda: change() if count == self._clearedCount else None)
 
     def forgetScene(self) -> None:
-        """Drop the postponed changes: the scene was cleared."""
         self._clearedCount += 1
 
     def yieldTime(self) -> None:

@@ -21,7 +21,6 @@ class Signal:
         self.listeners.append(listener)
 
     def disconnect(self, listener: Callable[..., Any]) -> None:
-        """Stop calling `listener`, if it is connected."""
         if listener in self.listeners:
             self.listeners.remove(listener)
 
@@ -61,6 +60,5 @@ class ErrorGuard:
             return None
 
     def emit(self, what: str, signal: Signal, *values: Any) -> None:
-        """Call every listener of a signal, even if some fail."""
         for listener in tuple(signal.listeners):
             self.run(what, listener, *values)

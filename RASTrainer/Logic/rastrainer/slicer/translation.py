@@ -22,7 +22,6 @@ else:
     _known: dict[tuple[str, str], str] = {}
 
     def _(text: str) -> str:
-        """Return the text in the language of Slicer."""
         key = (sys._getframe(1).f_code.co_filename, text)
         if key not in _known:
             translated = translate(getContext(key[0]), text)

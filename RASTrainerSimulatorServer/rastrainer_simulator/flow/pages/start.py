@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from concurrent.futures import Future
 from functools import partial
 
 from rastrainer_simulator.flow.pages.controls import controls_page
@@ -19,7 +20,7 @@ from rastrainer_simulator.flow.session.preferences import (
 )
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import InputDevice
-from rastrainer_simulator.ops.instructor_pin import LONGEST_PIN, SHORTEST_PIN
+from rastrainer_simulator.ops.instructor_pin import LONGEST_PIN, SHORTEST_PIN, PinAnswer
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 
 
@@ -105,12 +106,13 @@ class PinPage(SessionPage):
     def __init__(self, session: TrainingSession) -> None:
         super().__init__(session)
         self._pin = ""
+        self._asked: Future[PinAnswer] | None = None
 
     def content(self) -> PageContent:
         is_whole = len(self._pin) >= SHORTEST_PIN
         unlock = self.button(
             "unlock",
-            lambda: self.session.lock.guess(self._pin),
+            self._ask,
             value="•" * len(self._pin) + "_",
             is_enabled=is_whole,
             help="" if is_whole else self.say("pin.too short"),
@@ -134,23 +136,24 @@ class PinPage(SessionPage):
 
     def advance(self, dt: float) -> None:  # noqa: ARG002
         """Unlock and go back, or say why not, once the PIN has been checked."""
-        session, answer = self.session, None
-        with session.complaining():
-            answer = session.lock.take_answer()
-        if answer is None:
+        asked, session = self._asked, self.session
+        if asked is None or not asked.done():
             return
-        self._pin = ""
-        if answer.is_right:
-            session.notices.add(self.say("pin.unlocked"))
-            self.back()
-        elif answer.wait_s > 0.0:
-            session.complain(self.say("pin.wait", seconds=math.ceil(answer.wait_s)))
-        else:
-            session.complain(self.say("pin.wrong"))
+        self._asked = None
+        with session.complaining():
+            answer = asked.result()
+            self._pin = ""
+            session.lock.is_open = answer.is_right
+            if answer.is_right:
+                session.notices.add(self.say("pin.unlocked"))
+                self.back()
+            elif answer.wait_s > 0.0:
+                session.complain(self.say("pin.wait", seconds=math.ceil(answer.wait_s)))
+            else:
+                session.complain(self.say("pin.wrong"))
 
-    def closed(self) -> None:
-        self._pin = ""
-        self.session.lock.forget_guess()
+    def _ask(self) -> None:
+        self._asked = self._asked or self.session.lock.check(self._pin)
 
     def _type(self, digit: str) -> None:
         """Add a digit; "" deletes the last one."""

@@ -15,7 +15,7 @@ from rastrainer.protocol import (
     TutorialRule,
 )
 from rastrainer.scenario.scenario import method_of, playable_methods
-from rastrainer.study_messages import AssignmentStanding
+from rastrainer.study_messages import AssignmentStanding, StudyStep
 from rastrainer_simulator.flow.session.session import TrainingSession
 
 FIRST_ID = "trainee-1"
@@ -25,12 +25,16 @@ _ARROW_TASKS = 2
 
 
 def start_task(session: TrainingSession, task: str) -> None:
-    start = {"task": task, "trainee": session.trainee_id, "mode": session.mode}
-    method = registration_method(session, task).value
-    chosen = {"procedure": procedure_of(session, task), "method": method}
-    step = session.step
-    skin = {"skin": dict(step.skin)} if step is not None and step.skin else {}
-    session.do(CommandName.START_TASK, {**start, **chosen, **skin})
+    start: dict[str, object] = {
+        "task": task,
+        "trainee": session.trainee_id,
+        "mode": session.mode,
+        "procedure": procedure_of(session, task),
+        "method": registration_method(session, task).value,
+    }
+    if session.step is not None and session.step.skin:
+        start["skin"] = dict(session.step.skin)
+    session.do(CommandName.START_TASK, start)
 
 
 def procedure_of(session: TrainingSession, task: str) -> str:
@@ -85,24 +89,24 @@ def begin_ghost(session: TrainingSession, head_to_world: np.ndarray) -> None:
 
 def obstacle(session: TrainingSession, task: str) -> str:
     """Return why the trainee cannot start a task; "" if nothing prevents it."""
-    unready = _unready(session)
-    if unready:
+    step, curriculum = session.step, session.curriculum
+    if unready := _unready(session):
         return unready
-    step = session.step
     if step is not None:
         is_asked = step.is_played and (step.task, step.mode) == (task, session.mode)
-        if not is_asked:
-            return session.texts.say("experiment.study", step=session.step_sentence(step))
-        return _tutorial_first(session, task)
-    curriculum = session.curriculum
+        return _tutorial_first(session, task) if is_asked else _not_now(session, step)
+    if curriculum is None:
+        return _missing_before(session, task, is_assigned=False)
     method, procedure = registration_method(session, task).value, procedure_of(session, task)
-    played_as = (session.mode, method, procedure)
-    assigned = () if curriculum is None else curriculum.assignments
-    head = session.scenario.name
-    own = [each for each in assigned if each.is_played_as(head, task, *played_as)]
-    if curriculum is not None and own and all(each.state is AssignmentState.LOCKED for each in own):
+    played_as = (session.scenario.name, task, session.mode, method, procedure)
+    own = [each for each in curriculum.assignments if each.is_played_as(*played_as)]
+    if own and all(each.state is AssignmentState.LOCKED for each in own):
         return session.assignment_texts.gate(curriculum, own[0])
     return _missing_before(session, task, is_assigned=bool(own))
+
+
+def _not_now(session: TrainingSession, step: StudyStep) -> str:
+    return session.texts.say("experiment.study", step=session.step_sentence(step))
 
 
 def assignment_obstacle(session: TrainingSession, each: AssignmentStanding) -> str:
@@ -151,16 +155,11 @@ def tutorial_obstacle(session: TrainingSession) -> str:
 
     In a study it is practice, and comes where the study has it: before a trial run, once.
     """
-    unready = _unready(session)
-    if unready:
+    step, unready = session.step, _unready(session)
+    if unready or step is None:
         return unready
-    step = session.step
-    if step is None:
-        return ""
     is_asked = step.kind == StepKind.TRIAL_RUN and step.mode == session.mode
-    if is_asked and not has_learned(session):
-        return ""
-    return session.texts.say("experiment.study", step=session.step_sentence(step))
+    return "" if is_asked and not has_learned(session) else _not_now(session, step)
 
 
 def _unready(session: TrainingSession) -> str:

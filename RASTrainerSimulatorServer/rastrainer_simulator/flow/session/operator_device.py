@@ -24,28 +24,21 @@ SHOW, TILT = "sticks", "tilt"
 
 
 class OperatorDevice:
-    """The device of the holder of control, or the likely one before anyone has it.
-
-    Attributes:
-        layouts: labels of the keys of each view, by their W3C codes.
-        screen_sticks: those that views draw for a mouse.
-    """
+    """The device of the holder of control, or the likely one before anyone has it."""
 
     def __init__(self, controls: Controls, texts: Texts) -> None:
         self.controls = controls
         self.texts = texts
+        # The labels of the keys of each view, by their W3C codes.
         self.layouts: dict[int, Mapping[str, str]] = {}
         self.screen_sticks = ScreenSticks()
 
     @property
     def kind(self) -> InputDevice:
         """The device in use; before anyone acts, a gamepad if there is one."""
-        holder = self.controls.holder
-        if holder is None:
-            has_pad = self.controls.has_gamepad
-        else:
-            has_pad = holder.kind not in (SourceKind.KEYBOARD, SourceKind.MOUSE)
-        return InputDevice.GAMEPAD if has_pad else InputDevice.KEYBOARD
+        has_keys = self.is_one_of(SourceKind.KEYBOARD, SourceKind.MOUSE)
+        is_free = self.controls.holder is None and not self.controls.has_gamepad
+        return InputDevice.KEYBOARD if has_keys or is_free else InputDevice.GAMEPAD
 
     def learned(self, mode: str) -> SourceKind:
         """Return the device that drives the arm, if it has its own controls to be learned."""
@@ -64,9 +57,7 @@ class OperatorDevice:
 
     @property
     def picture(self) -> ControlsPicture:
-        if self.is_one_of(SourceKind.XR):
-            return "controllers"
-        return "gamepad" if self.kind is InputDevice.GAMEPAD else "keyboard"
+        return "controllers" if self.is_one_of(SourceKind.XR) else self.kind.value
 
     def is_one_of(self, *kinds: SourceKind) -> bool:
         holder = self.controls.holder
@@ -81,8 +72,7 @@ class OperatorDevice:
             return self.texts.say(own)
         if self.steers_by_mouse:
             # The sticks of a gamepad with its default bindings.
-            name = DEFAULT_BINDINGS.gamepad[control][0]
-            return self.input_label(InputDevice.GAMEPAD, name)
+            return self.input_label(InputDevice.GAMEPAD, DEFAULT_BINDINGS.gamepad[control][0])
         return self.input_label(self.kind, self.controls.bindings.table(self.kind)[control][0])
 
     def pair_label(self, first: ControlName, second: ControlName) -> str:

@@ -129,8 +129,7 @@ class InstructorLock:
     def __init__(self, pin: InstructorPin | None) -> None:
         """Lock by a PIN, which may be set and removed at any time; None locks nothing."""
         self._pin = pin
-        self._is_open = False
-        self._asked: Future[PinAnswer] | None = None
+        self.is_open = False
         self._seen = ("", "", False)
 
     @property
@@ -139,29 +138,18 @@ class InstructorLock:
 
     @property
     def is_locked(self) -> bool:
-        return self.has_pin and not self._is_open
+        return self.has_pin and not self.is_open
 
-    def guess(self, pin: str) -> None:
-        """Have a PIN checked, outside of this thread: that takes about 50 ms."""
-        if self._pin is not None and self._asked is None:
-            worker = ThreadPoolExecutor(1, "instructor-pin")
-            self._asked = worker.submit(self._pin.guess, pin)
-            worker.shutdown(wait=False)
-
-    def take_answer(self) -> PinAnswer | None:
-        """Return the outcome of the guess, once, and unlock if it was right; None before."""
-        if self._asked is None or not self._asked.done():
-            return None
-        asked, self._asked = self._asked, None
-        answer = asked.result()
-        self._is_open = answer.is_right
+    def check(self, pin: str) -> Future[PinAnswer]:
+        """Check a PIN outside of this thread: that takes about 50 ms."""
+        assert self._pin is not None, "only a lock with a PIN asks for one"
+        worker = ThreadPoolExecutor(1, "instructor-pin")
+        answer = worker.submit(self._pin.guess, pin)
+        worker.shutdown(wait=False)
         return answer
 
-    def forget_guess(self) -> None:
-        self._asked = None
-
     def lock(self) -> None:
-        self._is_open = False
+        self.is_open = False
 
     def follow(self, trainee: str, trial_id: str, has_tutorial: bool) -> None:
         """Note the trainee, the trial, "" for none, and whether a tutorial is open."""

@@ -33,7 +33,7 @@ from rastrainer_simulator.flow.session.services import FlowServices, SimulationR
 from rastrainer_simulator.flow.session.trace_places import TracePlaces
 from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
 from rastrainer_simulator.flow.session.trial_view import TrialView
-from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
+from rastrainer_simulator.flow.session.tutorial import Tutorial
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, Bindings, write_bindings
 from rastrainer_simulator.input.controls import Controls
 from rastrainer_simulator.loop.control_loop import ControlLoop
@@ -84,12 +84,9 @@ class TrainingSession:
         self.preferences = preferences
         self.texts = Texts(LANGUAGES[preferences.language])
         self.history = TraineeHistory(services.records)
+        scoring = control_loop.submit, services.records, services.is_slicer_connected
         self.local_scorer = (
-            LocalScorer(
-                control_loop.submit, services.records, services.is_slicer_connected, self.history.of
-            )
-            if services.scores_alone
-            else None
+            LocalScorer(*scoring, self.history.of) if services.scores_alone else None
         )
         self.happened = happened
         self.pages = OpenPages(happened)
@@ -305,10 +302,8 @@ class TrainingSession:
 
     def preparing(self) -> str:
         share = self.picture_share
-        if share is None:
-            return ""
-        key = "preparing.loaded" if share > 0.0 else "preparing.built"
-        return self.texts.say(key, share=100.0 * share)
+        key = "preparing.loaded" if share else "preparing.built"
+        return "" if share is None else self.texts.say(key, share=100.0 * share)
 
     def step_sentence(self, step: StudyStep) -> str:
         asked = QUESTIONNAIRES.get(step.questionnaire)

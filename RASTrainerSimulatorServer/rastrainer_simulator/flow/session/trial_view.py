@@ -39,25 +39,20 @@ from rastrainer_simulator.viewpoint.view_control import (
 
 
 class TrialView:
-    """The viewpoint of the pictures of the present trial, and what the sticks mean from there.
-
-    Attributes:
-        stick_turn_deg: turn of the sticks' right and forward against the scenario's camera,
-            counterclockwise from above.
-        is_best_wanted: whether to go to the best view of the next point for the arm as it stands
-            now, once it is found.
-        yaw_deg: where the eyes look, degrees from World's x; None without a headset's controllers.
-    """
+    """The viewpoint of the pictures of the present trial, and what the sticks mean from there."""
 
     def __init__(self) -> None:
         self.control = ViewControl()
+        # The sticks' right and forward are turned so far from the scenario's camera.
         self.stick_turn_deg = 0.0
+        # Where the eyes look, from World's x; None without a headset's controllers.
         self.yaw_deg: float | None = None
         self._best = BestViews()
         self._trial_id = ""
         self._search: tuple[str, Future[BestView | None]] | None = None
         self._found: tuple[str, BestView | None] | None = None
         self._went_for: str | None = None
+        # Whether to go to the best view for the arm as it stands now, once it is found.
         self.is_best_wanted = False
 
     def begin(self, setup: SimulationSetup, truth: Truth, state: SimulationState) -> None:
@@ -130,10 +125,8 @@ class TrialView:
         here, before they are recorded: a trial is simulated again as it was.
         """
         self.yaw_deg = yaw_deg
-        if yaw_deg is None:
-            self.stick_turn_deg = self.control.orbit.azimuth_deg
-        else:
-            self.stick_turn_deg = yaw_deg - heading_deg(camera)
+        azimuth_deg = self.control.orbit.azimuth_deg
+        self.stick_turn_deg = azimuth_deg if yaw_deg is None else yaw_deg - heading_deg(camera)
         return turned(sticks, self.stick_turn_deg) if axes is AxesChoice.CAMERA else sticks
 
     def _is_open(self, state: SimulationState) -> bool:

@@ -55,7 +55,6 @@ class OutgoingQueue:
         self.bytes += len(data)
 
     def put_latest(self, key: tuple[str, str], data: bytes) -> None:
-        """Replace what waits under the same key."""
         self.bytes += len(data) - len(self._latest.get(key, b""))
         self._latest[key] = data
 

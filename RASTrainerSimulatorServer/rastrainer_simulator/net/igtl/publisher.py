@@ -75,7 +75,6 @@ def tips(state: SimulationState, seq: int) -> tuple[Message, ...]:
 
 
 def links(state: SimulationState, seq: int) -> tuple[Message, ...]:
-    """Return the poses of the robot's links 0 to 7."""
     metadata = {"seq": str(seq)}
     return tuple(
         Message(device, _transform(pose), metadata)
@@ -144,7 +143,6 @@ def sim_state(changing: Mapping[str, Any], state: SimulationState, seq: int) -> 
 
 
 def _transform(pose: np.ndarray) -> Transform:
-    """Return a (4, 4) float pose (m) as a transform (mm)."""
     *axes, x, y, z = pose[:3].T.ravel().tolist()
     return Transform((*axes, MM_PER_M * x, MM_PER_M * y, MM_PER_M * z))
 

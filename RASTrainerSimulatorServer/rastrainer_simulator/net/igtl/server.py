@@ -97,7 +97,6 @@ class ClientConnection(asyncio.BufferedProtocol):
             self._transport.abort()
 
     def finish(self) -> None:
-        """End the connection once the peer has taken what still waits."""
         self._flush()
         if self._open_transport is not None:
             self._open_transport.close()
@@ -153,7 +152,6 @@ class ClientConnection(asyncio.BufferedProtocol):
                 )
 
     def pause_writing(self) -> None:
-        """Give the peer some seconds to read on."""
         self._is_paused = True
         self._drop_slow = self._loop.call_later(
             self._owner.limits.slow_client_s,

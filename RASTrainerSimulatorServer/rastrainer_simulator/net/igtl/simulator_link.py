@@ -104,7 +104,6 @@ class CommandHandler:
         self._submit_waiting(connection, queue)
 
     def forget(self, connection: ClientConnection) -> None:
-        """Drop the waiting commands of a client that has left."""
         self._queues.pop(connection, None)
 
     def _submit_waiting(self, connection: ClientConnection, queue: _CommandQueue) -> None:

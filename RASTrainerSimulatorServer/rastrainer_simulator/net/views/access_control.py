@@ -114,7 +114,7 @@ def _new_code() -> str:
 COOKIE = "rastrainer-view"
 PAIR_FIRST = "Pair first: POST /pair with the code that the simulator shows."
 BODY_S = 5.0
-_BEARER = "Bearer "
+BEARER = "Bearer "
 ROLE = web.RequestKey("role", ViewRole)
 """Where a request that has passed has the role of its key."""
 WRONG_HOST = "The simulator is not known under this name: use its address."
@@ -146,14 +146,6 @@ def is_public(request: web.Request) -> bool:
     return isinstance(resource, web.StaticResource) or (
         resource is not None and resource.canonical in ("/", "/pair")
     )
-
-
-def session_key(request: web.Request) -> str:
-    """Return the key that a request shows, "" for none."""
-    authorization = request.headers.get(hdrs.AUTHORIZATION, "")
-    if authorization.startswith(_BEARER):
-        return authorization.removeprefix(_BEARER)
-    return request.cookies.get(COOKIE, "")
 
 
 async def read_body(request: web.Request, kind: type[T]) -> T:

@@ -10,7 +10,7 @@ import ssl
 from collections.abc import Sequence
 from pathlib import Path
 
-from aiohttp import web
+from aiohttp import hdrs, web
 from aiohttp.http_exceptions import HttpProcessingError
 from aiohttp.typedefs import Handler
 
@@ -18,6 +18,7 @@ from rastrainer.errors import InputError
 from rastrainer_simulator.assets import NOT_BUILT
 from rastrainer_simulator.net.listener import listen
 from rastrainer_simulator.net.views.access_control import (
+    BEARER,
     COOKIE,
     PAIR_FIRST,
     ROLE,
@@ -31,7 +32,6 @@ from rastrainer_simulator.net.views.access_control import (
     is_public,
     read_body,
     refuse_for,
-    session_key,
 )
 from rastrainer_simulator.presentation.messages import PairingRequest, ViewRole
 
@@ -78,13 +78,20 @@ class GuardedServer:
         )
         self._listening: list[asyncio.Server] = []
 
-    async def listen(self, host: str, port: int, tls: ssl.SSLContext | None = None) -> int:
-        """Listen, by TLS where there is a certificate; return on which port, 0 is any free one."""
+    async def listen(
+        self, host: str, port: int, tls: ssl.SSLContext | None = None, or_any: bool = False
+    ) -> int:
+        """Listen, by TLS where there is a certificate, and return on which port.
+
+        0 is any free one, as is another port that is taken with `or_any`.
+        """
         if self._runner.server is None:
             await self._runner.setup()
         try:
             servers = await listen(self._protocol, host, port, tls, HANDSHAKE_S)
         except (OSError, OverflowError) as error:
+            if or_any:
+                return await self.listen(host, 0, tls)
             raise InputError(f"Cannot listen on {host}:{port}: {error}.") from None
         self._listening += servers
         return servers[0].sockets[0].getsockname()[1]
@@ -118,9 +125,11 @@ class GuardedServer:
 
     @web.middleware
     async def _check(self, request: web.Request, handler: Handler) -> web.StreamResponse:
-        """Refuse requests from other origins or without a session's key."""
         check_origin(request)
-        role = self._sessions.role(session_key(request))
+        key = request.headers.get(hdrs.AUTHORIZATION, "")
+        is_bearer = key.startswith(BEARER)
+        key = key.removeprefix(BEARER) if is_bearer else request.cookies.get(COOKIE, "")
+        role = self._sessions.role(key)
         if role is not None:
             request[ROLE] = role
             self._roles[request.protocol] = role

@@ -153,7 +153,6 @@ class JoinedViews:
                 board.outbox.put_latest(SeatNews.type, text)
 
     def _send_all(self, view: ViewSocket) -> None:
-        """Send a view that has just joined the present state."""
         now = self._source.latest
         self._look_for_scene(now)
         put = view.outbox.put_latest

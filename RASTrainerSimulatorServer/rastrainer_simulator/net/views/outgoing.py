@@ -189,7 +189,11 @@ class TraceUpdate:
         pairs = enumerate(zip(self._points, points, strict=False))
         changed = (number for number, (old, new) in pairs if old is not new and old != new)
         known = next(changed, min(len(self._points), len(points)))
-        new = _in_head([point.seen for point in points[known:]], now.head_to_world)
+        new: tuple[Vector, ...] = ()
+        if points[known:]:
+            pose = now.head_to_world
+            away = np.array([point.seen for point in points[known:]]) - pose[:3, 3]
+            new = tuple(map(vector, np.round(MM_PER_M * away @ pose[:3, :3], 2).tolist()))
         self._points, self._guidance = points, wanted
         self._places = (*self._places[:known], *new)
         return TraceNews(known, new, wanted.covered_mm, wanted.next_place)
@@ -200,11 +204,3 @@ class TraceUpdate:
             return None
         guidance = self._guidance
         return TraceNews(0, self._places, guidance.covered_mm, guidance.next_place)
-
-
-def _in_head(places: Sequence[Sequence[float]], head_to_world: np.ndarray) -> tuple[Vector, ...]:
-    """Return places (World, m) in the head's frame, mm."""
-    if not places:
-        return ()
-    away = np.array(places) - head_to_world[:3, 3]
-    return tuple(map(vector, np.round(MM_PER_M * away @ head_to_world[:3, :3], 2).tolist()))

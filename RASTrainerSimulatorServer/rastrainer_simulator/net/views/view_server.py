@@ -8,7 +8,7 @@ import gzip
 import socket
 import ssl
 from collections import Counter
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable
 from pathlib import Path
 
 from aiohttp import WSCloseCode, WSMsgType, web
@@ -58,10 +58,7 @@ ONLY_WATCHES = f"This key only watches: the kind of the view must be {' or '.joi
 class ViewServer:
     """Serves the page, the scene, the sounds, pictures of scenarios and the stream.
 
-    Attributes:
-        code: pairs a view; to be shown to people, and sent to this computer's own views.
-        addresses: where browsers find the page, such as "http://127.0.0.1:18945".
-        port: where it listens; 0 before it does.
+    Browsers find the page at its `addresses`, such as "http://127.0.0.1:18945".
     """
 
     def __init__(
@@ -112,7 +109,7 @@ class ViewServer:
         is any free one, None the usual one or, where that is taken, any free one.
         """
         usual = DEFAULT_VIEW_PORT if port is None else port
-        local = await _or_any_port(lambda one: self.listen(DEFAULT_HOST, one), usual, port is None)
+        local = await self.listen(DEFAULT_HOST, usual, or_any=port is None)
         where = f"http://{DEFAULT_HOST}:{local}"
         self._announce(f"serves views on {where}, pairing code {self.code.code}")
         if certificates is None:
@@ -120,9 +117,7 @@ class ViewServer:
         from rastrainer_simulator.net.views.certificate import own_addresses, own_certificate
 
         certificate = await asyncio.to_thread(own_certificate, certificates)
-        found = await _or_any_port(
-            lambda one: self.listen_in_network(one, certificate.tls), local + 1, True
-        )
+        found = await self.listen_in_network(local + 1, certificate.tls)
         addresses = [address for address in own_addresses() if ":" not in address]
         pages = [f"https://{name}:{found}" for name in addresses or [socket.gethostname()]]
         self.add_addresses(*pages)
@@ -135,16 +130,16 @@ class ViewServer:
             f"http://localhost:{local} in its browser"
         )
 
-    async def listen(self, host: str, port: int) -> int:
-        self.port = await self._http.listen(host, port)
+    async def listen(self, host: str, port: int, or_any: bool = False) -> int:
+        self.port = await self._http.listen(host, port, or_any=or_any)
         self.add_addresses(f"http://{host}:{self.port}")
         feed = StateFeed(self._views.is_due, self._views.tell, asyncio.get_running_loop())
         self._unsubscribe = self._source.subscribe(feed)
         return self.port
 
     async def listen_in_network(self, port: int, tls: ssl.SSLContext) -> int:
-        """Listen to other computers, too, by TLS only; return on which port."""
-        return await self._http.listen("0.0.0.0", port, tls)
+        """Listen to other computers, too, by TLS only; on any port if that one is taken."""
+        return await self._http.listen("0.0.0.0", port, tls, or_any=True)
 
     def add_addresses(self, *addresses: str) -> None:
         """Send this computer's views where else browsers find the page."""
@@ -248,13 +243,3 @@ def _limit_buffering(request: web.Request) -> None:
 async def _send_role(request: web.Request) -> web.Response:
     """Return to a browser, which cannot read its cookie, the role it was paired for."""
     return fresh_json({"role": request[ROLE].value})
-
-
-async def _or_any_port(listen: Callable[[int], Awaitable[int]], port: int, or_any: bool) -> int:
-    """Listen on a port or, where that is taken and another will do, on any free one."""
-    try:
-        return await listen(port)
-    except InputError:
-        if not or_any:
-            raise
-        return await listen(0)

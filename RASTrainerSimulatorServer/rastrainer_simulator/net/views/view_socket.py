@@ -83,7 +83,6 @@ class ViewSocket:
         self._has_reported_frames = False
 
     async def serve(self) -> None:
-        """Send and receive until either side ends it."""
         sending = asyncio.create_task(self._send())
         try:
             await self._receive()
@@ -219,7 +218,6 @@ class Outbox:
         self._is_filled.set()
 
     def put_event(self, text: str) -> None:
-        """Send a text after all previous texts."""
         if len(self._events) >= MAX_WAITING_EVENTS:
             self.is_overfull = True
         else:

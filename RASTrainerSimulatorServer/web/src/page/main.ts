@@ -10,14 +10,7 @@ import { Ghost } from "../scene/ghost";
 import { Gamepads } from "../input/gamepads";
 import { Keyboard } from "../input/keyboard";
 import {
-  TONES,
-  type ControlNews,
-  type Feedback,
-  type Hello,
-  type News,
-  type SceneNews,
-  type Screen,
-  type StateNews,
+  BANNERS, TONES, type ControlNews, type Feedback, type Hello, type News, type SceneNews, type Screen, type StateNews,
 } from "../generated";
 import { isSoftware } from "../scene/graphics";
 import { hasGuide, isTouchError } from "../stream/stages";
@@ -342,7 +335,9 @@ function browserName(): string {
   return /(Firefox|Edg|OPR|Chrome|Safari)\/\d+/.exec(navigator.userAgent)?.[0] ?? "";
 }
 
-for (const [tone, color] of Object.entries(TONES)) document.documentElement.style.setProperty(`--${tone}`, color);
+for (const [prefix, colors] of [["--", TONES], ["--banner-", BANNERS]] as const) {
+  for (const [tone, color] of Object.entries(colors)) document.documentElement.style.setProperty(prefix + tone, color);
+}
 const page = new Page();
 /** For measurements from outside; the page itself makes no use of it. */
 (window as unknown as { page: Page }).page = page;

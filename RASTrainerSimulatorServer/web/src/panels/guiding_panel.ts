@@ -1,19 +1,8 @@
 /** The bull's-eye along the guide's axis, or the depth ruler, on a canvas: flat, or in the room. */
 
 import {
-  BULLS_EYE_FARTHEST_MM,
-  BULLS_EYE_NEAR_MM,
-  BULLS_EYE_RADIUS,
-  BULLS_EYE_RINGS_MM,
-  ENTRY_DOT,
-  ON_LINE_DEG,
-  ON_LINE_MM,
-  RULER_BEYOND_MM,
-  RULER_TICK_MM,
-  TARGET_RING,
-  TONES,
-  type GuideAim,
-  type DepthRuler,
+  BULLS_EYE_FARTHEST_MM, BULLS_EYE_NEAR_MM, BULLS_EYE_RADIUS, BULLS_EYE_RINGS_MM, ENTRY_DOT, ON_LINE_DEG, ON_LINE_MM,
+  RULER_BEYOND_MM, RULER_TICK_MM, TARGET_RING, TONES, type GuideAim, type DepthRuler,
 } from "../generated";
 import { figure } from "../texts";
 import { COLORS, Pen } from "./pen";

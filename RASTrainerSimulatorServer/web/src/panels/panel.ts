@@ -1,13 +1,7 @@
 /** A panel in the room: a canvas on a rectangle. */
 
 import {
-  CanvasTexture,
-  LinearFilter,
-  LinearMipmapLinearFilter,
-  Mesh,
-  MeshBasicMaterial,
-  PlaneGeometry,
-  SRGBColorSpace,
+  CanvasTexture, LinearFilter, LinearMipmapLinearFilter, Mesh, MeshBasicMaterial, PlaneGeometry, SRGBColorSpace,
 } from "three";
 
 const ANISOTROPY = 4;

@@ -1,12 +1,6 @@
 /** Keeps the picture of what stands still, color and depth: only what moves is drawn each time. */
 
-import {
-  type Camera,
-  type Scene,
-  SRGBColorSpace,
-  type WebGLRenderer,
-  WebGLRenderTarget,
-} from "three";
+import { type Camera, type Scene, SRGBColorSpace, type WebGLRenderer, WebGLRenderTarget } from "three";
 
 /** Layer of what stands still. XR uses 1 and 2 for the eyes. */
 export const STATIC = 3;

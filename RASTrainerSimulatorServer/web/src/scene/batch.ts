@@ -1,13 +1,7 @@
 /** Fewer, larger meshes: what moves together is drawn in one go, its colors kept per vertex. */
 
 import {
-  BufferAttribute,
-  Color,
-  Mesh,
-  MeshBasicMaterial,
-  MeshLambertMaterial,
-  MeshStandardMaterial,
-  type BufferGeometry,
+  BufferAttribute, Color, Mesh, MeshBasicMaterial, MeshLambertMaterial, MeshStandardMaterial, type BufferGeometry,
   type Object3D,
 } from "three";
 import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";

@@ -1,17 +1,8 @@
 /** The errors of the touches as arrows on the head, and the names of checkpoints. */
 
 import {
-  CanvasTexture,
-  CylinderGeometry,
-  Group,
-  Mesh,
-  MeshBasicMaterial,
-  SphereGeometry,
-  Sprite,
-  SpriteMaterial,
-  SRGBColorSpace,
-  Vector3,
-  type Object3D,
+  CanvasTexture, CylinderGeometry, Group, Mesh, MeshBasicMaterial, SphereGeometry, Sprite, SpriteMaterial,
+  SRGBColorSpace, Vector3, type Object3D,
 } from "three";
 
 import { ARROW_BALL_M, ARROW_RADIUS_M, TONES, type ErrorArrow } from "../generated";

@@ -1,16 +1,8 @@
 /** The scene that the simulator made: loaded, batched, moved and colored as its state says. */
 
 import {
-  BufferAttribute,
-  Color,
-  Group,
-  Mesh,
-  MeshBasicMaterial,
-  MeshLambertMaterial,
-  MeshStandardMaterial,
-  Vector3,
-  type Material,
-  type Object3D,
+  BufferAttribute, Color, Group, Mesh, MeshBasicMaterial, MeshLambertMaterial, MeshStandardMaterial, Vector3,
+  type Material, type Object3D,
 } from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 

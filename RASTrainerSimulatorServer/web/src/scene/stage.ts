@@ -1,16 +1,8 @@
 /** Renderer, light and the scene that is shown. */
 
 import {
-  Color,
-  DirectionalLight,
-  HemisphereLight,
-  NeutralToneMapping,
-  Object3D,
-  PCFShadowMap,
-  PMREMGenerator,
-  Scene,
-  WebGLRenderer,
-  Mesh,
+  Color, DirectionalLight, HemisphereLight, NeutralToneMapping, Object3D, PCFShadowMap, PMREMGenerator, Scene,
+  WebGLRenderer, Mesh,
 } from "three";
 import { RoomEnvironment } from "three/addons/environments/RoomEnvironment.js";
 

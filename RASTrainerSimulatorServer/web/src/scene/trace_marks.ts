@@ -1,26 +1,12 @@
 /** The trace on the skin: marks, paint around them, and a ring where to draw next. */
 
 import {
-  BufferAttribute,
-  Color,
-  Group,
-  InstancedMesh,
-  Matrix4,
-  Mesh,
-  MeshBasicMaterial,
-  OctahedronGeometry,
-  RingGeometry,
+  BufferAttribute, Color, Group, InstancedMesh, Matrix4, Mesh, MeshBasicMaterial, OctahedronGeometry, RingGeometry,
   Vector3,
 } from "three";
 
 import {
-  FULL_PAINT_SHARE,
-  MAX_TRACE_POINTS,
-  TRACE_LIFT_M,
-  TRACE_MARK_M,
-  TRACE_RIM_M,
-  TRACE_RING_M,
-  TRACE_RING_SIDES,
+  FULL_PAINT_SHARE, MAX_TRACE_POINTS, TRACE_LIFT_M, TRACE_MARK_M, TRACE_RIM_M, TRACE_RING_M, TRACE_RING_SIDES,
   type TraceNews,
 } from "../generated";
 import { COLORS, type SceneModel } from "./scene_model";

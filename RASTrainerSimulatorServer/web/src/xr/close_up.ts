@@ -1,14 +1,7 @@
 /** A magnified picture in the room: along the skin where a touch is to be judged, else of the tool's tip. */
 
 import {
-  LinearFilter,
-  Mesh,
-  MeshBasicMaterial,
-  PerspectiveCamera,
-  PlaneGeometry,
-  SRGBColorSpace,
-  Vector3,
-  WebGLRenderTarget,
+  LinearFilter, Mesh, MeshBasicMaterial, PerspectiveCamera, PlaneGeometry, SRGBColorSpace, Vector3, WebGLRenderTarget,
   type Object3D,
 } from "three";
 

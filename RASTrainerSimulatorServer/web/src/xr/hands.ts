@@ -1,15 +1,8 @@
 /** The headset's controllers or tracked hands: input, rays and haptic pulses. */
 
 import {
-  BufferGeometry,
-  Float32BufferAttribute,
-  Line,
-  LineBasicMaterial,
-  Raycaster,
-  type Intersection,
-  type Object3D,
-  type WebXRManager,
-  type XRTargetRaySpace,
+  BufferGeometry, Float32BufferAttribute, Line, LineBasicMaterial, Raycaster, type Intersection, type Object3D,
+  type WebXRManager, type XRTargetRaySpace,
 } from "three";
 
 import type { Connection } from "../stream/connection";
@@ -51,14 +44,6 @@ interface Hand {
   hasMet: boolean;
 }
 
-/** The hands' effects on the page itself. */
-export interface HandsListener {
-  /** A part of a panel was chosen by pointing at it. */
-  onChosen(name: string): void;
-  /** The pointed-at part has changed. */
-  onHovered(name: string): void;
-}
-
 export class Hands {
   private readonly hands: readonly Hand[];
   private readonly raycaster = new Raycaster();
@@ -72,7 +57,6 @@ export class Hands {
   };
   /** What was sent last: translation, rotation, and whether finely. */
   private sent = [0, 0, 0, 0, 0, 0];
-  private hovered = "";
   private repeated = "";
   private repeatIn = 0;
   isHolding = false;
@@ -89,7 +73,8 @@ export class Hands {
     private readonly panels: RoomPanels,
     private readonly connection: Connection,
     private readonly grab: Grab,
-    private readonly listener: HandsListener,
+    /** Is called with the name of a part of a panel that was chosen by pointing at it. */
+    private readonly onChosen: (name: string) => void,
   ) {
     this.hands = [0, 1].map((index) => makeHand(xr.getController(index), parent));
   }
@@ -116,10 +101,7 @@ export class Hands {
       this.takeSticks(hand, pad);
       step = step || stepOf(pad);
     }
-    if (hovered !== this.hovered) {
-      this.hovered = hovered;
-      this.listener.onHovered(hovered);
-    }
+    this.panels.hover(hovered);
     this.grab.steer(this.message.translation, passed);
     this.tellSticks();
     this.repeat(this.sticksNavigate ? step : "", Math.min(LONGEST_STEP_S, passed));
@@ -165,7 +147,7 @@ export class Hands {
 
   /** Choose what a tracked hand points at, or have the tip follow the hand while it pinches. */
   private takePinch(hand: Hand): void {
-    if (hand.hasMet && hand.pointed !== "") this.listener.onChosen(hand.pointed);
+    if (hand.hasMet && hand.pointed !== "") this.onChosen(hand.pointed);
     else if (hand.hasMet) this.grab.begin(hand.ray);
     hand.hasMet = false;
     if (!hand.isPinched) this.grab.end(hand.ray);
@@ -192,7 +174,7 @@ export class Hands {
 
   private takeButtons(hand: Hand, pad: Gamepad): void {
     const isLeft = hand.source?.handedness === "left";
-    if (this.pressed(hand, pad, TRIGGER) && hand.pointed !== "") this.listener.onChosen(hand.pointed);
+    if (this.pressed(hand, pad, TRIGGER) && hand.pointed !== "") this.onChosen(hand.pointed);
     if (this.pressed(hand, pad, NEAR_BUTTON)) this.press(isLeft ? "menu" : "touch");
     if (this.pressed(hand, pad, FAR_BUTTON)) this.press(isLeft ? "camera" : "undo");
     if (this.pressed(hand, pad, SQUEEZE)) this.grab.begin(hand.ray);

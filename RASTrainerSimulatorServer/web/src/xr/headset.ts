@@ -15,7 +15,6 @@ import { Grab } from "./grab";
 import { Hands } from "./hands";
 import { Placement } from "./placement";
 import { type ArrowLook, SightArrow } from "./sight_arrow";
-import { Seating } from "./seating";
 import { HeadsetPoses } from "./headset_poses";
 
 const HIGHEST_HZ = 90;
@@ -30,7 +29,6 @@ export class Headset {
   private readonly camera = new PerspectiveCamera(70, 1, 0.05, 20);
   private readonly placement = new Placement();
   private readonly panels: RoomPanels;
-  private readonly seating = new Seating();
   private readonly grab = new Grab();
   private readonly arrow = new SightArrow(TO_POINT);
   private readonly toolArrow = new SightArrow(TO_TOOL);
@@ -61,10 +59,7 @@ export class Headset {
     this.placement.rig.add(this.camera);
     scene.add(this.placement.rig, this.panels.room);
     this.panels.room.add(this.arrow.group, this.toolArrow.group);
-    this.hands = new Hands(renderer.xr, this.placement.rig, this.panels, connection, this.grab, {
-      onChosen: (name) => this.choose(name),
-      onHovered: (name) => this.panels.hover(name),
-    });
+    this.hands = new Hands(renderer.xr, this.placement.rig, this.panels, connection, this.grab, (name) => this.choose(name));
   }
 
   /** Take over the picture. */
@@ -173,8 +168,7 @@ export class Headset {
   /** Place the panels for a person who is where they belong. */
   private seat(): void {
     const { eyes, forward, focus } = this.placement;
-    this.seating.put(eyes, forward, focus);
-    this.panels.arrange(this.seating);
+    this.panels.put(eyes, forward, focus);
   }
 
   /** Have sticks, grab, panels and sounds follow the eyes. */
@@ -191,7 +185,7 @@ export class Headset {
     ahead.setY(0).normalize();
     this.hands.yawDeg = (Math.atan2(-ahead.z, ahead.x) * 180) / Math.PI;
     if (model.news.sticks === "camera") this.grab.turn(ahead);
-    if (this.seating.follow(place, ahead, this.panels.isMenu)) this.panels.arrange(this.seating);
+    this.panels.follow(place, ahead);
     model.node("tool")?.getWorldPosition(tip);
     this.sounds.locate(place, gaze, up, tip);
   }

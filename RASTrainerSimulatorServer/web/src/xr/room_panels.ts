@@ -14,7 +14,6 @@ import { trendPlot } from "../panels/trend_plot";
 import type { Connection } from "../stream/connection";
 import { say, sayHolder } from "../texts";
 import { CloseUp } from "./close_up";
-import type { Seating } from "./seating";
 
 /** Where a panel stands: right of the head's direction and above the eyes (rad), and away (m). */
 interface Seat {
@@ -48,6 +47,12 @@ const GUIDING_WIDE = 0.24;
 /** Order of drawing; what points at a panel comes after it. */
 const ON_TOP = 10;
 
+/** A turn or a move of the person beyond which the panels come after them. */
+const TURN_RAD = 0.6;
+const MOVE_M = 0.25;
+/** So near above the head there is no way toward it; then the panels stand where the eyes look. */
+const NEAREST_M = 0.15;
+
 /** Names of what the headset does itself; an item of a menu never has such a name. */
 export const LOCAL = ["recenter", "higher", "lower", "grab", "leave"] as const;
 export type Local = (typeof LOCAL)[number];
@@ -68,7 +73,11 @@ export class RoomPanels {
   private readonly menuView: MenuView;
   private readonly drawing = new Image();
   private screen: Screen | null = null;
-  private seating: Seating | null = null;
+  /** The eyes for which the panels stand, the level unit vector to their middle, and the middle of the patient's head. */
+  private readonly eyes = new Vector3();
+  private readonly ahead = new Vector3(0, 0, -1);
+  private readonly focus = new Vector3();
+  private wasMenu = false;
   private control: ControlNews | null = null;
   private notice = "";
   private mayGrab = true;
@@ -108,15 +117,35 @@ export class RoomPanels {
     return this.screen?.menu != null;
   }
 
-  /** Place the panels where a person seated like this reads them well. */
-  arrange(seating: Seating): void {
-    this.seating = seating;
+  /** Stand for eyes at a place, regardless of the person's earlier moves. */
+  put(eyes: Vector3, ahead: Vector3, focus: Vector3): void {
+    this.eyes.copy(eyes);
+    this.ahead.copy(ahead);
+    this.focus.copy(focus);
+    this.arrange();
+  }
+
+  /**
+   * Follow the person's eyes and their level `gaze`, but not each small move.
+   * Menus come up in the line of sight; facts for the work stand around the head.
+   */
+  follow(eyes: Vector3, gaze: Vector3): void {
+    const toHead = this.focus.clone().sub(eyes).setY(0);
+    const wanted = this.isMenu || toHead.length() < NEAREST_M ? gaze : toHead.normalize();
+    const hasTurned = wanted.angleTo(this.ahead) > TURN_RAD;
+    if (this.isMenu === this.wasMenu && !hasTurned && eyes.distanceTo(this.eyes) <= MOVE_M) return;
+    this.wasMenu = this.isMenu;
+    this.put(eyes, wanted, this.focus);
+  }
+
+  /** Place the panels where the person reads them well. */
+  private arrange(): void {
     const aside = this.screen?.menu?.picture ? MENU_ASIDE : 0;
-    const { eyes, focus } = seating;
+    const { eyes, focus } = this;
     const top = Math.atan2(focus.y + HEAD_ABOVE_M - eyes.y, Math.hypot(focus.x - eyes.x, focus.z - eyes.z));
     const overHead = { aside: 0, above: top + WARNING_OVER_HEAD, away: WARNING_AWAY };
     const { menu, actions, picture, work, closeUp, warning, guiding } = this;
-    const side = sideWithoutRobot(seating);
+    const side = sideWithoutRobot(this.eyes, this.ahead);
     const seats = [
       [menu, { ...MENU, aside }],
       [actions, { ...ACTIONS, aside }],
@@ -127,7 +156,7 @@ export class RoomPanels {
       [warning, this.isMenu ? WARNING_AT_MENU : overHead],
     ] as const;
     for (const [{ mesh }, seat] of seats) {
-      const toPanel = mesh.position.copy(seating.ahead).applyAxisAngle(UP, -seat.aside);
+      const toPanel = mesh.position.copy(this.ahead).applyAxisAngle(UP, -seat.aside);
       toPanel.multiplyScalar(seat.away * Math.cos(seat.above)).setY(seat.away * Math.sin(seat.above));
       toPanel.add(eyes);
       mesh.scale.setScalar(seat.away / FULL_SIZE_AWAY);
@@ -137,7 +166,7 @@ export class RoomPanels {
 
   show(screen: Screen): void {
     this.screen = screen;
-    if (this.seating !== null) this.arrange(this.seating);
+    this.arrange();
     this.paint();
   }
 
@@ -240,7 +269,7 @@ function isUrgent(message: ScreenMessage): boolean {
 }
 
 /** Return 1 if the robot, which stands at the origin, is to the left of the line of sight, else −1. */
-function sideWithoutRobot({ eyes, ahead }: Seating): number {
+function sideWithoutRobot(eyes: Vector3, ahead: Vector3): number {
   return ahead.z * eyes.x - ahead.x * eyes.z <= 0 ? 1 : -1;
 }
 

@@ -83,48 +83,32 @@ def exchange(reference_client, loop_thread, request):
     return {message.device: message for message in taken}, {line[1]: line for line in lines}
 
 
-@pytest.mark.parametrize(
-    ("device", "content"),
-    [
-        ("Reference", Transform((0, 1, 0, -1, 0, 0, 0, 0, 1, 10.5, -20.25, 300.125))),
-        ("Note", String("touch point 3")),
-        ("Points", Points((Point("7", (1.5, -2, 3.25), (1, 2, 3, 255)),))),
-        ("Device", Status(1, 42, "none", "well")),
-        ("command", Command(4711, "Hello", '{"protocolVersion": 1, "client": "reference"}')),
-    ],
-)
-def test_messages_sent_by_the_reference_library_are_read(exchange, device, content):
-    assert exchange[0][device].content == content
+SENT = {
+    "Reference": Transform((0, 1, 0, -1, 0, 0, 0, 0, 1, 10.5, -20.25, 300.125)),
+    "Note": String("touch point 3"),
+    "Points": Points((Point("7", (1.5, -2, 3.25), (1, 2, 3, 255)),)),
+    "Device": Status(1, 42, "none", "well"),
+    "command": Command(4711, "Hello", '{"protocolVersion": 1, "client": "reference"}'),
+}
 
 
-def test_reference_library_gets_the_echo_of_its_transform(exchange):
-    _type, _device, numbers = exchange[1]["Reference"]
-    assert numbers == "0 -1 0 10.5 1 0 0 -20.25 0 0 1 300.125"
+def test_messages_sent_by_the_reference_library_are_read(exchange):
+    taken, _lines = exchange
+    assert {device: taken[device].content for device in SENT} == SENT
 
 
-def test_reference_library_reads_the_tip_in_millimeters(exchange):
-    assert exchange[1]["ToolTipToWorld"][::2] == ["TRANSFORM", "0 -1 0 500 1 0 0 -250 0 0 1 125"]
-
-
-def test_reference_library_reads_the_touched_points(exchange):
-    assert exchange[1]["CapturedPoints"][::2] == ["POINT", "1 500 -250 125"]
-
-
-def test_reference_library_reads_the_state(exchange):
-    kind, _device, text = exchange[1]["SimState"]
-    assert kind == "STRING"
-    assert json.loads(text)["trialId"] == "id-1"
-
-
-def test_reference_library_reads_the_heartbeat(exchange):
-    kind, _device, text = exchange[1]["SimServer"]
+def test_the_reference_library_reads_the_published_state_and_the_answers(exchange):
+    _taken, lines = exchange
+    assert lines["Reference"][2] == "0 -1 0 10.5 1 0 0 -20.25 0 0 1 300.125"
+    assert lines["ToolTipToWorld"][::2] == ["TRANSFORM", "0 -1 0 500 1 0 0 -250 0 0 1 125"]
+    assert lines["CapturedPoints"][::2] == ["POINT", "1 500 -250 125"]
+    kind, _device, text = lines["SimState"]
+    assert (kind, json.loads(text)["trialId"]) == ("STRING", "id-1")
+    kind, _device, text = lines["SimServer"]
     code, subcode, message = text.split(" ", 2)
     assert (kind, code, int(subcode)) == ("STATUS", "1", PROTOCOL_VERSION)
     assert json.loads(message)["protocolVersion"] == PROTOCOL_VERSION
-
-
-def test_reference_library_gets_the_answer_to_its_command(exchange):
-    kind, _device, text = exchange[1]["command"]
+    kind, _device, text = lines["command"]
     number, name, body = text.split(" ", 2)
     assert (kind, number, name) == ("RTS_COMMAND", "4711", "Hello")
     assert json.loads(body)["server"] == "RASTrainer simulator"

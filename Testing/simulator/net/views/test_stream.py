@@ -130,7 +130,7 @@ def test_a_view_that_falls_behind_gets_the_latest_screen_and_not_all_before_it(s
     view.join()
     view.next("state")
     text = "x" * 20_000
-    count = 2000
+    count = 400
     for number in range(count):
         served.tell(Screen(instruction=ScreenMessage(f"{number} {text}")))
     last = f"{count - 1} {text}"

@@ -69,20 +69,43 @@ class Folding(QtCore.QObject):
         self._isAtWork = False
 
 
-class ctkCollapsibleButton(QtWidgets.QAbstractButton):
+class Collapsible:
+    """What both widgets have in common: they are checked while they are open."""
+
+    def prepare(self) -> None:
+        self._folding = Folding(self)
+        self.setCheckable(True)
+        self.setChecked(True)
+        self.toggled.connect(lambda isOpen: self.setCollapsed(not isOpen))
+
+    def isCollapsed(self) -> bool:
+        return self._folding.is_collapsed
+
+    def setCollapsed(self, collapsed: bool) -> None:
+        if collapsed == self.isCollapsed():
+            return
+        self._folding.fold(collapsed)
+        self.setChecked(not collapsed)
+        self.setMaximumHeight(self.folded_height() if collapsed else WITHOUT_LIMIT)
+        self.updateGeometry()
+        self.contentsCollapsed.emit(collapsed)
+
+    def event(self, event: QtCore.QEvent) -> bool:
+        self._folding.heed(event)
+        return super().event(event)
+
+
+class ctkCollapsibleButton(Collapsible, QtWidgets.QAbstractButton):
     """A header that hides the content below it."""
 
     contentsCollapsed = QtCore.Signal(bool)
 
     def __init__(self, *arguments: object) -> None:
         super().__init__(*(item for item in arguments if isinstance(item, QtWidgets.QWidget)))
-        self._folding = Folding(self)
         for text in arguments:
             if isinstance(text, str):
                 self.setText(text)
-        self.setCheckable(True)
-        self.setChecked(True)
-        self.toggled.connect(lambda isOpen: self.setCollapsed(not isOpen))
+        self.prepare()
         # As in CTK: all that is in it has, as its least width, that which it would like to have.
         policy = QtWidgets.QSizePolicy.Policy
         self.setSizePolicy(policy.Minimum, policy.Preferred)
@@ -95,23 +118,10 @@ class ctkCollapsibleButton(QtWidgets.QAbstractButton):
 
     collapsedHeight = QtCore.Property(int, lambda self: self._collapsed_height, setCollapsedHeight)
 
-    def isCollapsed(self) -> bool:
-        return self._folding.is_collapsed
+    collapsed = QtCore.Property(bool, Collapsible.isCollapsed, Collapsible.setCollapsed)
 
-    def setCollapsed(self, collapsed: bool) -> None:
-        if collapsed == self.isCollapsed():
-            return
-        self._folding.fold(collapsed)
-        self.setChecked(not collapsed)
-        self.setMaximumHeight(self.sizeHint().height() if collapsed else WITHOUT_LIMIT)
-        self.updateGeometry()
-        self.contentsCollapsed.emit(collapsed)
-
-    collapsed = QtCore.Property(bool, isCollapsed, setCollapsed)
-
-    def event(self, event: QtCore.QEvent) -> bool:
-        self._folding.heed(event)
-        return super().event(event)
+    def folded_height(self) -> int:
+        return self.sizeHint().height()
 
     def sizeHint(self) -> QtCore.QSize:
         header = QtCore.QSize(
@@ -145,36 +155,20 @@ class ctkCollapsibleButton(QtWidgets.QAbstractButton):
         return self.fontMetrics().height() + 2 * MARGIN
 
 
-class ctkCollapsibleGroupBox(QtWidgets.QGroupBox):
-    """A group box whose title hides its contents; it is checked while it is open."""
+class ctkCollapsibleGroupBox(Collapsible, QtWidgets.QGroupBox):
+    """A group box whose title hides its contents."""
+
+    contentsCollapsed = QtCore.Signal(bool)
 
     def __init__(self, *arguments: object) -> None:
         super().__init__(*arguments)
-        self._folding = Folding(self)
-        self.setCheckable(True)
-        self.setChecked(True)
-        self.toggled.connect(lambda isOpen: self.setCollapsed(not isOpen))
+        self.prepare()
 
-    def isCollapsed(self) -> bool:
-        return self._folding.is_collapsed
-
-    def setCollapsed(self, collapsed: bool) -> None:
-        if collapsed == self.isCollapsed():
-            return
-        self._folding.fold(collapsed)
-        self.setChecked(not collapsed)
-        self.setMaximumHeight(self._title_height() if collapsed else WITHOUT_LIMIT)
-        self.updateGeometry()
-
-    collapsed = QtCore.Property(bool, isCollapsed, setCollapsed)
-
-    def event(self, event: QtCore.QEvent) -> bool:
-        self._folding.heed(event)
-        return super().event(event)
+    collapsed = QtCore.Property(bool, Collapsible.isCollapsed, Collapsible.setCollapsed)
 
     def minimumSizeHint(self) -> QtCore.QSize:
         hint = super().minimumSizeHint()
-        return QtCore.QSize(hint.width(), self._title_height()) if self.isCollapsed() else hint
+        return QtCore.QSize(hint.width(), self.folded_height()) if self.isCollapsed() else hint
 
     def paintEvent(self, _event: QtGui.QPaintEvent) -> None:
         painter = QtWidgets.QStylePainter(self)
@@ -191,7 +185,7 @@ class ctkCollapsibleGroupBox(QtWidgets.QGroupBox):
         _draw_arrow(self, painter, arrow, self.isCollapsed())
         painter.drawText(label, QtCore.Qt.AlignmentFlag.AlignVCenter, self.title())
 
-    def _title_height(self) -> int:
+    def folded_height(self) -> int:
         return self.fontMetrics().height() + MARGIN
 
 

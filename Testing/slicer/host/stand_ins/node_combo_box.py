@@ -96,12 +96,6 @@ class qMRMLNodeComboBox(QtWidgets.QWidget):
         isShown = self._values["showHidden"] or not node.GetHideFromEditors()
         return isShown and node.GetClassName() not in self._values["hideChildNodeTypes"]
 
-    def nodeCount(self) -> int:
-        return len(self.nodes())
-
-    def nodeFromIndex(self, index: int) -> Any:
-        return self.nodes()[index]
-
     def currentNode(self) -> Any:
         return self._scene.GetNodeByID(self._current) if self._scene and self._current else None
 

@@ -160,7 +160,6 @@ def checkVolume(volume: Volume) -> list[str]:
 
 
 def checkHead(mesh: HeadMesh) -> None:
-    """Raise an error if a closed surface cannot be a head's."""
     extent = np.ptp(mesh.vertices, axis=0)
     a, b, c = (corner.astype(float) for corner in mesh.corners())
     volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0

@@ -79,7 +79,7 @@ up, such as by loading a volume, it hears no one."""
 MAX_AT_ONCE = 16
 """Most commands without an answer; the simulator carries out as many at once."""
 MAX_KEPT = 256
-"""Most arrived commands that may wait. The sender has to repeat further ones, as the simulator does
+"""Most arrived commands that may wait. The sender has to repeat the others, as the simulator does
 with trials and answers until they are acknowledged."""
 _LOST = Reply(False, _("The connection to the simulator was lost."))
 
@@ -88,8 +88,8 @@ class SimulatorConnection:
     """One connection to a simulator, restored until `disconnect`.
 
     The connector is started only when a simulator has just answered, as anything else might end
-    Slicer: see `rastrainer.slicer.link.probe`. Its events come from inside VTK: they only note what
-    has come, and have `processArrivals` called in another turn.
+    Slicer: see `rastrainer.slicer.link.probe`. Its events come from inside VTK: they only note an
+    arrival, and have `processArrivals` called in another turn.
 
     Attributes:
         connector: the connector in the scene; None while there is no simulator to connect to.
@@ -125,7 +125,6 @@ class SimulatorConnection:
         self._refused: list[tuple[OnReply, Reply]] = []
 
     def processArrivals(self) -> None:
-        """Deliver replies and commands."""
         raise NotImplementedError
 
     def send(
@@ -282,7 +281,6 @@ class SimulatorConnection:
         self._connectsUntil = self._clock() + CONNECT_WITHIN_S
 
     def _searchAnew(self) -> None:
-        """Forget who answered, and test at once."""
         if self._probe is not None:
             self._probe.close()
             self._probe = None

@@ -111,7 +111,6 @@ class Link(SimulatorConnection):
         return lookingAt(f"{host}:{port}")
 
     def disconnect(self) -> None:
-        """Close the connection and do not reconnect."""
         self._endConnection()
         self.process()
 
@@ -175,7 +174,6 @@ class Link(SimulatorConnection):
         self.send(CommandName.HELLO, {**hello, "toolTipHz": hz, "linksHz": hz}, welcome)
 
     def _emitNodes(self) -> None:
-        """Emit the touched points and the simulator's state if they have changed."""
         node = capturedPointsNode(self._scene)
         rows = range(node.GetNumberOfControlPoints())
         points = labelsOf(node), tuple(node.GetNthControlPointPosition(row) for row in rows)

@@ -109,7 +109,7 @@ _FOUND = {
     Peer.OTHER_OPENIGTLINK: _otherProgram(_("another OpenIGTLink program")),
     Peer.OTHER_PROGRAM: _otherProgram(_("another program")),
 }
-"""What is said of an address, by who answers there."""
+"""The status of an address, by the program that answers there."""
 
 
 @dataclass

@@ -1,8 +1,9 @@
 """A program that runs next to Slicer: started, read line by line, and ended.
 
 Slicer's Python is a launcher that starts the real Python and forwards no signal: killing the
-launcher alone would leave the real process. Both are therefore ended as a group (`process_group`).
-The end of Slicer does not end the program: a running trial survives a crash of Slicer.
+launcher alone would leave the real process. Both are therefore ended as a group: their session, or
+on Windows their tree of processes. The end of Slicer does not end the program: a running trial
+survives a crash of Slicer.
 
 A function runs in such a program, too: it goes there by its name, and its result comes back. In a
 thread, it would share Python's lock with the main thread, which draws Slicer's window. VTK's
@@ -16,6 +17,7 @@ import importlib
 import logging
 import os
 import pickle
+import signal
 import subprocess
 import sys
 import tempfile
@@ -31,7 +33,6 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import STARTED_BY
 from rastrainer.python_environment import clean_environment
-from rastrainer.slicer.program.process_group import OPTIONS, endGroup
 from rastrainer.work_progress import Progress, print_progress, report_line
 
 LINES_KEPT = 2000
@@ -43,6 +44,41 @@ CLOSING_S = 0.5
 """How long `close` waits for an orderly end: Slicer's user waits for that."""
 PERIOD_S = 0.02
 SLICER = "Slicer"
+OPTIONS: dict[str, Any]
+"""For `subprocess.Popen`."""
+
+if sys.platform == "win32":
+    # Without it, Windows opens a console window.
+    OPTIONS = {"creationflags": subprocess.CREATE_NO_WINDOW}
+
+    def endGroup(leader: int, isAsked: bool) -> None:  # noqa: ARG001
+        """End a process and its tree at once: nothing can ask a program without a window."""
+        words = ["taskkill", "/F", "/T", "/PID", str(leader)]
+        subprocess.Popen(words, stdin=subprocess.DEVNULL, **OPTIONS)
+
+    def endProcess(pid: int, hasOwnGroup: bool, isAsked: bool) -> None:  # noqa: ARG001
+        endGroup(pid, isAsked)
+
+else:
+    OPTIONS = {"start_new_session": True}
+
+    def endGroup(leader: int, isAsked: bool) -> None:
+        """Ask a program started with `OPTIONS` and all that it has started to end, or kill them."""
+        # They may all have ended; on macOS, those that have may wait to be noticed.
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(leader, signal.SIGTERM if isAsked else signal.SIGKILL)
+
+    def endProcess(pid: int, hasOwnGroup: bool, isAsked: bool) -> None:
+        """End a process that this one has not started, or raise PermissionError.
+
+        If it was started with `OPTIONS` (`hasOwnGroup`), all that it has started ends, too.
+        """
+        number = signal.SIGTERM if isAsked else signal.SIGKILL
+        with contextlib.suppress(ProcessLookupError):
+            if hasOwnGroup:
+                os.killpg(os.getpgid(pid), number)
+            else:
+                os.kill(pid, number)
 
 
 class NotStartedError(InputError):

@@ -104,7 +104,6 @@ class SimulatorProgram:
         self._change(ProgramState.STOPPING, _("The simulator is ending."))
 
     def process(self) -> None:
-        """Forward its output, and notice that it is ready, is ending or has ended."""
         if self._child is None:
             return
         isOver, child = self._child.poll(), self._child
@@ -123,7 +122,6 @@ class SimulatorProgram:
             self._change(ProgramState.STOPPING, _("The simulator is ending."))
 
     def close(self) -> None:
-        """End the process and all that it has started, at once if need be: Slicer quits."""
         self._next = None
         if self._child is not None:
             self._child.close()

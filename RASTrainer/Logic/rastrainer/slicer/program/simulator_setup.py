@@ -129,7 +129,6 @@ class SimulatorSetup:
         self.changed.emit()
 
     def process(self) -> None:
-        """Forward the output of pip, trim the installed packages, and finish."""
         if self._child is None:
             return
         child, isOver = self._child, self._child.poll()
@@ -155,7 +154,6 @@ class SimulatorSetup:
         self.finished.emit(error)
 
     def close(self) -> None:
-        """End the running set-up: Slicer quits."""
         if self._child is not None:
             self._child.close()
             self._child = None

@@ -167,11 +167,12 @@ def usedPoints(node: Any, points: np.ndarray, labels: tuple[str, ...]) -> PointL
     return PointList(tuple(labels[row] for row in rows), points[rows], unused)
 
 
-def setPoints(node: Any, labels: Sequence[str], points: np.ndarray) -> None:
-    """Replace the points of a `vtkMRMLMarkupsNode` by (n, 3) float, mm, in its own frame."""
+def setPoints(node: Any, labels: Sequence[str], points: Any) -> None:
+    """Replace the points of a `vtkMRMLMarkupsNode` by (n, 3) numbers, mm, in its own frame."""
     with slicer.util.NodeModify(node):
         node.RemoveAllControlPoints()
-        slicer.util.updateMarkupsControlPointsFromArray(node, np.asarray(points, dtype=float))
+        places = np.asarray(points, dtype=float).reshape(-1, 3)
+        slicer.util.updateMarkupsControlPointsFromArray(node, places)
         for index, label in enumerate(labels):
             node.SetNthControlPointLabel(index, label)
 

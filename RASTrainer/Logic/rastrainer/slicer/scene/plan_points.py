@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-import numpy as np
 import slicer
 
 from rastrainer.errors import InputError
@@ -77,8 +76,7 @@ def unfinishedLine(scene: Any, role: str, name: str) -> Any:
 
 def putPoints(node: Any, points: Sequence[PlacedPoint]) -> None:
     with slicer.util.NodeModify(node):
-        places = np.array([point.position for point in points], dtype=float).reshape(-1, 3)
-        setPoints(node, [point.label for point in points], places)
+        setPoints(node, [point.label for point in points], [point.position for point in points])
         for row, point in enumerate(points):
             node.SetNthControlPointSelected(row, point.isSelected)
 

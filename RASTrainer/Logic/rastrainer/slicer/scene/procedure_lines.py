@@ -22,7 +22,7 @@ from rastrainer.procedure.errors import (
     TrajectoryErrors,
     TrueLine,
 )
-from rastrainer.procedure.plan import Checkpoint, Procedure, ProcedureTrajectory
+from rastrainer.procedure.plan import Procedure
 from rastrainer.slicer.polydata import meshPolyData
 from rastrainer.slicer.scene.error_colors import arrowPolyData
 from rastrainer.slicer.scene.nodes import (
@@ -95,26 +95,20 @@ def lengthMm(line: Any) -> float | None:
     return float(np.linalg.norm(ends[1] - ends[0]))
 
 
-def showPlan(
-    scene: Any,
-    trajectories: tuple[ProcedureTrajectory, ...],
-    noGo: dict[str, HeadMesh],
-    checkpoints: tuple[Checkpoint, ...],
-) -> None:
-    """Replace the plan in the scene by another one, to be changed there."""
+def showPlan(scene: Any, procedure: Procedure | None, noGo: Mapping[str, HeadMesh]) -> None:
+    """Replace the plan in the scene by another one, or an empty one, to be changed there."""
     for line in planLines(scene):
         scene.RemoveNode(line)
     for node in noGoNodes(scene):
         setNoGo(node, False)
         if node.GetAttribute(ROLE_ATTRIBUTE) == Role.NO_GO:
             scene.RemoveNode(node)
-    for trajectory in trajectories:
+    for trajectory in () if procedure is None else procedure.trajectories:
         line = newPlanLine(scene)
         line.SetName(trajectory.name)
         setInstrument(line, trajectory.diameter_mm, trajectory.safety_mm)
-        setPoints(
-            line, (_("Entry"), _("Target")), np.array([trajectory.entry_ras, trajectory.target_ras])
-        )
+        ends = trajectory.entry_ras, trajectory.target_ras
+        setPoints(line, (_("Entry"), _("Target")), ends)
     for name, mesh in noGo.items():
         model = scene.AddNewNodeByClass(MODEL, name)
         model.SetAttribute(ROLE_ATTRIBUTE, Role.NO_GO)
@@ -122,10 +116,9 @@ def showPlan(
         model.CreateDefaultDisplayNodes()
         setDisplay(model, Color=NO_GO_COLOR, Visibility2D=True)
         setNoGo(model, True)
-    node = checkpointList(scene)
-    names = [checkpoint.name for checkpoint in checkpoints]
+    checkpoints = () if procedure is None else procedure.checkpoints
     places = [checkpoint.position_ras for checkpoint in checkpoints]
-    setPoints(node, names, np.array(places, dtype=float).reshape(-1, 3))
+    setPoints(checkpointList(scene), [checkpoint.name for checkpoint in checkpoints], places)
 
 
 def checkpointList(scene: Any) -> Any:
@@ -197,7 +190,7 @@ def _showLines(scene: Any, role: str, title: str, lines: Mapping[str, Any]) -> N
         node = nodes[row] if row < len(nodes) else addNode(scene, LINE, role, "")
         node.SetName(title.format(name))
         # Only the planned lines show a label, at their entries.
-        setPoints(node, (name, ""), np.array(ends))
+        setPoints(node, (name, ""), ends)
         node.SetLocked(True)
         node.CreateDefaultDisplayNodes()
         setDisplay(

@@ -41,8 +41,8 @@ from rastrainer.slicer.translation import _
 SKIN_COLOR = (0.87, 0.72, 0.62)
 SKULL_COLOR = (0.95, 0.92, 0.82)
 SKIN_OPACITY_OVER_SKULL = 0.5
-OUTLINE_PIXELS = 2
-"""Width of the outlines of head and skull in slice views: one pixel is hardly visible on an MRI."""
+OUTLINE = {"Visibility2D": True, "SliceIntersectionThickness": 2}
+"""Of head and skull in slice views: a width of one pixel is hardly visible on an MRI."""
 
 FIDUCIAL_LOOK = {"SelectedColor": (0.25, 0.55, 0.95), "GlyphScale": 2.0, "TextScale": 3.5}
 TARGET_COLOR = (0.2, 0.75, 0.35)
@@ -57,11 +57,13 @@ def showScenario(scene: Any, scenario: Scenario, later: CallLater = callNow) -> 
     if skull is not None and skull.kind is SkullKind.APPROXIMATION:
         name = "Skull (approximation)"
     opacity = 1.0 if skull is None else SKIN_OPACITY_OVER_SKULL
-    for role, title, path, color, share in (
-        (Role.HEAD_MODEL, "Head", scenario.head, SKIN_COLOR, opacity),
-        (Role.SKULL, name, None if skull is None else skull.file, SKULL_COLOR, 1.0),
+    skin = {"Color": SKIN_COLOR, "Opacity": opacity}
+    bone = {"Color": SKULL_COLOR, "Opacity": 1.0}
+    for surface in (
+        (Role.HEAD_MODEL, "Head", scenario.head, skin),
+        (Role.SKULL, name, None if skull is None else skull.file, bone),
     ):
-        later(partial(_showSurface, scene, scenario, role, title, path, color, share))
+        later(partial(_showSurface, scene, scenario, *surface))
     later(partial(_showPlan, scene, scenario))
     later(partial(requestVolume, scene, scenario))
 
@@ -96,13 +98,7 @@ def taskKey(scenarioName: str, taskName: str) -> str:
 
 
 def _showSurface(
-    scene: Any,
-    scenario: Scenario,
-    role: str,
-    name: str,
-    path: Path | None,
-    color: tuple[float, float, float],
-    opacity: float,
+    scene: Any, scenario: Scenario, role: str, name: str, path: Path | None, look: dict[str, Any]
 ) -> None:
     """Have the model of a role show a mesh of a scenario, or remove it if there is none."""
     if path is None:
@@ -117,8 +113,7 @@ def _showSurface(
     # Another scenario's head does not belong to these points.
     node.SetAndObservePolyData(None)
     # All at once, and before the surface comes: at each change every view would cut or redraw it.
-    outline = {"Visibility2D": True, "SliceIntersectionThickness": OUTLINE_PIXELS}
-    setDisplay(node, Color=color, Opacity=opacity, **outline)
+    setDisplay(node, **look, **OUTLINE)
 
 
 def _showPlan(scene: Any, scenario: Scenario) -> None:

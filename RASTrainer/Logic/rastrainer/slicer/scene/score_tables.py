@@ -54,7 +54,7 @@ class Row:
 
 @dataclass(frozen=True)
 class GroupComparison:
-    """A value compared with those of a group; it is better than a share of these, 0 to 1."""
+    """A value compared with a group; `betterThan` is the share that it beats, 0 to 1."""
 
     title: str
     unit: str

@@ -1,40 +1,204 @@
-"""One trainee's tutorial: the next step, how much of it is done, and the outcome.
+"""One trainee's tutorial: its steps, how much of a step is done, and the outcome.
 
 Its touches go by the rules of a trial, but are recorded nowhere.
 """
 
 from __future__ import annotations
 
+import math
 import uuid
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from enum import Enum
 
 from rastrainer.commands import CommandName
 from rastrainer.head.trial_head import Perturbation
 from rastrainer.journal.entries import GUIDED_TOUCHES
-from rastrainer.protocol import TRIAL_RUN
+from rastrainer.protocol import TRIAL_RUN, Mode
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.flow.tutorial.steps import (
-    OF_PRACTICE,
-    STEPS,
-    WITH_POINTS,
-    TutorialObservation,
-    TutorialStep,
-    steps_for,
-)
-from rastrainer_simulator.input.inputs import SourceKind
+from rastrainer_simulator.input.inputs import ControlName, SourceKind
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.state import OperatorCommand, SimulationState, TouchStage
+from rastrainer_simulator.teleoperation.steering import Axes
 from rastrainer_simulator.training.rules import TouchMoment, touch_stage
 from rastrainer_simulator.training.training import Training, TrainingReply
-from rastrainer_simulator.vectors import ZERO, Vector, distance, in_meters, in_millimeters, vector
+from rastrainer_simulator.vectors import (
+    ZERO,
+    Vector,
+    distance,
+    dot,
+    in_meters,
+    in_millimeters,
+    subtract,
+    vector,
+)
+from rastrainer_simulator.viewpoint.view_control import FRONT, Orbit
+
+MOVE_MM = 30.0
+SLOW_MM = 10.0
+TURN_DEG = 20.0
+LOOK_DEG = 15.0
+
+
+class TutorialStep(str, Enum):
+    """A step; the name is also the key of its sentence."""
+
+    RIGHT = "right"
+    LEFT = "left"
+    FORWARD = "forward"
+    BACK = "back"
+    UP = "up"
+    DOWN = "down"
+    SLOW = "slow"
+    TURN_VIEW = "turn view"
+    LOOK_AROUND = "look around"
+    BEST_VIEW = "best view"
+    LOWER = "lower"
+    TOUCH = "touch"
+    UNDO = "undo"
+    PAUSE = "pause"
+    GUIDED = "guided"
+    AGAIN = "again"
+
+
+_OF_VIEW = (TutorialStep.TURN_VIEW, TutorialStep.LOOK_AROUND, TutorialStep.BEST_VIEW)
+WITH_POINTS = (
+    TutorialStep.BEST_VIEW,
+    TutorialStep.LOWER,
+    TutorialStep.TOUCH,
+    TutorialStep.UNDO,
+    TutorialStep.PAUSE,
+    TutorialStep.GUIDED,
+)
+"""Steps in which the next point is marked."""
+OF_PRACTICE = (TutorialStep.AGAIN,)
+"""The only step where one point of a trial is practiced."""
+
+
+def steps_for(device: SourceKind, mode: str) -> tuple[TutorialStep, ...]:
+    """Return the steps for a device in a display mode, in order.
+
+    In a headset the trainee looks around by turning the head, and only the controllers' sticks
+    follow the eyes.
+    """
+    view: tuple[TutorialStep, ...] = (TutorialStep.TURN_VIEW, TutorialStep.BEST_VIEW)
+    if mode == Mode.HMD.value:
+        view = (TutorialStep.LOOK_AROUND,) if device is SourceKind.XR else ()
+    left_out = {*_OF_VIEW, *OF_PRACTICE}.difference(view)
+    return tuple(step for step in TutorialStep if step not in left_out)
+
+
+@dataclass(frozen=True)
+class TutorialObservation:
+    """An observation of what the trainee has done with the simulator.
+
+    Attributes:
+        yaw_deg: where the eyes look, from World's x; None without a headset's controllers.
+        has_paused: whether the menu was opened and closed again in this step.
+    """
+
+    tip: Vector
+    axes: Axes
+    is_slow: bool = False
+    orbit: Orbit = FRONT
+    yaw_deg: float | None = None
+    has_best_view: bool = False
+    touch: TouchStage = TouchStage.FAR
+    touched: int = 0
+    undone: int = 0
+    has_paused: bool = False
+
+
+DONE_MM, DONE_DEG = "tutorial.done mm", "tutorial.done degrees"
+
+
+@dataclass(frozen=True)
+class StepRule:
+    """The controls that do a step, how much there is to do, and the key of what says how far it is.
+
+    The step's sentence names the first control, or the first two as a pair. Where slow motion is
+    among them, the tip may go anywhere.
+    """
+
+    controls: tuple[ControlName, ...]
+    goal: float = 1.0
+    shown: str = ""
+
+
+_CAREFULLY = (ControlName.FINE, ControlName.BEST_VIEW)
+_TURNING = (ControlName.VIEW_LEFT, ControlName.VIEW_RIGHT)
+_TOUCHING = (ControlName.TOUCH, *_CAREFULLY)
+_REPEATING = (ControlName.TOUCH, ControlName.UNDO, *_CAREFULLY)
+STEPS: Mapping[TutorialStep, StepRule] = {
+    TutorialStep.RIGHT: StepRule((ControlName.MOVE_RIGHT,), MOVE_MM, DONE_MM),
+    TutorialStep.LEFT: StepRule((ControlName.MOVE_LEFT,), MOVE_MM, DONE_MM),
+    TutorialStep.FORWARD: StepRule((ControlName.MOVE_FORWARD,), MOVE_MM, DONE_MM),
+    TutorialStep.BACK: StepRule((ControlName.MOVE_BACK,), MOVE_MM, DONE_MM),
+    TutorialStep.UP: StepRule((ControlName.MOVE_UP,), MOVE_MM, DONE_MM),
+    TutorialStep.DOWN: StepRule((ControlName.MOVE_DOWN,), MOVE_MM, DONE_MM),
+    TutorialStep.SLOW: StepRule((ControlName.FINE,), SLOW_MM, DONE_MM),
+    TutorialStep.TURN_VIEW: StepRule(_TURNING, TURN_DEG, DONE_DEG),
+    TutorialStep.LOOK_AROUND: StepRule((ControlName.MOVE_FORWARD,), LOOK_DEG, DONE_DEG),
+    TutorialStep.BEST_VIEW: StepRule((ControlName.BEST_VIEW,)),
+    TutorialStep.LOWER: StepRule(_CAREFULLY),
+    TutorialStep.TOUCH: StepRule(_TOUCHING),
+    TutorialStep.UNDO: StepRule((ControlName.UNDO,)),
+    TutorialStep.PAUSE: StepRule((ControlName.MENU,)),
+    TutorialStep.GUIDED: StepRule(_REPEATING, GUIDED_TOUCHES, "tutorial.done points"),
+    TutorialStep.AGAIN: StepRule(_TOUCHING),
+}
+WAYS: Mapping[TutorialStep, Vector] = {
+    TutorialStep.RIGHT: (1.0, 0.0, 0.0),
+    TutorialStep.LEFT: (-1.0, 0.0, 0.0),
+    TutorialStep.FORWARD: (0.0, 1.0, 0.0),
+    TutorialStep.BACK: (0.0, -1.0, 0.0),
+    TutorialStep.UP: (0.0, 0.0, 1.0),
+    TutorialStep.DOWN: (0.0, 0.0, -1.0),
+}
+"""Right, forward and up of the steps that move the tip in one direction."""
+
+
+def amount_done(
+    step: TutorialStep,
+    done: float,
+    first: TutorialObservation,
+    before: TutorialObservation,
+    now: TutorialObservation,
+) -> float:
+    """Return how much of a step is done, by its first, the previous and the newest observation."""
+    moved_mm = MM_PER_M * distance(before.tip, now.tip)
+    turned_deg = math.remainder(now.orbit.azimuth_deg - first.orbit.azimuth_deg, 360.0)
+    raised_deg = now.orbit.elevation_deg - first.orbit.elevation_deg
+    match step:
+        case TutorialStep.SLOW:
+            return done + moved_mm if before.is_slow and now.is_slow else done
+        case TutorialStep.TURN_VIEW:
+            return max(done, math.hypot(turned_deg, raised_deg))
+        case TutorialStep.LOOK_AROUND:
+            if first.yaw_deg is None or now.yaw_deg is None:
+                return done
+            return max(done, abs(math.remainder(now.yaw_deg - first.yaw_deg, 360.0)))
+        case TutorialStep.BEST_VIEW:
+            return float(now.has_best_view)
+        case TutorialStep.LOWER:
+            return float(now.touch is TouchStage.ON_SKIN or now.touched > 0)
+        case TutorialStep.UNDO:
+            return float(now.undone > 0)
+        case TutorialStep.PAUSE:
+            return float(now.has_paused)
+        case TutorialStep.TOUCH | TutorialStep.GUIDED | TutorialStep.AGAIN:
+            return now.touched
+    # Since the tip last moved the other way.
+    way = now.axes.to_world(WAYS[step])
+    return max(0.0, done + MM_PER_M * dot(subtract(now.tip, before.tip), way))
+
 
 _NOT_MOVED = Perturbation(0.0, 0.0, 0.0)
 PRAISE_S = 0.8
 """How long a completed step is praised before the next one begins."""
 CENTERED_M = 0.003
 """The longest distance of a touch to its point: trials allow more, but the center is aimed at."""
-_MAY_TOUCH = (TutorialStep.LOWER, TutorialStep.TOUCH, TutorialStep.GUIDED, TutorialStep.AGAIN)
 
 
 class TouchPractice:
@@ -53,12 +217,9 @@ class TouchPractice:
         rest: Vector | None = None,
         task: str = TRIAL_RUN,
     ) -> None:
-        """Begin; the head stays where it is.
+        """Begin by checked arguments of StartTask, with `trialId`; the head stays where it is.
 
-        Args:
-            arguments: checked arguments of StartTask, with `trialId`.
-            points: which are touched.
-            rest: where the tip may still be on the skin from a touch before, World, m.
+        `rest` is where the tip may still be on the skin from a touch before, World, m.
         """
         self._rest = rest
         self._settings = replace(setup.settings.training, acceptance_radius=CENTERED_M)
@@ -125,10 +286,8 @@ def _tip(state: SimulationState) -> Vector:
 class Tutorial:
     """Leads through the steps; a step is done when the arm, the view or a touch has really changed.
 
-    Attributes:
-        points: that are touched: label → World, m.
-        praised: the step that was just done, while it is praised; else None.
-        practiced: the point that is practiced instead of all that; "" in the tutorial itself.
+    `practiced` is the point of a trial that is practiced instead; "" in the tutorial itself.
+    `praised` is the step that was just done, for a moment.
     """
 
     def __init__(
@@ -197,7 +356,14 @@ class Tutorial:
 
     @property
     def may_touch(self) -> bool:
-        return self.step in _MAY_TOUCH
+        return self.step is TutorialStep.LOWER or self._asks_for(ControlName.TOUCH)
+
+    @property
+    def may_undo(self) -> bool:
+        return self._asks_for(ControlName.UNDO)
+
+    def _asks_for(self, control: ControlName) -> bool:
+        return self.step is not None and control in STEPS[self.step].controls
 
     def use(self, device: SourceKind) -> None:
         self.steps = OF_PRACTICE if self.practiced else steps_for(device, self.mode)
@@ -220,9 +386,8 @@ class Tutorial:
             first = before
         self._first_seen = first
         self._seconds[step.value] = self._seconds.get(step.value, 0.0) + dt
-        rule = STEPS[step]
-        self._amount = rule.done(self._amount, first, before, now)
-        if self._amount < rule.goal:
+        self._amount = amount_done(step, self._amount, first, before, now)
+        if self._amount < STEPS[step].goal:
             return None
         self._done.append(step)
         self._amount, self._first_seen = 0.0, None

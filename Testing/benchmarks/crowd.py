@@ -1,25 +1,18 @@
-"""A hundred OpenIGTLink clients and twenty views at once: what each still gets, and the loop."""
+"""A hundred OpenIGTLink clients and twenty views at once, and what each still gets."""
 
 import asyncio
 import json
-import multiprocessing
 import socket
 import struct
-import tempfile
 import time
 from dataclasses import dataclass
-from pathlib import Path
 
 import aiohttp
-import numpy as np
 
 from rastrainer.commands import CommandName
 from rastrainer.igtl.content import Command, Transform
 from rastrainer.igtl.message import HEADER_BYTES, Message, pack
 from rastrainer.protocol import PROTOCOL_VERSION
-from Testing.benchmarks.loop_health import health_of, on_time
-from Testing.benchmarks.row import cpu_share, resident_mb, row
-from Testing.end_to_end.simulator_process import ViewedSimulator
 
 CLIENTS, VIEWS = 100, 20
 PROBE_PERIOD_S = 0.5
@@ -44,7 +37,6 @@ class Served:
         tool_tips: of each client, the intervals between two poses of the tool.
         states: of each view, the intervals between two states.
         dropped: clients and views whose connection was ended.
-        before, after: heartbeats of the simulator, as it began and as it was over.
     """
 
     echoes: list[list[float]]
@@ -52,13 +44,6 @@ class Served:
     tool_tips: list[list[float]]
     states: list[list[float]]
     dropped: int
-    before: dict
-    after: dict
-
-    @property
-    def on_time(self) -> float:
-        """Share of the control loop's ticks that were on time, 0…1."""
-        return on_time(health_of(self.before), health_of(self.after))
 
 
 def serve_crowd(
@@ -87,11 +72,9 @@ async def _serve(
         url = f"http://{HOST}:{view_port}/stream"
         watching = [asyncio.create_task(view.watch(session, url)) for view in views]
         await asyncio.sleep(SETTLE_S)
-        before = await clients[0].next_beat()
         for each in (*clients, *views):
             each.intervals.clear()
         await asyncio.gather(*(client.probe(seconds) for client in clients))
-        after = await clients[0].next_beat()
         dropped = sum(client.is_dropped for client in clients)
         dropped += sum(task.done() for task in watching)
         for task in watching:
@@ -102,8 +85,6 @@ async def _serve(
         tool_tips=[client.intervals for client in clients],
         states=[view.intervals for view in views],
         dropped=dropped,
-        before=before,
-        after=after,
     )
 
 
@@ -115,7 +96,6 @@ class _Client(asyncio.Protocol):
         self._tip = 0.0
         self._probes = 0
         self._number = number
-        self._beat: asyncio.Future[dict] = asyncio.get_running_loop().create_future()
         self.sent: dict[int, float] = {}
         self.echoes: list[float] = []
         self.intervals: list[float] = []
@@ -144,11 +124,6 @@ class _Client(asyncio.Protocol):
         while self.sent and time.perf_counter() < give_up:
             await asyncio.sleep(0.05)
 
-    async def next_beat(self) -> dict:
-        """Wait for the simulator's next heartbeat."""
-        self._beat = asyncio.get_running_loop().create_future()
-        return await asyncio.wait_for(self._beat, TIMEOUT_S)
-
     def data_received(self, data: bytes) -> None:
         now = time.perf_counter()
         self._buffer += data
@@ -157,11 +132,11 @@ class _Client(asyncio.Protocol):
             end = start + HEADER_BYTES + struct.unpack_from(">Q", self._buffer, start + 42)[0]
             if end > size:
                 break
-            self._take(bytes(self._buffer[start + 14 : start + 34]), start, end, now)
+            self._take(bytes(self._buffer[start + 14 : start + 34]), start, now)
             start = end
         del self._buffer[:start]
 
-    def _take(self, field: bytes, start: int, end: int, now: float) -> None:
+    def _take(self, field: bytes, start: int, now: float) -> None:
         name = field.rstrip(b"\0")
         if name == b"Probe":
             number = round(struct.unpack_from(">f", self._buffer, start + NUMBER_AT)[0])
@@ -169,9 +144,6 @@ class _Client(asyncio.Protocol):
         elif name == b"ToolTipToWorld":
             self.intervals += [now - self._tip] if self._tip else []
             self._tip = now
-        elif name == b"SimServer" and not self._beat.done():
-            body = bytes(self._buffer[start + HEADER_BYTES : end])
-            self._beat.set_result(json.loads(body[body.index(b"{") : body.rindex(b"}") + 1]))
 
 
 class _View:
@@ -189,37 +161,3 @@ class _View:
                     now = time.perf_counter()
                     self.intervals += [now - self._last] if self._last else []
                     self._last = now
-
-
-def rows(quick: bool) -> list[dict]:
-    """Return the rows `crowd.*`: echoes, each client's p99, intervals of poses and states, loop."""
-    seconds = 5.0 if quick else 20.0
-    with (
-        tempfile.TemporaryDirectory() as folder,
-        ViewedSimulator(Path(folder) / "records", "--view-port", "0") as simulator,
-    ):
-        begin = multiprocessing.get_context("spawn")
-        results = begin.Queue()
-        # The crowd is a separate process: it must not wait for its own measurement.
-        crowd = begin.Process(
-            target=serve_crowd,
-            args=(simulator.port, simulator.view_port, simulator.key, seconds, results),
-        )
-        crowd.start()
-        time.sleep(SETTLE_S)
-        cpu = [cpu_share(simulator.pid, 0.5) for _ in range(int(seconds))]
-        rss = resident_mb(simulator.pid)
-        served: Served = results.get(timeout=60.0 + seconds)
-        crowd.join()
-    echoes = np.concatenate(served.echoes)
-    client_p99 = [float(np.percentile(each, 99)) for each in served.echoes]
-    answered = len(echoes) / (len(echoes) + served.lost)
-    return [
-        row("crowd.echo", 1e3 * echoes, "ms", success=answered),
-        row("crowd.slowest_client", 1e3 * np.array(client_p99), "ms"),
-        row("crowd.tool_tip", 1e3 * np.concatenate(served.tool_tips), "ms"),
-        row("crowd.view", 1e3 * np.concatenate(served.states), "ms"),
-        row("crowd.on_time", [100.0 * served.on_time], "%"),
-        row("crowd.cpu", 100.0 * np.array(cpu), "%"),
-        row("crowd.rss", [rss], "MB"),
-    ]

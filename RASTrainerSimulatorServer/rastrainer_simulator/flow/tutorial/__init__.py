@@ -1,1 +1,0 @@
-"""The tutorial: its steps, and a trainee's progress."""
