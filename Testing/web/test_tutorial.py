@@ -13,13 +13,21 @@ from playwright.sync_api import Page
 
 from rastrainer_simulator.flow.session.tutorial import TutorialStep, steps_for
 from rastrainer_simulator.input.inputs import SourceKind
-from Testing.end_to_end.hands import Controllers
+from Testing.end_to_end.hands import Controllers, PageMouse
 from Testing.end_to_end.lab import Place
-from Testing.end_to_end.stream_trainee import Trainee
+from Testing.end_to_end.stream_trainee import CarriedTrainee, Trainee
 from Testing.end_to_end.window_process import wait_until
 from Testing.tutorial_player import TutorialPlayer
 from Testing.web.chromium import SMALL, enter_headset, open_page
 from Testing.web.trainees_on_page import DESKTOP, PHONE, ClickingTrainee, TappingTrainee
+
+
+class CarriedClickingTrainee(ClickingTrainee, CarriedTrainee):
+    """Clicks and drags; commands carry the tip where the sticks would lead."""
+
+    def __init__(self, place: Place, page: Page):
+        CarriedTrainee.__init__(self, place.view, PageMouse(page), place.client())
+        self.page = page
 
 
 class Learner:
@@ -122,11 +130,11 @@ WAYS = (
     ),
     Way(
         SourceKind.MOUSE,
-        ClickingTrainee,
+        CarriedClickingTrainee,
         Learner,
         (TutorialStep.TURN_VIEW, "right"),
         DESKTOP,
-        speed="0.25",
+        speed="0.5",
     ),
 )
 
@@ -134,7 +142,7 @@ WAYS = (
 @pytest.mark.soak
 @pytest.mark.parametrize("way", WAYS, ids=lambda way: way.device.value)
 def test_the_tutorial_is_played_from_the_id_to_the_trial_run_with(way, tmp_path, browser):
-    """Every step is done by the device; on phone and headset the tip is carried to the points."""
+    """Every step is done by the device, but the tip is carried to the points."""
     rules = {"order": "fixed", "tutorial": "required"}
     with Place(tmp_path, "--speed", way.speed, **rules) as place:
         options = {"size": way.size, "has_touch": way.device is SourceKind.TOUCH_SCREEN}
