@@ -13,7 +13,7 @@ from rastrainer.journal.entries import TracePoint
 from rastrainer.json_records import record_from_json
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import Scenario, load_scenario
-from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
+from rastrainer.slicer.scene.nodes import Role, setPoints
 from rastrainer.slicer.scene.robot_description import readArmChain
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
 from rastrainer.trial.record import TrialRecord
@@ -105,7 +105,7 @@ def store_trial_on_colin(host: Host, record: dict[str, Any], seed: int) -> np.nd
 
 def put_touches(host: Host, points: np.ndarray) -> None:
     """Put touches, World, mm, into the scene, and wait until the module has registered them."""
-    setPoints(capturedPointsNode(host.scene), LABELS[: len(points)], points)
+    setPoints(Role.CAPTURED_POINTS.make(host.scene), LABELS[: len(points)], points)
     count = len(points) if len(points) > 2 else 0
     table = host.find("residualsTable")
     host.wait_until(lambda: table.rowCount == count, "the touches are registered")

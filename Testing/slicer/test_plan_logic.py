@@ -16,9 +16,6 @@ from rastrainer.sections.target_plan_logic import PlanLogic, targetsOf
 from rastrainer.sections.views import jumpTo
 from rastrainer.slicer.scene.nodes import (
     Role,
-    capturedPointsNode,
-    findNode,
-    removeNode,
     setPoints,
     worldPoints,
 )
@@ -48,7 +45,7 @@ class Room(LinkedLab):
         self.logic = PlanLogic(scene, self.link, self.registration)
 
     def register(self):
-        setPoints(capturedPointsNode(self.scene), LABELS, self.touched)
+        setPoints(Role.CAPTURED_POINTS.make(self.scene), LABELS, self.touched)
         self.registration.process()
 
     def target(self, *points):
@@ -94,13 +91,13 @@ def test_targets_and_trajectory_of_a_scenario_are_plans_that_stay(scene, scenari
     )
     room = Room(scene, has_plan)
     room.register()
-    targets = findNode(scene, "vtkMRMLMarkupsFiducialNode", Role.TARGET)
+    targets = Role.TARGET.find(scene)
     assert targetsOf(targets) == ("center", "Tumor")
     first, second = (room.logic.read(targets, row) for row in (0, 1))
     assert (first.name, second.name) == ("center", "Tumor")
     np.testing.assert_allclose([*first.ends, *second.ends], [scenario.target.position_ras, TUMOR])
     assert second.expected == room.registration.comparison.targetError(TUMOR)
-    line = findNode(scene, "vtkMRMLMarkupsLineNode", Role.TRAJECTORY)
+    line = Role.TRAJECTORY.find(scene)
     assert targetsOf(line) == ()
     plan = room.logic.read(line)
     assert plan.name == "Biopsy"
@@ -237,7 +234,7 @@ def test_without_a_point_or_a_registration_the_message_says_what_is_missing(room
 def test_clicks_place_the_plan_even_while_a_scenario_is_shown(room, scenario):
     markups = slicer.vtkSlicerMarkupsLogic()
     markups.SetMRMLScene(room.scene)
-    removeNode(room.scene, "vtkMRMLMarkupsFiducialNode", Role.FIXED_FIDUCIALS)
+    Role.FIXED_FIDUCIALS.remove(room.scene)
     node = room.logic.points.newTarget()
     startPlacing(room.scene, node)
     showTask(room.scene, scenario, "task-1")

@@ -10,15 +10,10 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.slicer.scene.nodes import (
     INTERACTION,
-    LINE,
-    LIST,
     SELECTION,
+    NodeKind,
     Role,
-    addNode,
-    findOrAddNode,
     labelOf,
-    nodesOf,
-    setDisplay,
     setPoints,
 )
 from rastrainer.slicer.translation import _
@@ -39,7 +34,6 @@ def stopPlacing(scene: Any) -> None:
         interaction.SetCurrentInteractionMode(interaction.ViewTransform)
 
 
-TARGET_COLOR = (0.85, 0.2, 0.55)
 ENDS = 2
 """Points of a line: its entry and its target."""
 
@@ -64,14 +58,10 @@ def placedPoints(node: Any | None, inRas: bool = False) -> list[PlacedPoint]:
     ]
 
 
-def unfinishedLine(scene: Any, role: str, name: str) -> Any:
-    """Return the first line of a role that lacks its entry or target, or a new one."""
-    for line in nodesOf(scene, LINE, role):
-        if len(placedPoints(line)) < ENDS:
-            return line
-    line = addNode(scene, LINE, role, scene.GenerateUniqueName(name))
-    line.CreateDefaultDisplayNodes()
-    return line
+def unfinishedLine(scene: Any, kind: NodeKind) -> Any:
+    """Return the first line of a kind that lacks its entry or target, or a new one."""
+    unfinished = (line for line in kind.all(scene) if len(placedPoints(line)) < ENDS)
+    return next(unfinished, None) or kind.add(scene, scene.GenerateUniqueName(kind.name))
 
 
 def putPoints(node: Any, points: Sequence[PlacedPoint]) -> None:
@@ -122,13 +112,15 @@ class PlanPoints(UndoablePoints):
     """The points of targets and trajectories; placing more never erases any."""
 
     def newTarget(self) -> Any:
-        node = findOrAddNode(self._scene, LIST, Role.PLAN_TARGET, _("Planned target"))
-        return self._readyToPlace(node)
+        node = Role.PLAN_TARGET.make(self._scene)
+        self.remember(node)
+        return node
 
     def newTrajectory(self) -> Any:
         """Return a line that lacks its entry or target, for the next clicks."""
-        node = unfinishedLine(self._scene, Role.PLAN_TRAJECTORY, _("Planned trajectory"))
-        return self._readyToPlace(node)
+        line = unfinishedLine(self._scene, Role.PLAN_TRAJECTORY)
+        self.remember(line)
+        return line
 
     def remove(self, node: Any | None, row: int = -1) -> None:
         """Remove one of a node's placed points, the last where left out."""
@@ -138,11 +130,6 @@ class PlanPoints(UndoablePoints):
         points = self.remember(node)
         del points[row]
         putPoints(node, points)
-
-    def _readyToPlace(self, node: Any) -> Any:
-        setDisplay(node, SelectedColor=TARGET_COLOR, OccludedVisibility=True)
-        self.remember(node)
-        return node
 
 
 def whyNotRemoved(node: Any | None) -> str:

@@ -32,7 +32,11 @@ CONTENT = {
 }
 """Events of what the panels show, by class."""
 TRANSFORM, TEXT = "vtkMRMLTransformNode", "vtkMRMLTextNode"
-TOOLS = (DeviceName.TOOL_TIP_TO_WORLD, DeviceName.INSTRUMENT_TIP_TO_WORLD)
+NOTED = (
+    DeviceName.TOOL_TIP_TO_WORLD,
+    DeviceName.INSTRUMENT_TIP_TO_WORLD,
+    Role.SIM_STATE.role,
+)
 
 
 class SceneWatch:
@@ -98,7 +102,7 @@ class SceneWatch:
     def _noteIncoming(self, node: Any, _event: str) -> None:
         """Note the head, a tool or the state; the links of the robot move by themselves."""
         role = node.GetAttribute(ROLE_ATTRIBUTE)
-        if role == Role.WORLD_TO_HEAD:
+        if role == Role.WORLD_TO_HEAD.role:
             self._noteChange()
-        elif role in TOOLS or role == Role.SIM_STATE:
+        elif role in NOTED:
             self.noticed.emit()

@@ -11,7 +11,7 @@ import numpy as np
 from rastrainer.number_text import fixed
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.target_error import INTERVAL_NOTE
-from rastrainer.slicer.scene.nodes import Role
+from rastrainer.slicer.scene.nodes import NodeKind, Role
 from rastrainer.slicer.scene.tables import Columns, showTable
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
@@ -215,11 +215,11 @@ def showStandings(scene: Any, found: Sequence[GroupComparison]) -> Any:
         "median": [each.median for each in found],
         "better than (share)": [each.betterThan for each in found],
     }
-    return showTable(scene, Role.COMPARISON, "Comparison", columns)
+    return showTable(scene, Role.COMPARISON, columns)
 
 
-def showRows(scene: Any, role: str, name: str, rows: Sequence[Row]) -> Any:
+def showRows(scene: Any, kind: NodeKind, rows: Sequence[Row]) -> Any:
     """Show scores with their parts, or motion metrics, in a `vtkMRMLTableNode`; return it."""
     parts = {"measure": "title", "value": "value", "unit": "unit", "note": "note"}
     columns = {title: [getattr(row, part) for row in rows] for title, part in parts.items()}
-    return showTable(scene, role, name, columns)
+    return showTable(scene, kind, columns)

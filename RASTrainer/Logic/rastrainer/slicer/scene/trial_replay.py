@@ -17,17 +17,16 @@ from rastrainer.number_text import fixed
 from rastrainer.slicer.polydata import pointCloud
 from rastrainer.slicer.scene.nodes import (
     LIST,
+    LOCKED,
     MODEL,
     ROLE_ATTRIBUTE,
     TEXT,
     TOUCH_LOOK,
+    TRACE_LOOK,
     TRANSFORM,
-    Role,
-    drawAsPoints,
-    findNode,
-    findOrAddNode,
+    UNSELECTABLE,
+    NodeKind,
     nodesOfClass,
-    setDisplay,
     setValues,
 )
 from rastrainer.slicer.scene.robot_description import ArmChain
@@ -40,13 +39,16 @@ TRIAL_ATTRIBUTE = "RASTrainer.trial"
 STATES_A_SLICE = 50
 """States added to the scene before the application may draw again."""
 SAME_ROBOT_MM = 0.01
-TOOL_COLOR = (0.2, 0.45, 0.85)
 TOOL_LENGTH_MM, TOOL_RADIUS_MM = 120.0, 2.0
 
-_BROWSER, _PLACE, _TOOL, _TIP, _TOUCHES, _TRACE, _CLEARANCE = (
-    f"{Role.REPLAY} {part}"
-    for part in ("browser", "WorldToHead", "tool", "tool model", "touches", "trace", "clearance")
-)
+REPLAY = "replay"
+_BROWSER = NodeKind(BROWSER, f"{REPLAY} browser")
+_PLACE = NodeKind(TRANSFORM, f"{REPLAY} WorldToHead")
+_TOOL = NodeKind(TRANSFORM, f"{REPLAY} tool")
+_TIP = NodeKind(MODEL, f"{REPLAY} tool model", look={"Color": (0.2, 0.45, 0.85)})
+_TOUCHES = NodeKind(LIST, f"{REPLAY} touches", "", TOUCH_LOOK, LOCKED)
+_TRACE = NodeKind(MODEL, f"{REPLAY} trace", "", TRACE_LOOK, UNSELECTABLE)
+_CLEARANCE = NodeKind(TEXT, f"{REPLAY} clearance")
 POINTS_A_STATE = 10
 """Points of a trace that are added each time."""
 
@@ -93,25 +95,19 @@ def _fillScene(
     worldToHead: np.ndarray,
     rest: Callable[[float], None],
 ) -> Any:
-    def add(className: str, role: str, under: Any | None = None) -> Any:
+    def add(kind: NodeKind, under: Any | None = None) -> Any:
         rest(0.0)
-        title = role.removeprefix(f"{Role.REPLAY} ")
-        node = findOrAddNode(scene, className, role, f"{name}: {title}")
+        node = kind.make(scene, f"{name}: {kind.role.removeprefix(f'{REPLAY} ')}")
         if under is not None:
             node.SetAndObserveTransformNodeID(under.GetID())
         return node
 
-    placed = add(TRANSFORM, _PLACE)
+    placed = add(_PLACE)
     placed.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(worldToHead))
-    tool = add(TRANSFORM, _TOOL, placed)
-    tip = add(MODEL, _TIP, tool)
-    tip.SetAndObservePolyData(_needle())
-    setDisplay(tip, Color=TOOL_COLOR)
-    touches = add(LIST, _TOUCHES, placed)
-    touches.SetLocked(True)
-    setDisplay(touches, **TOUCH_LOOK)
-    clearance = add(TEXT, _CLEARANCE)
-    browser = findOrAddNode(scene, BROWSER, _BROWSER, f"Replay of {name}")
+    tool = add(_TOOL, placed)
+    add(_TIP, tool).SetAndObservePolyData(_needle())
+    touches, clearance = add(_TOUCHES, placed), add(_CLEARANCE)
+    browser = _BROWSER.make(scene, f"Replay of {name}")
     setValues(browser, IndexDisplayMode=browser.IndexDisplayAsIndexValue, PlaybackRateFps=SAMPLE_HZ)
     rest(0.0)
     _checkIsThere(placed, tool, touches, clearance, browser)
@@ -130,13 +126,12 @@ def _fillScene(
         (clearance, zip(times, distanceStates, strict=True)),
     ]
     if trajectory.traced:
-        trace = add(MODEL, _TRACE, placed)
-        drawAsPoints(trace)
+        trace = add(_TRACE, placed)
         shown.append((trace, _growing(trajectory.traced, POINTS_A_STATE, _traceState, start)))
         total += 1 + -(-len(trajectory.traced) // POINTS_A_STATE)
     for proxy, states in shown:
         title = f"{proxy.GetName()} sequence"
-        sequence = findOrAddNode(scene, SEQUENCE, f"{Role.REPLAY} {title}", title)
+        sequence = NodeKind(SEQUENCE, f"{REPLAY} {title}", title).make(scene)
         setValues(sequence, IndexName="time", IndexUnit="s", IndexType=sequence.NumericIndex)
         # Saving the states needs units from the scene that contains them.
         sequence.GetSequenceScene().AddNode(slicer.vtkMRMLSelectionNode())
@@ -177,7 +172,7 @@ def goTo(scene: Any, timeS: float) -> None:
 def moment(scene: Any) -> tuple[float, str] | None:
     """Return the replay's time in s and its text about the clearance; None without a replay."""
     browser = findReplay(scene)
-    text = findNode(scene, TEXT, _CLEARANCE)
+    text = _CLEARANCE.find(scene)
     if browser is None or text is None or browser.GetMasterSequenceNode() is None:
         return None
     if browser.GetSelectedItemNumber() < 0:
@@ -188,17 +183,16 @@ def moment(scene: Any) -> tuple[float, str] | None:
 
 
 def findReplay(scene: Any) -> Any | None:
-    return findNode(scene, BROWSER, _BROWSER)
+    return _BROWSER.find(scene)
 
 
 def isReplayOf(scene: Any, trialId: str) -> bool:
     browser = findReplay(scene)
-    parts = (TRANSFORM, _PLACE), (TRANSFORM, _TOOL), (MODEL, _TIP), (LIST, _TOUCHES)
     return (
         browser is not None
         and browser.GetAttribute(TRIAL_ATTRIBUTE) == trialId
         and browser.GetMasterSequenceNode() is not None
-        and all(findNode(scene, *part) for part in (*parts, (TEXT, _CLEARANCE)))
+        and all(part.find(scene) for part in (_PLACE, _TOOL, _TIP, _TOUCHES, _CLEARANCE))
     )
 
 
@@ -227,7 +221,7 @@ def emptyReplay(scene: Any) -> Iterator[None]:
 
 def _nodesOfReplay(scene: Any, className: str) -> list[Any]:
     nodes = nodesOfClass(scene, className)
-    return [n for n in nodes if (n.GetAttribute(ROLE_ATTRIBUTE) or "").startswith(Role.REPLAY)]
+    return [n for n in nodes if (n.GetAttribute(ROLE_ATTRIBUTE) or "").startswith(REPLAY)]
 
 
 def _slicesOf(sequence: Any) -> Iterator[None]:
