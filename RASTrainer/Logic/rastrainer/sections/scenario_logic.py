@@ -79,21 +79,16 @@ class ScenarioLogic:
 
         The head that was one before is hidden, and is no longer ours to fill.
         """
-        model, warnings = node, list[str]()
+        model, warnings, former = node, list[str](), Role.HEAD_MODEL.find(self._scene)
         if node.IsA("vtkMRMLVolumeNode"):
             _body, mesh, warnings = findSkin(self._run, node, None, progress)
-            name = f"Head of {node.GetName()}"
-            model = self._scene.AddNewNodeByClass("vtkMRMLModelNode", name)
+            model = Role.HEAD_MODEL.add(self._scene, f"Head of {node.GetName()}")
             model.SetAndObservePolyData(meshPolyData(mesh))
-            model.CreateDefaultDisplayNodes()
             model.GetDisplayNode().SetColor(SKIN_COLOR)
-        former = Role.HEAD_MODEL.find(self._scene)
         if former is not None and former is not model:
             former.RemoveAttribute(ROLE_ATTRIBUTE)
             former.SetDisplayVisibility(False)
-        model.SetAttribute(ROLE_ATTRIBUTE, Role.HEAD_MODEL.role)
-        model.CreateDefaultDisplayNodes()
-        model.SetDisplayVisibility(True)
+        Role.HEAD_MODEL.dress(model).SetDisplayVisibility(True)
         return model, warnings
 
     def setRobotShown(self, shown: bool) -> None:

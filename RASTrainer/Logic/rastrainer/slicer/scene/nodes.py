@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import slicer
+import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList
@@ -58,7 +59,7 @@ class NodeKind:
     def make(self, scene: Any, name: str = "") -> Any:
         """Return the node, with its look, and the name if one is given; add a missing one."""
         node = self.find(scene)
-        return self.add(scene, name) if node is None else self._dressed(node, name)
+        return self.add(scene, name) if node is None else self.dress(node, name)
 
     def add(self, scene: Any, name: str = "") -> Any:
         """Add a node and return it.
@@ -73,13 +74,14 @@ class NodeKind:
         if active is not None:
             selection.SetReferenceActivePlaceNodeClassName(active.GetClassName())
             selection.SetActivePlaceNodeID(active.GetID())
-        return self._dressed(node)
+        return self.dress(node)
 
     def remove(self, scene: Any) -> None:
         for node in self.all(scene):
             scene.RemoveNode(node)
 
-    def _dressed(self, node: Any, name: str = "") -> Any:
+    def dress(self, node: Any, name: str = "") -> Any:
+        """Make a node one of this kind and return it."""
         node.SetAttribute(ROLE_ATTRIBUTE, self.role)
         setValues(node, **self.values, **({"Name": name} if name else {}))
         if node.IsA("vtkMRMLDisplayableNode") and self.className != TRANSFORM:
@@ -89,17 +91,16 @@ class NodeKind:
 
 
 class LinkedKind(NodeKind):
-    """A node that Slicer's connector fills.
+    """A node that Slicer's connector fills; what the user makes of its look stays.
 
     The connector adopts a node of that name and class; a node that it has made itself is adopted.
     """
 
-    def make(self, scene: Any, _name: str = "") -> Any:
-        node = self.find(scene)
-        if node is None:
-            node = scene.GetFirstNode(self.name, self.className)
-            node = self.add(scene) if node is None else self._dressed(node)
-        return node
+    def find(self, scene: Any) -> Any | None:
+        return super().find(scene) or scene.GetFirstNode(self.name, self.className)
+
+    def make(self, scene: Any, name: str = "") -> Any:
+        return super().find(scene) or super().make(scene, name)
 
 
 def nodesOfClass(scene: Any, className: str) -> list[Any]:
@@ -111,11 +112,11 @@ def nodesOfClass(scene: Any, className: str) -> list[Any]:
 
 Color = tuple[float, float, float]
 LOCKED, UNSAVED, UNSELECTABLE = {"Locked": True}, {"SaveWithScene": False}, {"Selectable": False}
-TOUCH_COLOR, POINT_PIXELS = (0.95, 0.55, 0.1), 5.0
+TOUCH_COLOR = (0.95, 0.55, 0.1)
 SKIN_COLOR = (0.87, 0.72, 0.62)
 TRACE_LOOK = {
     "Representation": slicer.vtkMRMLDisplayNode.PointsRepresentation,
-    "PointSize": POINT_PIXELS,
+    "PointSize": 5.0,
     "Color": TOUCH_COLOR,
     "Lighting": False,
 }
@@ -129,6 +130,14 @@ PLAN_LOOK = {"SelectedColor": (0.85, 0.2, 0.55), **ON_TOP}
 LANDMARK_LOOK = {"SelectedColor": (0.1, 0.55, 0.9), **ON_TOP}
 NEXT_LOOK = {"SelectedColor": (0.75, 0.0, 0.5), "GlyphScale": 4.0, "TextScale": 3.5, **ON_TOP}
 """Far from the trace, the head is yellow."""
+COLORS = "color"
+LINK_LOOK = {
+    **UNSAVED,
+    "ActiveScalarName": COLORS,
+    "ActiveAttributeLocation": vtk.vtkAssignAttribute.POINT_DATA,
+    "ScalarRangeFlag": slicer.vtkMRMLDisplayNode.UseDirectMapping,
+    "ScalarVisibility": True,
+}
 LINE_LOOK = {**ON_TOP, "PropertiesLabelVisibility": False, "GlyphScale": 1.0, "TextScale": 2.5}
 
 
@@ -142,8 +151,9 @@ def _solid(role: str, name: str, color: Color) -> NodeKind:
 
 
 def _link(number: int) -> NodeKind:
+    """Return the kind of a robot's link: rebuilt from the module's files, and never saved."""
     name = f"Robot link {number}"
-    return NodeKind(MODEL, name.lower(), name, {}, {**UNSAVED, **UNSELECTABLE})
+    return NodeKind(MODEL, name.lower(), name, LINK_LOOK, {**UNSAVED, **UNSELECTABLE})
 
 
 def _chart(role: str, name: str, xTitle: str, yTitle: str) -> NodeKind:

@@ -166,15 +166,17 @@ def _showLines(scene: Any, kind: NodeKind, lines: Mapping[str, Any]) -> None:
 def _showArrows(
     scene: Any, each: Sequence[TrajectoryErrors], planned: Sequence[np.ndarray]
 ) -> None:
-    for kind in (Role.ERRORS_BY_REGISTRATION, Role.ERRORS_BY_HAND):
-        append = vtk.vtkAppendPolyData()
-        for errors, ends in zip(each, planned, strict=True):
-            splits = errors.entry_point_error, errors.target_point_error
-            for start, split in zip(ends, splits, strict=True):
-                begin, vector = start, np.array(split.by_registration_ras)
-                if kind is Role.ERRORS_BY_HAND:
-                    begin, vector = start + vector, np.array(split.by_hand_ras)
-                append.AddInputData(arrowPolyData(begin, vector, THICKNESS))
+    byRegistration, byHand = vtk.vtkAppendPolyData(), vtk.vtkAppendPolyData()
+    for errors, ends in zip(each, planned, strict=True):
+        splits = errors.entry_point_error, errors.target_point_error
+        for start, split in zip(ends, splits, strict=True):
+            shift, rest = np.array(split.by_registration_ras), np.array(split.by_hand_ras)
+            byRegistration.AddInputData(arrowPolyData(start, shift, THICKNESS))
+            byHand.AddInputData(arrowPolyData(start + shift, rest, THICKNESS))
+    for kind, append in (
+        (Role.ERRORS_BY_REGISTRATION, byRegistration),
+        (Role.ERRORS_BY_HAND, byHand),
+    ):
         append.Update()
         kind.make(scene).SetAndObservePolyData(append.GetOutput())
 

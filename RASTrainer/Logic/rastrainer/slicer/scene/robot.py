@@ -5,14 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import slicer
-import vtk
 
 from rastrainer.protocol import DeviceName
 from rastrainer.slicer.polydata import trianglesPolyData, vtkArray
-from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, Role, poseKind, setValues
+from rastrainer.slicer.scene.nodes import COLORS, ROLE_ATTRIBUTE, Role, poseKind, setValues
 from rastrainer.slicer.scene.robot_description import LinkMesh
-
-COLORS = "color"
 
 
 def missingLinks(scene: Any) -> list[int]:
@@ -22,17 +19,14 @@ def missingLinks(scene: Any) -> list[int]:
 def addLink(scene: Any, number: int, mesh: LinkMesh) -> None:
     """Show a link of the robot, transformed by the node that the connection fills."""
     poseKind(DeviceName.LINK_TO_WORLD[number]).make(scene)
-    # Everything is set before the node is added, so each view draws it once. It is rebuilt from
-    # the module's files, so a saved scene need not contain it.
-    display = setValues(slicer.vtkMRMLModelDisplayNode(), SaveWithScene=False)
-    display.SetActiveScalar(COLORS, vtk.vtkAssignAttribute.POINT_DATA)
-    setValues(display, ScalarRangeFlag=display.UseDirectMapping, ScalarVisibility=True)
-    scene.AddNode(display)
-    kind = Role.LINKS[number]
-    node = setValues(slicer.vtkMRMLModelNode(), Name=kind.name, **kind.values)
-    node.SetAttribute(ROLE_ATTRIBUTE, kind.role)
     surface = trianglesPolyData(mesh.points, mesh.triangles, mesh.normals)
     surface.GetPointData().SetScalars(vtkArray(mesh.colors, COLORS))
+    # Everything is set before the node is added, so that each view draws it once.
+    kind = Role.LINKS[number]
+    display = setValues(slicer.vtkMRMLModelDisplayNode(), **kind.look)
+    scene.AddNode(display)
+    node = setValues(slicer.vtkMRMLModelNode(), Name=kind.name, **kind.values)
+    node.SetAttribute(ROLE_ATTRIBUTE, kind.role)
     node.SetAndObservePolyData(surface)
     node.SetAndObserveDisplayNodeID(display.GetID())
     scene.AddNode(node)
@@ -41,11 +35,10 @@ def addLink(scene: Any, number: int, mesh: LinkMesh) -> None:
 def placeRobot(scene: Any, worldTransform: Any | None) -> None:
     """Let the robot follow its poses, with World placed by `worldTransform`."""
     for link, device in zip(Role.LINKS, DeviceName.LINK_TO_WORLD, strict=True):
-        poses, node = poseKind(device), link.find(scene)
-        pose = scene.GetFirstNode(device, poses.className)
-        if pose is None and node is None:
+        node, kind = link.find(scene), poseKind(device)
+        if node is None and kind.find(scene) is None:
             continue
-        pose = pose or poses.make(scene)
+        pose = kind.make(scene)
         wanted = None if worldTransform is None else worldTransform.GetID()
         if pose.GetTransformNodeID() != wanted:
             pose.SetAndObserveTransformNodeID(wanted)

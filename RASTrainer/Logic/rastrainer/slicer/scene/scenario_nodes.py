@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import slicer
-import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
@@ -19,7 +18,7 @@ from rastrainer.head.volume import read_nrrd
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import Scenario, SkullKind, task_by_method
 from rastrainer.slicer.background_work import BackgroundWork, CallLater, callNow
-from rastrainer.slicer.polydata import meshPolyData, vtkArray
+from rastrainer.slicer.polydata import meshPolyData
 from rastrainer.slicer.scene.nodes import (
     CONTENT_ATTRIBUTE,
     SKIN_COLOR,
@@ -225,11 +224,8 @@ class SceneFileLoader:
             node.SetAndObservePolyData(meshPolyData(found))
         else:
             values, ijkToRas = found
-            data = vtk.vtkImageData()
-            data.SetDimensions(values.shape)
-            data.GetPointData().SetScalars(vtkArray(values.ravel(order="F")))
             node.SetIJKToRASMatrix(slicer.util.vtkMatrixFromArray(ijkToRas))
-            node.SetAndObserveImageData(data)
+            slicer.util.updateVolumeFromArray(node, values.T)
         self._work.later(partial(self._emitShown, node))
 
     def _emitShown(self, node: Any) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,6 @@ import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import ReplayTrack
-from rastrainer.motion.trajectory import Trajectory
 from rastrainer.number_text import fixed
 from rastrainer.slicer.polydata import pointCloud
 from rastrainer.slicer.scene.nodes import (
@@ -42,7 +42,9 @@ SAME_ROBOT_MM = 0.01
 TOOL_LENGTH_MM, TOOL_RADIUS_MM = 120.0, 2.0
 
 REPLAY = "replay"
-_BROWSER = NodeKind(BROWSER, f"{REPLAY} browser")
+_MODE = slicer.vtkMRMLSequenceBrowserNode.IndexDisplayAsIndexValue
+_PLAYED = {"IndexDisplayMode": _MODE, "PlaybackRateFps": SAMPLE_HZ}
+_BROWSER = NodeKind(BROWSER, f"{REPLAY} browser", values=_PLAYED)
 _PLACE = NodeKind(TRANSFORM, f"{REPLAY} WorldToHead")
 _TOOL = NodeKind(TRANSFORM, f"{REPLAY} tool")
 _TIP = NodeKind(MODEL, f"{REPLAY} tool model", look={"Color": (0.2, 0.45, 0.85)})
@@ -79,22 +81,7 @@ def showReplay(
     if poses is None or np.abs(poses[:, :3, 3] - tips).max() > SAME_ROBOT_MM:
         raise InputError("The trial was recorded with another robot than the one that is here.")
     removeReplay(scene, rest)
-    try:
-        return _fillScene(scene, name, trajectory, rows, poses, worldToHead, rest)
-    except BaseException:
-        removeReplay(scene)
-        raise
 
-
-def _fillScene(
-    scene: Any,
-    name: str,
-    trajectory: Trajectory,
-    rows: np.ndarray,
-    poses: np.ndarray,
-    worldToHead: np.ndarray,
-    rest: Callable[[float], None],
-) -> Any:
     def add(kind: NodeKind, under: Any | None = None) -> Any:
         rest(0.0)
         node = kind.make(scene, f"{name}: {kind.role.removeprefix(f'{REPLAY} ')}")
@@ -102,54 +89,56 @@ def _fillScene(
             node.SetAndObserveTransformNodeID(under.GetID())
         return node
 
-    placed = add(_PLACE)
-    placed.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(worldToHead))
-    tool = add(_TOOL, placed)
-    add(_TIP, tool).SetAndObservePolyData(_needle())
-    touches, clearance = add(_TOUCHES, placed), add(_CLEARANCE)
-    browser = _BROWSER.make(scene, f"Replay of {name}")
-    setValues(browser, IndexDisplayMode=browser.IndexDisplayAsIndexValue, PlaybackRateFps=SAMPLE_HZ)
-    rest(0.0)
-    _checkIsThere(placed, tool, touches, clearance, browser)
-    matrices = map(slicer.util.vtkMatrixFromArray, poses)
-    poseStates = (
-        setValues(slicer.vtkMRMLLinearTransformNode(), MatrixTransformToParent=matrix)
-        for matrix in matrices
-    )
-    distances = (f"{fixed(mm, 1)} mm" for mm in trajectory.clearance_mm[rows])
-    distanceStates = (setValues(slicer.vtkMRMLTextNode(), Text=text) for text in distances)
-    start, times = float(trajectory.times_s[0]), trajectory.times_s[rows]
-    total, done = 2 * len(rows) + len(trajectory.touches) + 1, 0
-    shown = [
-        (tool, zip(times, poseStates, strict=True)),
-        (touches, _growing(trajectory.touches, 1, _touchesState, start)),
-        (clearance, zip(times, distanceStates, strict=True)),
-    ]
-    if trajectory.traced:
-        trace = add(_TRACE, placed)
-        shown.append((trace, _growing(trajectory.traced, POINTS_A_STATE, _traceState, start)))
-        total += 1 + -(-len(trajectory.traced) // POINTS_A_STATE)
-    for proxy, states in shown:
-        title = f"{proxy.GetName()} sequence"
-        sequence = NodeKind(SEQUENCE, f"{REPLAY} {title}", title).make(scene)
-        setValues(sequence, IndexName="time", IndexUnit="s", IndexType=sequence.NumericIndex)
-        # Saving the states needs units from the scene that contains them.
-        sequence.GetSequenceScene().AddNode(slicer.vtkMRMLSelectionNode())
-        for time, state in states:
-            # The proxy becomes what the state is, with all its attributes.
-            state.SetAttribute(ROLE_ATTRIBUTE, proxy.GetAttribute(ROLE_ATTRIBUTE))
-            sequence.SetDataNodeAtValue(state, f"{time:.3f}")
-            done += 1
-            if done % STATES_A_SLICE == 0:
-                rest(done / total)
-                _checkIsThere(browser, sequence)
-        # Notified of both at once, Slicer creates no proxy itself.
-        with slicer.util.NodeModify(browser):
-            browser.AddSynchronizedSequenceNode(sequence)
-            browser.AddProxyNode(proxy, sequence, False)
-            browser.SetOverwriteProxyName(sequence, False)
-            browser.SetSaveChanges(sequence, False)
-    browser.SetSelectedItemNumber(0)
+    with ExitStack() as undoing:
+        undoing.callback(removeReplay, scene)
+        placed = add(_PLACE)
+        placed.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(worldToHead))
+        tool = add(_TOOL, placed)
+        add(_TIP, tool).SetAndObservePolyData(_needle())
+        touches, clearance = add(_TOUCHES, placed), add(_CLEARANCE)
+        browser = _BROWSER.make(scene, f"Replay of {name}")
+        rest(0.0)
+        _checkIsThere(placed, tool, touches, clearance, browser)
+        matrices = map(slicer.util.vtkMatrixFromArray, poses)
+        poseStates = (
+            setValues(slicer.vtkMRMLLinearTransformNode(), MatrixTransformToParent=matrix)
+            for matrix in matrices
+        )
+        distances = (f"{fixed(mm, 1)} mm" for mm in trajectory.clearance_mm[rows])
+        distanceStates = (setValues(slicer.vtkMRMLTextNode(), Text=text) for text in distances)
+        start, times = float(trajectory.times_s[0]), trajectory.times_s[rows]
+        total, done = 2 * len(rows) + len(trajectory.touches) + 1, 0
+        shown = [
+            (tool, zip(times, poseStates, strict=True)),
+            (touches, _growing(trajectory.touches, 1, _touchesState, start)),
+            (clearance, zip(times, distanceStates, strict=True)),
+        ]
+        if trajectory.traced:
+            trace = add(_TRACE, placed)
+            shown.append((trace, _growing(trajectory.traced, POINTS_A_STATE, _traceState, start)))
+            total += 1 + -(-len(trajectory.traced) // POINTS_A_STATE)
+        for proxy, states in shown:
+            title = f"{proxy.GetName()} sequence"
+            sequence = NodeKind(SEQUENCE, f"{REPLAY} {title}", title).make(scene)
+            setValues(sequence, IndexName="time", IndexUnit="s", IndexType=sequence.NumericIndex)
+            # Saving the states needs units from the scene that contains them.
+            sequence.GetSequenceScene().AddNode(slicer.vtkMRMLSelectionNode())
+            for time, state in states:
+                # The proxy becomes what the state is, with all its attributes.
+                state.SetAttribute(ROLE_ATTRIBUTE, proxy.GetAttribute(ROLE_ATTRIBUTE))
+                sequence.SetDataNodeAtValue(state, f"{time:.3f}")
+                done += 1
+                if done % STATES_A_SLICE == 0:
+                    rest(done / total)
+                    _checkIsThere(browser, sequence)
+            # Notified of both at once, Slicer creates no proxy itself.
+            with slicer.util.NodeModify(browser):
+                browser.AddSynchronizedSequenceNode(sequence)
+                browser.AddProxyNode(proxy, sequence, False)
+                browser.SetOverwriteProxyName(sequence, False)
+                browser.SetSaveChanges(sequence, False)
+        browser.SetSelectedItemNumber(0)
+        undoing.pop_all()
     return browser
 
 
