@@ -50,7 +50,9 @@ class Room(LinkedLab):
 
     def target(self, *points):
         node = (
-            self.logic.points.newTarget() if len(points) == 1 else self.logic.points.newTrajectory()
+            self.logic.points.ready(Role.PLAN_TARGET)
+            if len(points) == 1
+            else self.logic.points.ready(Role.PLAN_TRAJECTORY)
         )
         for point in points:
             node.AddControlPoint(*point)
@@ -189,7 +191,7 @@ def test_placing_erases_nothing_and_each_change_of_what_is_there_can_be_undone(r
     assert node.GetNthControlPointLabel(0) == label
     points.undo()
     np.testing.assert_allclose(worldPoints(node), [TUMOR])
-    points.newTarget()
+    points.ready(Role.PLAN_TARGET)
     line = room.target(ENTRY, TUMOR)
     room.scene.RemoveNode(line)
     points.undo()
@@ -198,9 +200,9 @@ def test_placing_erases_nothing_and_each_change_of_what_is_there_can_be_undone(r
 
 
 def test_a_second_trajectory_is_another_line_and_an_unfinished_one_is_completed(room):
-    line = room.logic.points.newTrajectory()
+    line = room.logic.points.ready(Role.PLAN_TRAJECTORY)
     line.AddControlPoint(*ENTRY)
-    assert room.logic.points.newTrajectory() is line
+    assert room.logic.points.ready(Role.PLAN_TRAJECTORY) is line
     line.AddControlPoint(*TUMOR)
     second = room.target(TUMOR, ENTRY)
     assert second is not line
@@ -226,7 +228,7 @@ def test_without_a_point_or_a_registration_the_message_says_what_is_missing(room
     with pytest.raises(InputError, match="Place a target or a trajectory"):
         room.logic.read(None)
     with pytest.raises(InputError, match="has no point yet"):
-        room.logic.read(room.logic.points.newTarget())
+        room.logic.read(room.logic.points.ready(Role.PLAN_TARGET))
     with pytest.raises(InputError, match="no registration to map the plan"):
         room.logic.read(room.target(TUMOR))
 
@@ -235,7 +237,7 @@ def test_clicks_place_the_plan_even_while_a_scenario_is_shown(room, scenario):
     markups = slicer.vtkSlicerMarkupsLogic()
     markups.SetMRMLScene(room.scene)
     Role.FIXED_FIDUCIALS.remove(room.scene)
-    node = room.logic.points.newTarget()
+    node = room.logic.points.ready(Role.PLAN_TARGET)
     startPlacing(room.scene, node)
     showTask(room.scene, scenario, "task-1")
     selection = room.scene.GetNodeByID("vtkMRMLSelectionNodeSingleton")

@@ -178,7 +178,7 @@ def test_a_stated_localization_error_weights_only_the_rigid_fit_and_can_be_undon
 
 def test_reordered_points_keep_their_localization_errors():
     choices = Choices().localized("2", 3.0).rename({"1": "2", "2": "1"}).without(("5",))
-    assert choices == Choices(frozenset({"5"}), (("1", "2"), ("2", "1")), (("2", 3.0),))
+    assert choices == Choices(frozenset({"5"}), {"1": "2", "2": "1"}, {"2": 3.0})
 
 
 def test_another_trial_begins_without_the_changes_of_the_previous_one(table):

@@ -91,7 +91,7 @@ def test_the_robot_moves_with_the_poses_of_its_links(scene, robot):
 
 def test_the_robot_is_where_its_touches_are_shown(scene, robot, scenario):
     fixed = showTask(scene, scenario, "task-1")
-    transform = showPlannedPlace(scene, scenario, Role.CAPTURED_POINTS.make(scene), fixed)
+    transform = showPlannedPlace(scene, scenario, fixed)
     in_world = bounds(robot[0])
     followPlacement(scene)
     on_head = bounds(robot[0])

@@ -56,7 +56,7 @@ def put_tool(scene, tip):
 def stand(room, scenario):
     """Place the head in World as planned."""
     fixed = showTask(room.scene, scenario, "task-1")
-    showPlannedPlace(room.scene, scenario, Role.CAPTURED_POINTS.make(room.scene), fixed)
+    showPlannedPlace(room.scene, scenario, fixed)
 
 
 def test_the_slices_jump_to_each_next_point(room, follower, scenario):

@@ -42,7 +42,6 @@ if TYPE_CHECKING:
     from rastrainer.slicer.head.volume import HeadSettings, SegmentImage
 
 MAKE_DRAFT = "rastrainer.slicer.head.head_draft:makeDraft"
-SEGMENTATION, MODEL = "vtkMRMLSegmentationNode", "vtkMRMLModelNode"
 PREVIEWED_ATTRIBUTE = "RASTrainer.previewed"
 SETTINGS_ATTRIBUTE = "RASTrainer.previewedWith"
 

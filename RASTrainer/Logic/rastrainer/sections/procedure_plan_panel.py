@@ -14,12 +14,11 @@ from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, chosenScenario, connectClick
 from rastrainer.sections.procedure_plan_logic import PlanDescription
 from rastrainer.slicer.scene.nodes import Role, worldPoints
-from rastrainer.slicer.scene.plan_points import startPlacing
+from rastrainer.slicer.scene.plan_points import startPlacing, unfinishedLine
 from rastrainer.slicer.scene.procedure_lines import (
     instrumentOf,
     isNoGo,
     lengthMm,
-    newPlanLine,
     noGoNodes,
     placeLine,
     planLines,
@@ -102,7 +101,7 @@ class ProcedurePlanPanel(Panel):
 
     def placeLine(self) -> None:
         """Let the next two clicks place a line, from its entry to its target."""
-        startPlacing(slicer.mrmlScene, newPlanLine(slicer.mrmlScene))
+        startPlacing(slicer.mrmlScene, unfinishedLine(slicer.mrmlScene, Role.PLAN_LINE))
         self.showState()
 
     def removeLine(self) -> None:

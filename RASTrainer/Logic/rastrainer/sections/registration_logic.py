@@ -36,7 +36,7 @@ from rastrainer.slicer.scene.registration_input import (
 )
 from rastrainer.slicer.scene.scenario_nodes import TASK_ATTRIBUTE
 from rastrainer.slicer.scene.tables import showFits, showResiduals
-from rastrainer.slicer.scene.trial_scene import checkSameTask, showRegistration
+from rastrainer.slicer.scene.trial_scene import checkSameTask, placeWorld
 from rastrainer.slicer.signal import Signal
 
 
@@ -254,8 +254,7 @@ class RegistrationLogic:
         """Show a comparison, each part in a separate turn, unless it is outdated."""
         if comparison is None:
             return
-        scene, shown, fits = self._scene, comparison.shown, comparison.fits
-        errors = [comparison.errors.get(kind) for kind in fits]
+        scene, shown = self._scene, comparison.shown
 
         def inTurn(show: Callable[[], object]) -> None:
             def showIfWanted() -> None:
@@ -268,9 +267,9 @@ class RegistrationLogic:
             self.comparison, self.problem = comparison, ""
             self.changed.emit()
 
-        inTurn(lambda: showRegistration(scene, shown, *self.lists()[:2]))
+        inTurn(lambda: placeWorld(scene, shown.matrix, shown.kind, *self.lists()[:2]))
         inTurn(lambda: showResiduals(scene, shown, comparison.leaveOneOut.get(shown.kind)))
-        inTurn(lambda: showFits(scene, list(fits.values()), errors))
+        inTurn(lambda: showFits(scene, comparison.fits, comparison.errors))
         inTurn(lambda: showResidualArrows(scene, shown))
         inTurn(lambda: self._colorHead(comparison.headErrors))
         inTurn(finish)

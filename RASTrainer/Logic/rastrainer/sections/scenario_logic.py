@@ -72,7 +72,7 @@ class ScenarioLogic:
         fixed = showTask(self._scene, scenario, taskName)
         placed = Role.WORLD_TO_HEAD.find(self._scene)
         if placed is None or placed.GetAttribute(KIND_ATTRIBUTE) == PLANNED:
-            showPlannedPlace(self._scene, scenario, Role.CAPTURED_POINTS.make(self._scene), fixed)
+            showPlannedPlace(self._scene, scenario, fixed)
 
     def useHead(self, node: Any, progress: Progress = no_progress) -> tuple[Any, list[str]]:
         """Make a model, or the skin of a volume, the displayed head; return it with warnings.

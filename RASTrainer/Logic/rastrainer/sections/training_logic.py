@@ -200,7 +200,7 @@ class TrainingLogic(Listening):
             return
         self._total = fixed.GetNumberOfControlPoints()
         noteTouchedTask(self._scene, scenario.name, task, method)
-        showPlannedPlace(self._scene, scenario, Role.CAPTURED_POINTS.make(self._scene), fixed)
+        showPlannedPlace(self._scene, scenario, fixed)
         self.sceneShown.emit(scenario)
         self.changed.emit()
 

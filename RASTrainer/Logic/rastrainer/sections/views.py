@@ -81,7 +81,6 @@ class BorrowedLayout:
         return self._scene.GetSingletonNode(LAYOUT_TAG, LAYOUT_TAG)
 
 
-TRANSFORM, FIDUCIALS = "vtkMRMLLinearTransformNode", "vtkMRMLMarkupsFiducialNode"
 LEAST_MOVE_MM = 0.5
 PERIOD_S = 0.09
 """Shortest time between two jumps after the tool: each renders all slice views."""

@@ -215,6 +215,9 @@ class Role:
     """Of the robot; the tool belongs to the last one."""
 
 
+TOOLS = DeviceName.TOOL_TIP_TO_WORLD, DeviceName.INSTRUMENT_TIP_TO_WORLD
+
+
 def poseKind(device: str) -> NodeKind:
     """Return the kind of the transform that the connector fills for a device; never saved."""
     return LinkedKind(TRANSFORM, device, device, {}, UNSAVED)
@@ -222,8 +225,7 @@ def poseKind(device: str) -> NodeKind:
 
 def prepareNodes(scene: Any) -> Iterator[Any]:
     """Make the nodes of the link that are missing, one at each step, and yield all."""
-    tools = DeviceName.TOOL_TIP_TO_WORLD, DeviceName.INSTRUMENT_TIP_TO_WORLD
-    poses = map(poseKind, (*tools, *DeviceName.LINK_TO_WORLD))
+    poses = map(poseKind, (*TOOLS, *DeviceName.LINK_TO_WORLD))
     for kind in (Role.CAPTURED_POINTS, Role.SIM_STATE, *poses):
         yield kind.make(scene)
 

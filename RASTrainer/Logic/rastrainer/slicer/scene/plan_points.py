@@ -10,9 +10,9 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.slicer.scene.nodes import (
     INTERACTION,
+    LINE,
     SELECTION,
     NodeKind,
-    Role,
     labelOf,
     setPoints,
 )
@@ -111,16 +111,12 @@ class UndoablePoints:
 class PlanPoints(UndoablePoints):
     """The points of targets and trajectories; placing more never erases any."""
 
-    def newTarget(self) -> Any:
-        node = Role.PLAN_TARGET.make(self._scene)
+    def ready(self, kind: NodeKind) -> Any:
+        """Return the list of a kind, or its line that lacks its entry or target, to be placed."""
+        isLine = kind.className == LINE
+        node = unfinishedLine(self._scene, kind) if isLine else kind.make(self._scene)
         self.remember(node)
         return node
-
-    def newTrajectory(self) -> Any:
-        """Return a line that lacks its entry or target, for the next clicks."""
-        line = unfinishedLine(self._scene, Role.PLAN_TRAJECTORY)
-        self.remember(line)
-        return line
 
     def remove(self, node: Any | None, row: int = -1) -> None:
         """Remove one of a node's placed points, the last where left out."""

@@ -30,9 +30,8 @@ from rastrainer.slicer.scene.nodes import (
     Role,
     nodesOfClass,
     setPoints,
-    worldPoints,
 )
-from rastrainer.slicer.scene.plan_points import ENDS, placedPoints, unfinishedLine
+from rastrainer.slicer.scene.plan_points import ENDS, placedPoints
 from rastrainer.slicer.scene.tables import Columns, showTable
 from rastrainer.slicer.translation import _
 
@@ -58,11 +57,6 @@ def placeLine(scene: Any, line: Any, place: int) -> None:
         each.SetAttribute(ORDER_ATTRIBUTE, str(number))
 
 
-def newPlanLine(scene: Any) -> Any:
-    """Return a line of the plan that lacks its entry or target, for the next clicks."""
-    return unfinishedLine(scene, Role.PLAN_LINE)
-
-
 def instrumentOf(line: Any) -> tuple[float, float]:
     """Return diameter and safety distance of a line's instrument, mm."""
     diameter, safety = line.GetAttribute(DIAMETER_ATTRIBUTE), line.GetAttribute(SAFETY_ATTRIBUTE)
@@ -76,10 +70,7 @@ def setInstrument(line: Any, diameterMm: float, safetyMm: float) -> None:
 
 def lengthMm(line: Any) -> float | None:
     """Return the length of a line; None while one of its ends is missing."""
-    if len(placedPoints(line)) < ENDS:
-        return None
-    ends = worldPoints(line)
-    return float(np.linalg.norm(ends[1] - ends[0]))
+    return line.GetLineLengthWorld() if len(placedPoints(line)) == ENDS else None
 
 
 def showPlan(scene: Any, procedure: Procedure | None, noGo: Mapping[str, HeadMesh]) -> None:
@@ -91,8 +82,7 @@ def showPlan(scene: Any, procedure: Procedure | None, noGo: Mapping[str, HeadMes
         if node.GetAttribute(ROLE_ATTRIBUTE) == Role.NO_GO.role:
             scene.RemoveNode(node)
     for trajectory in () if procedure is None else procedure.trajectories:
-        line = newPlanLine(scene)
-        line.SetName(trajectory.name)
+        line = Role.PLAN_LINE.add(scene, trajectory.name)
         setInstrument(line, trajectory.diameter_mm, trajectory.safety_mm)
         ends = trajectory.entry_ras, trajectory.target_ras
         setPoints(line, (_("Entry"), _("Target")), ends)

@@ -44,8 +44,16 @@ def showScenario(scene: Any, scenario: Scenario, later: CallLater = callNow) -> 
 
     Called again, nothing is made twice. Meshes and images come still later, by a `SceneFileLoader`.
     """
-    later(partial(_showHead, scene, scenario))
-    later(partial(_showSkull, scene, scenario))
+    skull, opacity, showSurface = scenario.skull, 1.0, partial(_showSurface, scene, scenario)
+    showSkull = partial(Role.SKULL.remove, scene)
+    if skull is not None:
+        opacity, bone = SKIN_OPACITY_OVER_SKULL, {"Color": SKULL_COLOR, "Opacity": 1.0}
+        isApproximate = skull.kind is SkullKind.APPROXIMATION
+        name = "Skull (approximation)" if isApproximate else "Skull"
+        showSkull = partial(showSurface, Role.SKULL, name, skull.file, bone)
+    skin = {"Color": SKIN_COLOR, "Opacity": opacity}
+    later(partial(showSurface, Role.HEAD_MODEL, "Head", scenario.head, skin))
+    later(showSkull)
     later(partial(_showPlan, scene, scenario))
     later(partial(requestVolume, scene, scenario))
 
@@ -75,23 +83,6 @@ def showTask(
 
 def taskKey(scenarioName: str, taskName: str) -> str:
     return f"{scenarioName}/{taskName}"
-
-
-def _showHead(scene: Any, scenario: Scenario) -> None:
-    opacity = 1.0 if scenario.skull is None else SKIN_OPACITY_OVER_SKULL
-    look = {"Color": SKIN_COLOR, "Opacity": opacity}
-    _showSurface(scene, scenario, Role.HEAD_MODEL, "Head", scenario.head, look)
-
-
-def _showSkull(scene: Any, scenario: Scenario) -> None:
-    skull = scenario.skull
-    if skull is None:
-        Role.SKULL.remove(scene)
-    else:
-        isApproximate = skull.kind is SkullKind.APPROXIMATION
-        name = "Skull (approximation)" if isApproximate else "Skull"
-        look = {"Color": SKULL_COLOR, "Opacity": 1.0}
-        _showSurface(scene, scenario, Role.SKULL, name, skull.file, look)
 
 
 def _showSurface(

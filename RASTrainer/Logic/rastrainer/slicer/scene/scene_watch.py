@@ -7,8 +7,7 @@ from typing import Any
 import slicer
 import vtk
 
-from rastrainer.protocol import DeviceName
-from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, Role
+from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, TOOLS, Role
 from rastrainer.slicer.signal import Signal
 
 _MARKUPS = slicer.vtkMRMLMarkupsNode
@@ -32,11 +31,6 @@ CONTENT = {
 }
 """Events of what the panels show, by class."""
 TRANSFORM, TEXT = "vtkMRMLTransformNode", "vtkMRMLTextNode"
-NOTED = (
-    DeviceName.TOOL_TIP_TO_WORLD,
-    DeviceName.INSTRUMENT_TIP_TO_WORLD,
-    Role.SIM_STATE.role,
-)
 
 
 class SceneWatch:
@@ -104,5 +98,5 @@ class SceneWatch:
         role = node.GetAttribute(ROLE_ATTRIBUTE)
         if role == Role.WORLD_TO_HEAD.role:
             self._noteChange()
-        elif role in NOTED:
+        elif role in (*TOOLS, Role.SIM_STATE.role):
             self.noticed.emit()

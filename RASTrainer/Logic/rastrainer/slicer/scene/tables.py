@@ -71,17 +71,17 @@ def showResiduals(
 
 
 def showFits(
-    scene: Any, fits: Sequence[Registration], targetErrors: Sequence[TargetError | None]
+    scene: Any, fits: Mapping[str, Registration], errors: Mapping[str, TargetError | None]
 ) -> Any:
     """Compare fits of the same points, and what to expect at the target, in a table node."""
-    known = [(e.expected_mm, *e.interval_mm) if e else (None, None, None) for e in targetErrors]
+    known = [errors.get(kind) for kind in fits]
     columns: Columns = {
-        "fit": [fit.kind for fit in fits],
-        "FRE (mm)": [fit.fre_mm for fit in fits],
-        "largest residual (mm)": [fit.residuals_mm.max() for fit in fits],
-        EXPECTED: [expected for expected, _low, _high in known],
-        LOW: [low for _expected, low, _high in known],
-        HIGH: [high for _expected, _low, high in known],
+        "fit": list(fits),
+        "FRE (mm)": [fit.fre_mm for fit in fits.values()],
+        "largest residual (mm)": [fit.residuals_mm.max() for fit in fits.values()],
+        EXPECTED: [error.expected_mm if error else None for error in known],
+        LOW: [error.interval_mm[0] if error else None for error in known],
+        HIGH: [error.interval_mm[1] if error else None for error in known],
     }
     return showTable(scene, Role.FITS, columns)
 
@@ -94,8 +94,7 @@ SCORE_COLUMN = "score"
 TIME_COLUMN = "completion time (s)"
 
 
-def showHistory(scene: Any, pseudonym: str, trials: Sequence[StoredTrial]) -> Any:
-    """Show the trials of a trainee in a `vtkMRMLTableNode`, one a row, and return it."""
+def _showHistory(scene: Any, pseudonym: str, trials: Sequence[StoredTrial]) -> Any:
     records = [trial.record for trial in trials]
     rigid = [trial.registrations.get(RIGID) for trial in trials]
     columns: Columns = {
@@ -119,37 +118,34 @@ ROOM = 1.5
 """Ratio of the plot's height to its content: the legend lies above and hides no trial."""
 
 
+_LINE = {"LineStyle": SERIES.LineStyleSolid, "MarkerStyle": SERIES.MarkerStyleCircle}
+_DASHES = {"LineStyle": SERIES.LineStyleDash, "MarkerStyle": SERIES.MarkerStyleNone}
+_DOTS = {"LineStyle": SERIES.LineStyleNone, "MarkerStyle": SERIES.MarkerStyleCircle}
+
+
 def _series(
-    chart: NodeKind,
-    across: str,
-    column: str,
-    title: str,
-    color: Color,
-    line: int = SERIES.LineStyleSolid,
-    marker: int = SERIES.MarkerStyleCircle,
+    chart: NodeKind, across: str, look: dict[str, int], column: str, title: str, color: Color
 ) -> NodeKind:
     """Return a series that draws a column of a table over another one, `across`."""
-    look = {"PlotType": SERIES.PlotTypeScatter, "LineStyle": line, "MarkerStyle": marker}
     columns = {"XColumnName": across, "YColumnName": column, "Color": color}
-    role = f"{chart.role} {column}"
-    return NodeKind("vtkMRMLPlotSeriesNode", role, title, {}, {**look, **columns})
+    values = {"PlotType": SERIES.PlotTypeScatter, **look, **columns}
+    return NodeKind("vtkMRMLPlotSeriesNode", f"{chart.role} {column}", title, {}, values)
 
 
 _BLUE, _ORANGE, _RED = (0.15, 0.4, 0.75), (0.85, 0.45, 0.1), (0.8, 0.15, 0.1)
 _GRAY, _BLACK = (0.55, 0.6, 0.65), (0.1, 0.1, 0.1)
-_over_trials = partial(_series, Role.LEARNING_CURVE, TRIAL_COLUMN)
+_over_trials = partial(_series, Role.LEARNING_CURVE, TRIAL_COLUMN, _LINE)
 _CURVES = (
     _over_trials(SCORE_COLUMN, "Score (0 to 100)", _BLUE),
     _over_trials(TIME_COLUMN, "Completion time (s)", _ORANGE),
 )
 _over_expected = partial(_series, Role.CALIBRATION, EXPECTED)
-_dashes = {"line": SERIES.LineStyleDash, "marker": SERIES.MarkerStyleNone}
-_IDENTITY = _over_expected(TRUE, _("True = expected"), _BLACK, **_dashes)
+_IDENTITY = _over_expected(_DASHES, TRUE, _("True = expected"), _BLACK)
 _CALIBRATION = (
-    _over_expected(LOW, _("95 %, from"), _GRAY, **_dashes),
-    _over_expected(HIGH, _("95 %, to"), _GRAY, **_dashes),
-    _over_expected(INSIDE, _("Inside"), _BLUE, line=SERIES.LineStyleNone),
-    _over_expected(OUTSIDE, _("Outside"), _RED, line=SERIES.LineStyleNone),
+    _over_expected(_DASHES, LOW, _("95 %, from"), _GRAY),
+    _over_expected(_DASHES, HIGH, _("95 %, to"), _GRAY),
+    _over_expected(_DOTS, INSIDE, _("Inside"), _BLUE),
+    _over_expected(_DOTS, OUTSIDE, _("Outside"), _RED),
 )
 
 
@@ -170,7 +166,7 @@ def _showChart(
 
 def showLearningCurve(scene: Any, pseudonym: str, trials: Sequence[StoredTrial]) -> Any:
     """Plot score and time over the trials in a `vtkMRMLPlotChartNode` and return it."""
-    table = showHistory(scene, pseudonym, trials)
+    table = _showHistory(scene, pseudonym, trials)
     title = f"Learning curve of {pseudonym}"
     chart = Role.LEARNING_CURVE.make(scene, title)
     methods = sorted({trial.record.method.value for trial in trials if trial.score})

@@ -13,7 +13,6 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.protocol import TRACED_METHODS, RegistrationMethod
 from rastrainer.registration.fits import MINIMUM_POINTS, RIGID
-from rastrainer.registration.registration import Registration
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import CallLater, callNow
 from rastrainer.slicer.scene.error_colors import showResidualArrows
@@ -49,9 +48,7 @@ def noteTouchedTask(scene: Any, scenario: str, task: str, method: RegistrationMe
 
 def setTouchesVisible(scene: Any, visible: bool) -> None:
     """Show the list of touches, or hide it while a replay shows them one by one."""
-    display = Role.CAPTURED_POINTS.make(scene).GetDisplayNode()
-    if display is not None:
-        display.SetVisibility(visible)
+    Role.CAPTURED_POINTS.make(scene).SetDisplayVisibility(visible)
 
 
 def showOnlyTouchesOf(scene: Any, scenario: str, task: str) -> None:
@@ -101,20 +98,16 @@ KIND_ATTRIBUTE = "RASTrainer.registration"
 PLANNED = "planned"
 
 
-def showRegistration(scene: Any, registration: Registration, moving: Any, fixed: Any) -> Any:
-    """Put a registration into the scene's WorldToHead transform and return that node."""
-    return _placeWorld(scene, registration.matrix, registration.kind, moving, fixed)
-
-
-def showPlannedPlace(scene: Any, scenario: Scenario, moving: Any, fixed: Any) -> Any:
+def showPlannedPlace(scene: Any, scenario: Scenario, fixed: Any) -> Any:
     """Place World as the scenario plans it, and return the WorldToHead transform.
 
     The head of a trial is placed a little differently; only its registration shows where.
     """
-    return _placeWorld(scene, transforms.inverse(scenario.head_to_world), PLANNED, moving, fixed)
+    place = transforms.inverse(scenario.head_to_world), PLANNED
+    return placeWorld(scene, *place, Role.CAPTURED_POINTS.make(scene), fixed)
 
 
-def _placeWorld(scene: Any, matrix: np.ndarray, kind: str, moving: Any, fixed: Any) -> Any:
+def placeWorld(scene: Any, matrix: np.ndarray, kind: str, moving: Any, fixed: Any) -> Any:
     """Set the WorldToHead transform, which remembers its lists of points, and return its node.
 
     At first it is applied to the moving points; later that stays as it was.
@@ -165,18 +158,19 @@ def showTrial(
     The touches come from its record.
     """
     record, rigid = analysis.record, analysis.rigid
-    errors = [analysis.target_errors[kind] for kind in analysis.fits]
     # Touches that do not register alone say nothing about each other.
     isByTouches = record.method not in TRACED_METHODS
     isEnough = isByTouches and len(rigid.labels) > MINIMUM_POINTS[RIGID]
 
-    def findFixed() -> Any:
-        return showTask(scene, scenario, record.task, record.method)
+    def place() -> None:
+        touches, fixed = Role.CAPTURED_POINTS.make(scene), findFixed()
+        placeWorld(scene, rigid.matrix, rigid.kind, touches, fixed)
 
+    findFixed = partial(showTask, scene, scenario, record.task, record.method)
     showScenario(scene, scenario, later)
     later(findFixed)
     later(partial(showTouches, scene, record))
-    later(lambda: showRegistration(scene, rigid, Role.CAPTURED_POINTS.make(scene), findFixed()))
+    later(place)
     later(lambda: showResiduals(scene, rigid, rigid.leave_one_out_mm() if isEnough else None))
-    later(partial(showFits, scene, list(analysis.fits.values()), errors))
+    later(partial(showFits, scene, analysis.fits, analysis.target_errors))
     later(partial(showResidualArrows, scene, rigid))
