@@ -14,7 +14,7 @@ from rastrainer.json_records import record_from_json
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.slicer.scene.nodes import Role, setPoints
-from rastrainer.slicer.scene.robot_description import readArmChain
+from rastrainer.slicer.scene.robot_description import toolPoses
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import SAFETY_METRICS
@@ -44,7 +44,7 @@ def write_recorded_trial(
     """
     times = np.arange(5, round(seconds / TICK_S) + 1, 5) * TICK_S
     q = np.array([0.1, 0.5, -0.2, -1.4, 0.3, 0.9, 0.0]) + 0.05 * np.sin(times)[:, None]
-    tips = readArmChain(URDF).toolToWorld(q)[:, :3, 3]
+    tips = toolPoses(URDF, q)[:, :3, 3]
     lines = [at(START_S + TICK_S, header(TICK_S, trial_id=trial_id, trainee=trainee))]
     for number, (time, posture, tip) in enumerate(zip(times, q, tips.tolist(), strict=True)):
         time_s, tick, place = START_S + time, 5 * number, tuple(tip)

@@ -29,7 +29,7 @@ from rastrainer.slicer.scene.nodes import (
     nodesOfClass,
     setValues,
 )
-from rastrainer.slicer.scene.robot_description import ArmChain
+from rastrainer.slicer.scene.robot_description import OTHER_ROBOT
 
 BROWSER, SEQUENCE = "vtkMRMLSequenceBrowserNode", "vtkMRMLSequenceNode"
 SAMPLE_HZ = 10.0
@@ -59,11 +59,13 @@ def showReplay(
     scene: Any,
     name: str,
     track: ReplayTrack,
-    chain: ArmChain,
+    poses: np.ndarray,
     worldToHead: np.ndarray,
     rest: Callable[[float], None] = lambda _share: None,
 ) -> Any:
     """Put a trial into the scene as a Sequence, replacing the previous one.
+
+    `poses` (n, 4, 4) float, mm, are those of the tool at the samples of the track.
 
     It uses separate nodes, so that a running simulator does not disturb it. `rest` is called with
     the share of the work done after each slice; it may let the application draw, and may raise to
@@ -75,11 +77,9 @@ def showReplay(
     times = trajectory.times_s
     wanted = np.arange(times[0], times[-1], 1.0 / SAMPLE_HZ)
     rows = np.unique([*np.searchsorted(times, wanted), len(times) - 1])
-    isSameLength = chain.axes.any(axis=1).sum() == track.q.shape[1]
-    poses = chain.toolToWorld(track.q[rows]) if isSameLength else None
-    tips = trajectory.tip_mm[rows]
-    if poses is None or np.abs(poses[:, :3, 3] - tips).max() > SAME_ROBOT_MM:
-        raise InputError("The trial was recorded with another robot than the one that is here.")
+    poses = poses[rows]
+    if np.abs(poses[:, :3, 3] - trajectory.tip_mm[rows]).max() > SAME_ROBOT_MM:
+        raise InputError(OTHER_ROBOT)
     removeReplay(scene, rest)
 
     def add(kind: NodeKind, under: Any | None = None) -> Any:
