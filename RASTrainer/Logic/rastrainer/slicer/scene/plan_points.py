@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import starmap
 from typing import Any, NamedTuple
 
 import slicer
@@ -76,36 +77,31 @@ class UndoablePoints:
 
     def __init__(self, scene: Any) -> None:
         self._scene = scene
-        self._before: list[tuple[str, list[PlacedPoint]]] = []
+        self._before: list[tuple[Any, list[PlacedPoint]]] = []
 
     def remember(self, node: Any) -> list[PlacedPoint]:
         """Return the placed points, which `undo` will restore; the next click places none."""
         stopPlacing(self._scene)
         points = placedPoints(node)
-        self._before.append((node.GetID(), list(points)))
+        self._before.append((node, list(points)))
         return points
 
     @property
     def canUndo(self) -> bool:
-        return any(self._changed(*before) is not None for before in self._before)
+        return any(starmap(_isChanged, self._before))
 
     def undo(self) -> None:
         """Undo the last change whose list or line still exists."""
         stopPlacing(self._scene)
         while self._before:
-            nodeId, before = self._before.pop()
-            node = self._changed(nodeId, before)
-            if node is not None:
+            node, before = self._before.pop()
+            if _isChanged(node, before):
                 putPoints(node, before)
                 return
 
-    def forget(self) -> None:
-        """Forget what could be undone: the scene was closed."""
-        self._before.clear()
 
-    def _changed(self, nodeId: str, before: list[PlacedPoint]) -> Any | None:
-        node = self._scene.GetNodeByID(nodeId)
-        return None if node is None or placedPoints(node) == before else node
+def _isChanged(node: Any, before: list[PlacedPoint]) -> bool:
+    return node.GetScene() is not None and placedPoints(node) != before
 
 
 class PlanPoints(UndoablePoints):
