@@ -20,7 +20,7 @@ from rastrainer import transforms
 from rastrainer.json_records import record_from_json
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
+from rastrainer.slicer.scene.nodes import Role, setPoints
 from rastrainer.study.database.study import Study
 from rastrainer.trial.analysis import RevealedTruth, analyze_trial
 from rastrainer.trial.record import TrialRecord
@@ -201,7 +201,9 @@ class _Steps:
 
     def _touch(self) -> None:
         for count in range(1, len(LABELS) + 1):
-            setPoints(capturedPointsNode(self._host.scene), LABELS[:count], self._touches[:count])
+            setPoints(
+                Role.CAPTURED_POINTS.make(self._host.scene), LABELS[:count], self._touches[:count]
+            )
             self._host.idle_for(0.3)
 
     def _score(self) -> None:

@@ -16,7 +16,7 @@ from rastrainer.scenario.library import user_library
 from rastrainer.scenario.points import LABELS
 from rastrainer.sections import new_scenario_logic
 from rastrainer.slicer.head.volume import SEGMENT_NAME
-from rastrainer.slicer.scene.nodes import Role, findNode, setPoints
+from rastrainer.slicer.scene.nodes import Role, setPoints
 from Testing.end_to_end.module.story import Story, unfold
 from Testing.running_process import runs
 from Testing.slicer.head.phantoms import phantom
@@ -69,8 +69,8 @@ def paint_wen(node):
 def test_the_scenario_has_the_edited_head_on_the_base_that_was_shown(host):
     host.press("previewHeadButton")
     assert host.messages == []
-    shown = findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_PREVIEW).GetPolyData().GetBounds()
-    paint_wen(findNode(host.scene, "vtkMRMLSegmentationNode", Role.HEAD_SEGMENT))
+    shown = Role.HEAD_PREVIEW.find(host.scene).GetPolyData().GetBounds()
+    paint_wen(Role.HEAD_SEGMENT.find(host.scene))
     host.press("makeScenarioButton")
     assert host.messages == []
     made = read_head_mesh(user_library() / "ms-x" / "head.ply").vertices

@@ -9,7 +9,7 @@ import slicer
 from rastrainer.scenario.library import user_library
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.head.volume import Volume
-from rastrainer.slicer.scene.nodes import Role, findNode
+from rastrainer.slicer.scene.nodes import Role
 from Testing.end_to_end.module.story import Story, unfold
 from Testing.slicer.head.phantoms import phantom
 from Testing.slicer.head.volume_file import write_volume
@@ -109,7 +109,7 @@ def test_a_trial_on_the_sample_takes_a_few_clicks_from_its_download(host):
 
     def shown_images():
         """The images of the new head; those of the previous one are shown until they are read."""
-        images = findNode(host.scene, "vtkMRMLScalarVolumeNode", Role.HEAD_VOLUME)
+        images = Role.HEAD_VOLUME.find(host.scene)
         is_new = images and images.GetName() == "MRBrainTumor1" and images.GetImageData()
         return images if is_new else None
 

@@ -13,7 +13,7 @@ from slicer.util import arrayFromVTKMatrix
 from rastrainer.commands import CommandName
 from rastrainer.protocol import DEFAULT_HOST, Phase
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.scene.nodes import LINE, Role, nodesOf, nodesOfClass
+from rastrainer.slicer.scene.nodes import NodeKind, Role, nodesOfClass
 from rastrainer_headless.headless_session import openSession, process
 from rastrainer_headless.scene import HeadlessScene
 from rastrainer_simulator.assets import asset_path
@@ -80,8 +80,8 @@ class Leader:
         views = nodesOfClass(self.session._scene, "vtkMRMLSliceNode")
         return {view.GetName(): arrayFromVTKMatrix(view.GetSliceToRAS()) for view in views}
 
-    def lines(self, role: str) -> int:
-        return len(nodesOf(self.session._scene, LINE, role))
+    def lines(self, role: NodeKind) -> int:
+        return len(role.all(self.session._scene))
 
 
 def test_slicer_leads_a_procedure_though_it_is_lost_in_each_phase_and_scores_it(tmp_path):

@@ -8,7 +8,7 @@ import pytest
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.scenario.library import unpack, user_library
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.scene.nodes import Role, findNode, setPoints, worldPoints
+from rastrainer.slicer.scene.nodes import Role, setPoints, worldPoints
 from Testing.end_to_end.module.story import Story, unfold
 from Testing.simulator.authoring.heads import egg
 from Testing.simulator.authoring.test_export import written
@@ -75,5 +75,5 @@ def test_a_plan_is_saved_in_a_copy_of_the_scenario_which_is_selected_and_shown(h
     kept = load_scenario(user_library() / "a-ball-planned-anew")
     assert kept.trajectory.name == "Other way"
     assert [target.name for target in kept.targets] == ["Cyst"]
-    shown = findNode(host.scene, "vtkMRMLMarkupsLineNode", Role.TRAJECTORY)
+    shown = Role.TRAJECTORY.find(host.scene)
     np.testing.assert_allclose(worldPoints(shown), worldPoints(line))

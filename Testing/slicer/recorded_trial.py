@@ -13,8 +13,8 @@ from rastrainer.journal.entries import TracePoint
 from rastrainer.json_records import record_from_json
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import Scenario, load_scenario
-from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
-from rastrainer.slicer.scene.robot_description import readArmChain
+from rastrainer.slicer.scene.nodes import Role, setPoints
+from rastrainer.slicer.scene.robot_description import toolPoses
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import SAFETY_METRICS
@@ -44,7 +44,7 @@ def write_recorded_trial(
     """
     times = np.arange(5, round(seconds / TICK_S) + 1, 5) * TICK_S
     q = np.array([0.1, 0.5, -0.2, -1.4, 0.3, 0.9, 0.0]) + 0.05 * np.sin(times)[:, None]
-    tips = readArmChain(URDF).toolToWorld(q)[:, :3, 3]
+    tips = toolPoses(URDF, q)[:, :3, 3]
     lines = [at(START_S + TICK_S, header(TICK_S, trial_id=trial_id, trainee=trainee))]
     for number, (time, posture, tip) in enumerate(zip(times, q, tips.tolist(), strict=True)):
         time_s, tick, place = START_S + time, 5 * number, tuple(tip)
@@ -105,7 +105,7 @@ def store_trial_on_colin(host: Host, record: dict[str, Any], seed: int) -> np.nd
 
 def put_touches(host: Host, points: np.ndarray) -> None:
     """Put touches, World, mm, into the scene, and wait until the module has registered them."""
-    setPoints(capturedPointsNode(host.scene), LABELS[: len(points)], points)
+    setPoints(Role.CAPTURED_POINTS.make(host.scene), LABELS[: len(points)], points)
     count = len(points) if len(points) > 2 else 0
     table = host.find("residualsTable")
     host.wait_until(lambda: table.rowCount == count, "the touches are registered")

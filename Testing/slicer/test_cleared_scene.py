@@ -13,8 +13,8 @@ from rastrainer.scenario.points import LABELS
 from rastrainer.sections import scenario_logic
 from rastrainer.sections.new_scenario_logic import NewScenarioOptions
 from rastrainer.sections.score_logic import SLICES_A_TURN
-from rastrainer.slicer.scene.nodes import Role, findNode, setPoints
-from rastrainer.slicer.scene.robot_description import readArmChain
+from rastrainer.slicer.scene.nodes import Role, setPoints
+from rastrainer.slicer.scene.robot_description import toolPoses
 from rastrainer.slicer.scene.trial_replay import STATES_A_SLICE, showReplay
 from Testing.slicer.recorded_trial import (
     URDF,
@@ -85,7 +85,8 @@ def test_a_replay_in_the_next_scene_does_not_stop_where_the_previous_one_would_h
 def test_a_long_replay_in_a_closed_scene_is_released_gradually(host, session, tmp_path):
     trial_id = str(uuid.UUID(int=1))
     write_recorded_trial(tmp_path, trial_id, 60.0)
-    showReplay(host.scene, "T", find_track(tmp_path, trial_id), readArmChain(URDF), np.eye(4))
+    track = find_track(tmp_path, trial_id)
+    showReplay(host.scene, "T", track, toolPoses(URDF, track.q), np.eye(4))
     tool = host.scene.GetFirstNodeByName("T: tool sequence")
     count = tool.GetNumberOfDataNodes()
     a_turn = SLICES_A_TURN * STATES_A_SLICE
@@ -108,7 +109,7 @@ def test_a_head_found_in_a_closed_scenes_volume_is_not_used_for_the_next_scenes(
     monkeypatch.setattr(scenario_logic, "inBackground", lambda *_arguments: host.scene.Clear(0))
     with pytest.raises(InputError, match="was removed before its head was found"):
         session.scenarioMaker.preview(NewScenarioOptions(volume), lambda _step, _share: None)
-    assert findNode(host.scene, "vtkMRMLSegmentationNode", Role.HEAD_SEGMENT) is None
+    assert Role.HEAD_SEGMENT.find(host.scene) is None
 
 
 def test_nothing_is_added_to_a_scene_while_it_is_being_loaded(host, session):  # noqa: ARG001

@@ -15,7 +15,7 @@ from rastrainer.igtl.content import Point, Points
 from rastrainer.json_records import record_from_json
 from rastrainer.protocol import DeviceName
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.scene.nodes import Role, findNode, labelsOf, worldPoints
+from rastrainer.slicer.scene.nodes import Role, labelsOf, worldPoints
 from rastrainer.slicer.scene.trial_scene import FIXED_REFERENCE, isApplied
 from rastrainer.study.database.study import Study
 from rastrainer.trial.analysis import analyze_trial
@@ -114,7 +114,7 @@ def check_saved_scene(path, results):
     application = HeadlessScene()
     load_bundle(application, path)
     scene = application.scene
-    transform = findNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
+    transform = Role.WORLD_TO_HEAD.find(scene)
     matrix = np.reshape(results["fits"]["rigid"]["matrix"], (4, 4))
     np.testing.assert_allclose(arrayFromTransformMatrix(transform), matrix, atol=1e-9)
     assert isApplied(transform)
@@ -123,15 +123,15 @@ def check_saved_scene(path, results):
     assert labelsOf(touched) == labelsOf(fixed)
     residuals = np.linalg.norm(worldPoints(touched) - worldPoints(fixed), axis=1)
     np.testing.assert_allclose(residuals, results["fits"]["rigid"]["residualsMm"], atol=2e-3)
-    head = findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
+    head = Role.HEAD_MODEL.find(scene)
     assert head.GetPolyData().GetNumberOfPolys() > 40_000
-    images = findNode(scene, "vtkMRMLScalarVolumeNode", Role.HEAD_VOLUME)
+    images = Role.HEAD_VOLUME.find(scene)
     assert images.GetImageData().GetDimensions() == (204, 228, 178)
     red = scene.GetNodeByID("vtkMRMLSliceCompositeNodeRed")
     assert red.GetBackgroundVolumeID() == images.GetID()
-    assert findNode(scene, "vtkMRMLTableNode", Role.RESIDUALS).GetNumberOfRows() == 15
-    assert findNode(scene, "vtkMRMLTableNode", Role.FITS).GetNumberOfRows() == 3
-    assert findNode(scene, "vtkMRMLModelNode", Role.RESIDUAL_ARROWS).GetPolyData() is not None
+    assert Role.RESIDUALS.find(scene).GetNumberOfRows() == 15
+    assert Role.FITS.find(scene).GetNumberOfRows() == 3
+    assert Role.RESIDUAL_ARROWS.find(scene).GetPolyData() is not None
     assert scene.GetFirstNodeByName("ToolTipToWorld") is None
 
 

@@ -8,7 +8,7 @@ from PySide6 import QtGui
 from rastrainer import transforms
 from rastrainer.protocol import DeviceName
 from rastrainer.slicer.head.volume import imageOfNode
-from rastrainer.slicer.scene.nodes import VOLUME, Role, findNode
+from rastrainer.slicer.scene.nodes import Role
 from Testing.domain.igtl.sent_pose import transform_of
 from Testing.slicer.recorded_trial import COLIN27
 from Testing.slicer.test_views import place
@@ -19,7 +19,7 @@ TARGET = (22.0, 8.0, 14.0)
 
 
 def images(host):
-    return findNode(host.scene, VOLUME, Role.HEAD_VOLUME)
+    return Role.HEAD_VOLUME.find(host.scene)
 
 
 def show_scenario(host):

@@ -140,7 +140,7 @@ def test_touched_points_are_emitted_as_they_come_also_from_a_renamed_list(link, 
         run_link_until(link, lambda wanted=count: counts and counts[-1] == wanted)
         if len(counts) == 1:
             node = scene.GetFirstNode("CapturedPoints", "vtkMRMLMarkupsFiducialNode")
-            assert node.GetAttribute(ROLE_ATTRIBUTE) == Role.CAPTURED_POINTS
+            assert node.GetAttribute(ROLE_ATTRIBUTE) == Role.CAPTURED_POINTS.role
             assert node.GetLocked()
             assert node.GetDisplayNode().GetGlyphScale() == 2.5
             node.SetName("mine")

@@ -16,7 +16,7 @@ from rastrainer.sections import new_scenario_logic, scenario_files, scenario_log
 from rastrainer.sections.new_scenario_logic import editedHead
 from rastrainer.slicer.head.extraction import findHead
 from rastrainer.slicer.head.volume import HeadSettings, Volume, forSegment, volumeOfSegment
-from rastrainer.slicer.scene.nodes import Role, findNode, setPoints
+from rastrainer.slicer.scene.nodes import Role, setPoints
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario, png
 from Testing.slicer.head.phantoms import phantom
 from Testing.slicer.head.placed import add_transform, add_volume
@@ -135,13 +135,13 @@ def test_a_found_head_becomes_a_segment_with_the_displayed_base_and_threshold(ho
     host.type("thresholdSpinBox", "150")
     host.press("previewHeadButton")
     assert "no voxel lies above the threshold" in host.messages.pop().text
-    assert findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_PREVIEW) is None
+    assert Role.HEAD_PREVIEW.find(host.scene) is None
     host.type("thresholdSpinBox", str(host.find("thresholdSpinBox").minimum))
     host.press("previewHeadButton")
     assert host.messages == []
-    node = findNode(host.scene, "vtkMRMLSegmentationNode", Role.HEAD_SEGMENT)
+    node = Role.HEAD_SEGMENT.find(host.scene)
     assert node.GetSegmentation().GetNumberOfSegments() == 1
-    bounds = findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_PREVIEW).GetPolyData().GetBounds()
+    bounds = Role.HEAD_PREVIEW.find(host.scene).GetPolyData().GetBounds()
     assert bounds[5] == pytest.approx(70.0 * SIZE, abs=1.5)
     settings = HeadSettings()
     found = findHead(volumeOfSegment(editedHead(volume, settings)), forSegment(settings), ignore)
@@ -166,8 +166,8 @@ def test_a_draft_is_hidden_once_a_scenario_is_made_and_shown_when_it_is_found_ag
     host.choose("scanComboBox", volume)
     host.press("previewHeadButton")
     draft = [
-        findNode(host.scene, "vtkMRMLSegmentationNode", Role.HEAD_SEGMENT),
-        findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_PREVIEW),
+        Role.HEAD_SEGMENT.find(host.scene),
+        Role.HEAD_PREVIEW.find(host.scene),
     ]
     assert [bool(node.GetDisplayVisibility()) for node in draft] == [True, True]
     host.type("programPathLineEdit", sys.executable)
@@ -189,7 +189,7 @@ def test_a_preview_shows_a_warning_and_is_where_the_volumes_transform_places_it(
     host.press("previewHeadButton")
     assert host.messages == []
     assert "The slices are 5.0 mm apart" in host.text("newScenarioText")
-    bounds = findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_PREVIEW).GetPolyData().GetBounds()
+    bounds = Role.HEAD_PREVIEW.find(host.scene).GetPolyData().GetBounds()
     assert bounds[4] == pytest.approx(65.0, abs=0.01)
     assert bounds[5] == pytest.approx(100.0 + 70.0 * SIZE, abs=3.0)
 

@@ -13,7 +13,7 @@ import slicer
 from PySide6 import QtCore
 
 from rastrainer.registration.target_error import INTERVAL_NOTE
-from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints
+from rastrainer.slicer.scene.nodes import Role, setPoints
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
@@ -165,10 +165,10 @@ def test_history_is_shown_plotted_and_exported(panels, add_trial, tmp_path):
     rows = cells(panels, "historyTable")
     assert [row[2:4] for row in rows] == [["Task 1", time] for time in ("99.0", "98.0", "97.0")]
     panels.press("learningCurveButton")
-    chart = findNode(panels.scene, "vtkMRMLPlotChartNode", Role.LEARNING_CURVE)
+    chart = Role.LEARNING_CURVE.find(panels.scene)
     assert chart.GetNumberOfPlotSeriesNodes() == 2
     panels.press("calibrationButton")
-    assert findNode(panels.scene, "vtkMRMLPlotChartNode", Role.CALIBRATION) is not None
+    assert Role.CALIBRATION.find(panels.scene) is not None
     assert "3 trials have no true target error" in panels.text("traineeText")
     panels.press("calibrationButton")
     panels.answer("Export the trainee", str(tmp_path / "trainee"))
@@ -231,19 +231,19 @@ def test_head_fiducials_and_robot_are_shown_and_another_model_can_be_the_head(pa
     panels.press("showScenarioButton")
     panels.finish_work()
     assert panels.text("startTaskButton") == "Start Task 2"
-    fixed = findNode(panels.scene, "vtkMRMLMarkupsFiducialNode", Role.FIXED_FIDUCIALS)
+    fixed = Role.FIXED_FIDUCIALS.find(panels.scene)
     assert fixed.GetName() == "Task 2 fiducials"
     panels.check("robotCheckBox")
     panels.finish_work()
-    for role in (Role.HEAD_MODEL, *(f"{Role.ROBOT} link {number}" for number in range(8))):
-        model = findNode(panels.scene, "vtkMRMLModelNode", role)
-        assert panels.sees(model), role
-    former = findNode(panels.scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
+    for role in (Role.HEAD_MODEL, *Role.LINKS):
+        model = role.find(panels.scene)
+        assert panels.sees(model), role.role
+    former = Role.HEAD_MODEL.find(panels.scene)
     mine = panels.scene.AddNewNodeByClass("vtkMRMLModelNode", "Mine")
     mine.SetAndObservePolyData(former.GetPolyData())
     panels.choose("headModelComboBox", mine)
     panels.press("useHeadButton")
-    assert findNode(panels.scene, "vtkMRMLModelNode", Role.HEAD_MODEL) is mine
+    assert Role.HEAD_MODEL.find(panels.scene) is mine
     assert not former.GetDisplayVisibility()
     panels.clear_scene()
     panels.wait_until(lambda: not panels.find("robotCheckBox").checked, "the box follows")
@@ -261,14 +261,14 @@ def test_fits_and_errors_are_shown_with_their_units_and_fit_and_target_are_chose
     tips = (panels.find("treText").toolTip, panels.find("fitsTable").item(0, 3).toolTip())
     assert tips == (toolTip(INTERVAL_NOTE),) * 2
     assert len(cells(panels, "residualsTable")) == 15
-    transform = findNode(panels.scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
+    transform = Role.WORLD_TO_HEAD.find(panels.scene)
     rigid = slicer.util.arrayFromTransformMatrix(transform)
     panels.choose("kindComboBox", "Similarity")
     panels.finish_work()
     similar = slicer.util.arrayFromTransformMatrix(transform)
     assert np.linalg.det(rigid[:3, :3]) == pytest.approx(1.0)
     assert np.linalg.det(similar[:3, :3]) != pytest.approx(1.0, abs=1e-6)
-    points = capturedPointsNode(panels.scene)
+    points = Role.CAPTURED_POINTS.make(panels.scene)
     assert panels.find("appliedCheckBox").checked
     panels.check("appliedCheckBox", False)
     assert points.GetParentTransformNode() is None
@@ -315,7 +315,7 @@ def test_the_chosen_fiducial_is_shown_in_the_slices_weighted_and_left_out(panels
 
 def test_one_small_legend_is_drawn_only_in_the_3d_view(panels, touched, tmp_path):
     put_touches(panels, touched)
-    head = findNode(panels.scene, "vtkMRMLModelNode", Role.HEAD_MODEL).GetDisplayNode()
+    head = Role.HEAD_MODEL.find(panels.scene).GetDisplayNode()
     head.SetOpacity(0.4)
     seen = [panels.legends()]
     panels.check("headColoredCheckBox")
@@ -400,7 +400,7 @@ def test_a_trial_is_scored_beside_the_reference_group_and_exported(
     panels.choose("trialComboBox", "1: Task 1")
     assert cells(panels, "motionTable") == [["Smoothness, SPARC", "−1.90"]]
     panels.press("showTablesButton")
-    assert findNode(panels.scene, "vtkMRMLTableNode", Role.SCORE) is not None
+    assert Role.SCORE.find(panels.scene) is not None
     panels.answer("Export all trials", str(tmp_path / "all.csv"))
     with Study.open(study_path) as study:
         study.change_trainee("T-001", consent=True)

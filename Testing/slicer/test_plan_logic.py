@@ -16,9 +16,6 @@ from rastrainer.sections.target_plan_logic import PlanLogic, targetsOf
 from rastrainer.sections.views import jumpTo
 from rastrainer.slicer.scene.nodes import (
     Role,
-    capturedPointsNode,
-    findNode,
-    removeNode,
     setPoints,
     worldPoints,
 )
@@ -48,12 +45,14 @@ class Room(LinkedLab):
         self.logic = PlanLogic(scene, self.link, self.registration)
 
     def register(self):
-        setPoints(capturedPointsNode(self.scene), LABELS, self.touched)
+        setPoints(Role.CAPTURED_POINTS.make(self.scene), LABELS, self.touched)
         self.registration.process()
 
     def target(self, *points):
         node = (
-            self.logic.points.newTarget() if len(points) == 1 else self.logic.points.newTrajectory()
+            self.logic.points.ready(Role.PLAN_TARGET)
+            if len(points) == 1
+            else self.logic.points.ready(Role.PLAN_TRAJECTORY)
         )
         for point in points:
             node.AddControlPoint(*point)
@@ -94,13 +93,13 @@ def test_targets_and_trajectory_of_a_scenario_are_plans_that_stay(scene, scenari
     )
     room = Room(scene, has_plan)
     room.register()
-    targets = findNode(scene, "vtkMRMLMarkupsFiducialNode", Role.TARGET)
+    targets = Role.TARGET.find(scene)
     assert targetsOf(targets) == ("center", "Tumor")
     first, second = (room.logic.read(targets, row) for row in (0, 1))
     assert (first.name, second.name) == ("center", "Tumor")
     np.testing.assert_allclose([*first.ends, *second.ends], [scenario.target.position_ras, TUMOR])
     assert second.expected == room.registration.comparison.targetError(TUMOR)
-    line = findNode(scene, "vtkMRMLMarkupsLineNode", Role.TRAJECTORY)
+    line = Role.TRAJECTORY.find(scene)
     assert targetsOf(line) == ()
     plan = room.logic.read(line)
     assert plan.name == "Biopsy"
@@ -192,7 +191,7 @@ def test_placing_erases_nothing_and_each_change_of_what_is_there_can_be_undone(r
     assert node.GetNthControlPointLabel(0) == label
     points.undo()
     np.testing.assert_allclose(worldPoints(node), [TUMOR])
-    points.newTarget()
+    points.ready(Role.PLAN_TARGET)
     line = room.target(ENTRY, TUMOR)
     room.scene.RemoveNode(line)
     points.undo()
@@ -201,9 +200,9 @@ def test_placing_erases_nothing_and_each_change_of_what_is_there_can_be_undone(r
 
 
 def test_a_second_trajectory_is_another_line_and_an_unfinished_one_is_completed(room):
-    line = room.logic.points.newTrajectory()
+    line = room.logic.points.ready(Role.PLAN_TRAJECTORY)
     line.AddControlPoint(*ENTRY)
-    assert room.logic.points.newTrajectory() is line
+    assert room.logic.points.ready(Role.PLAN_TRAJECTORY) is line
     line.AddControlPoint(*TUMOR)
     second = room.target(TUMOR, ENTRY)
     assert second is not line
@@ -229,7 +228,7 @@ def test_without_a_point_or_a_registration_the_message_says_what_is_missing(room
     with pytest.raises(InputError, match="Place a target or a trajectory"):
         room.logic.read(None)
     with pytest.raises(InputError, match="has no point yet"):
-        room.logic.read(room.logic.points.newTarget())
+        room.logic.read(room.logic.points.ready(Role.PLAN_TARGET))
     with pytest.raises(InputError, match="no registration to map the plan"):
         room.logic.read(room.target(TUMOR))
 
@@ -237,8 +236,8 @@ def test_without_a_point_or_a_registration_the_message_says_what_is_missing(room
 def test_clicks_place_the_plan_even_while_a_scenario_is_shown(room, scenario):
     markups = slicer.vtkSlicerMarkupsLogic()
     markups.SetMRMLScene(room.scene)
-    removeNode(room.scene, "vtkMRMLMarkupsFiducialNode", Role.FIXED_FIDUCIALS)
-    node = room.logic.points.newTarget()
+    Role.FIXED_FIDUCIALS.remove(room.scene)
+    node = room.logic.points.ready(Role.PLAN_TARGET)
     startPlacing(room.scene, node)
     showTask(room.scene, scenario, "task-1")
     selection = room.scene.GetNodeByID("vtkMRMLSelectionNodeSingleton")

@@ -7,7 +7,7 @@ from rastrainer import transforms
 from rastrainer.commands import CommandName
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
+from rastrainer.slicer.scene.nodes import Role, setPoints
 from rastrainer_simulator.assets import asset_path
 from Testing.slicer.simulator_double import SimulatorDouble, connect_module
 
@@ -25,7 +25,7 @@ def planner(host):
         noise = np.random.default_rng(3).normal(0.0, 0.6, (15, 3))
         fiducials = colin.task("task-1").fiducials
         touched = transforms.apply(colin.perturbed_head_to_world(3), fiducials + noise)
-        setPoints(capturedPointsNode(host.scene), LABELS, touched)
+        setPoints(Role.CAPTURED_POINTS.make(host.scene), LABELS, touched)
         # The mouse would place the point in a list that is added later.
         host.finish_work()
         host.press("placeTargetButton")

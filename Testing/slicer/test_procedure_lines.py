@@ -9,10 +9,8 @@ from vtk.util.numpy_support import vtk_to_numpy
 
 from rastrainer import transforms
 from rastrainer.procedure.errors import analyze_procedure, true_lines
-from rastrainer.slicer.scene.nodes import Role, findNode, nodesOf, worldPoints
+from rastrainer.slicer.scene.nodes import Role, worldPoints
 from rastrainer.slicer.scene.procedure_lines import (
-    LINE,
-    MODEL,
     showPlannedLines,
     showProcedureErrors,
 )
@@ -41,16 +39,16 @@ def analysis():
 def test_each_meaning_has_one_color_in_slicer_and_in_the_simulators_views(headless_scene, analysis):
     showProcedureErrors(headless_scene.scene, *analysis)
     for role, tone in zip(ROLES, (PLANNED, SHOWN, PLACED), strict=True):
-        color = nodesOf(headless_scene.scene, LINE, role)[0].GetDisplayNode().GetSelectedColor()
+        color = role.all(headless_scene.scene)[0].GetDisplayNode().GetSelectedColor()
         assert color == pytest.approx(Color(TONES[tone]).coords(), abs=1e-3)
 
 
 def lines(scene, role):
-    return [worldPoints(node) for node in nodesOf(scene, LINE, role)]
+    return [worldPoints(node) for node in role.all(scene)]
 
 
 def column(scene, name):
-    table = findNode(scene, "vtkMRMLTableNode", Role.PROCEDURE_ERRORS).GetTable()
+    table = Role.PROCEDURE_ERRORS.find(scene).GetTable()
     return vtk_to_numpy(table.GetColumnByName(name))
 
 
@@ -78,12 +76,12 @@ def test_the_lines_in_a_scene_have_the_errors_shown_in_its_table(headless_scene,
     scene, found = headless_scene.scene, analysis[0]
     showProcedureErrors(scene, *analysis)
     check(scene, found)
-    aligned = findNode(scene, "vtkMRMLTableNode", Role.PROCEDURE_ERRORS).GetTable()
+    aligned = Role.PROCEDURE_ERRORS.find(scene).GetTable()
     first, second = map(aligned.GetColumnByName("aligned by").GetValue, (0, 1))
     assert (first, second) == ("robot", "hand")
-    names = [node.GetName() for node in nodesOf(scene, LINE, Role.TRUE_LINE)]
+    names = [node.GetName() for node in Role.TRUE_LINE.all(scene)]
     assert names == ["Left, true", "Right, true"]
-    assert all(node.GetLocked() for role in ROLES for node in nodesOf(scene, LINE, role))
+    assert all(node.GetLocked() for role in ROLES for node in role.all(scene))
 
 
 def test_the_arrows_show_the_registration_error_then_the_hand_error_true_to_scale(
@@ -92,7 +90,7 @@ def test_the_arrows_show_the_registration_error_then_the_hand_error_true_to_scal
     scene, found = headless_scene.scene, analysis[0]
     showProcedureErrors(scene, *analysis)
     by_registration, by_hand = (
-        findNode(scene, MODEL, role).GetPolyData()
+        role.find(scene).GetPolyData()
         for role in (Role.ERRORS_BY_REGISTRATION, Role.ERRORS_BY_HAND)
     )
     for errors, line in zip(found.trajectories, analysis[1], strict=True):
@@ -114,7 +112,7 @@ def test_everything_is_still_there_in_a_saved_and_reopened_scene(
     headless_scene.save(tmp_path / "procedure.mrb")
     load_bundle(headless_scene, tmp_path / "procedure.mrb")
     check(headless_scene.scene, analysis[0])
-    assert findNode(headless_scene.scene, MODEL, Role.ERRORS_BY_HAND).GetPolyData() is not None
+    assert Role.ERRORS_BY_HAND.find(headless_scene.scene).GetPolyData() is not None
     # When it is shown again, nothing is duplicated.
     showProcedureErrors(headless_scene.scene, *analysis)
     check(headless_scene.scene, analysis[0])
@@ -125,9 +123,9 @@ def test_another_plan_replaces_lines_and_errors(headless_scene, analysis):
     showProcedureErrors(scene, *analysis)
     other = made_up_procedure(trajectory("Only", (0.0, 0.0, 90.0), (0.0, 5.0, 10.0)))
     showPlannedLines(scene, other)
-    assert [node.GetName() for node in nodesOf(scene, LINE, Role.PLANNED_LINE)] == ["Only"]
+    assert [node.GetName() for node in Role.PLANNED_LINE.all(scene)] == ["Only"]
     assert lines(scene, Role.TRUE_LINE) == []
-    assert findNode(scene, "vtkMRMLTableNode", Role.PROCEDURE_ERRORS) is None
+    assert Role.PROCEDURE_ERRORS.find(scene) is None
     showPlannedLines(scene, procedure)
     assert len(lines(scene, Role.PLANNED_LINE)) == 2
     showPlannedLines(scene, None)

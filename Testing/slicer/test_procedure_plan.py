@@ -9,11 +9,11 @@ import vtk
 from rastrainer.errors import InputError
 from rastrainer.procedure.plan import MAX_NO_GO_TRIANGLES
 from rastrainer.sections.procedure_plan_logic import PlanDescription, ProcedurePlanLogic, noGoMeshes
-from rastrainer.slicer.scene.nodes import setPoints, setValues
+from rastrainer.slicer.scene.nodes import Role, setPoints, setValues
+from rastrainer.slicer.scene.plan_points import unfinishedLine
 from rastrainer.slicer.scene.procedure_lines import (
     instrumentOf,
     isNoGo,
-    newPlanLine,
     noGoNodes,
     planLines,
     setInstrument,
@@ -33,7 +33,7 @@ def logic(scene):
 
 
 def placed(scene, name="Line", ends=ENDS):
-    line = newPlanLine(scene)
+    line = unfinishedLine(scene, Role.PLAN_LINE)
     line.SetName(name)
     setPoints(line, ("Entry", "Target"), ends)
     return line

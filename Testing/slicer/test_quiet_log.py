@@ -7,7 +7,7 @@ import pytest
 import slicer
 
 from rastrainer.scenario.points import LABELS
-from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
+from rastrainer.slicer.scene.nodes import Role, setPoints
 from rastrainer.slicer.scene.trial_replay import findReplay
 from Testing.slicer.recorded_trial import store_trial_on_colin, write_recorded_trial
 
@@ -27,7 +27,7 @@ def at_work(host, make_record):
     host.press("createTraineeButton")
     host.choose("traineeComboBox", "T001")
     host.press("showScenarioButton")
-    setPoints(capturedPointsNode(host.scene), LABELS, touched)
+    setPoints(Role.CAPTURED_POINTS.make(host.scene), LABELS, touched)
     host.wait_until(lambda: host.find("residualsTable").rowCount == 15, "touches are registered")
     return host
 

@@ -16,7 +16,7 @@ from rastrainer.registration.target_error import expected_tre, target_error
 from rastrainer.scenario.points import LABELS
 from rastrainer.sections.registration_logic import RegistrationLogic
 from rastrainer.slicer.scene.error_colors import TRE_SCALARS
-from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints, worldPoints
+from rastrainer.slicer.scene.nodes import Role, setPoints, worldPoints
 from rastrainer.slicer.scene.registration_input import Choices
 from rastrainer.slicer.scene.scenario_nodes import showTask
 from rastrainer.slicer.scene.trial_scene import FIXED_REFERENCE, isApplied, movingNode, setApplied
@@ -42,11 +42,11 @@ class Table:
 
     def touch(self, points=None, labels=LABELS):
         points = self.touched if points is None else points
-        setPoints(capturedPointsNode(self.scene), labels[: len(points)], points)
+        setPoints(Role.CAPTURED_POINTS.make(self.scene), labels[: len(points)], points)
         self.logic.process()
 
-    def node(self, role, class_name="vtkMRMLTableNode"):
-        return findNode(self.scene, class_name, role)
+    def node(self, role):
+        return role.find(self.scene)
 
     def warn(self, code):
         (remedy,) = [r for r in self.logic.comparison.remedies if r.warning.code == code]
@@ -101,7 +101,7 @@ def test_the_transform_shows_the_chosen_fit_and_remembers_its_lists(table):
     np.testing.assert_allclose(
         arrayFromTransformMatrix(transform), table.logic.comparison.fits[AFFINE].matrix
     )
-    assert movingNode(transform) is capturedPointsNode(table.scene)
+    assert movingNode(transform) is Role.CAPTURED_POINTS.make(table.scene)
     assert transform.GetNodeReference(FIXED_REFERENCE) is table.fixed
     assert isApplied(transform)
     setApplied(transform, False)
@@ -137,7 +137,7 @@ def test_a_touch_that_is_deselected_in_slicer_is_left_out_until_it_is_selected(t
     bad = table.touched.copy()
     bad[6] += [9.0, -6.0, 5.0]
     table.touch(bad)
-    before, touches = table.logic.comparison.shown.fre_mm, capturedPointsNode(table.scene)
+    before, touches = table.logic.comparison.shown.fre_mm, Role.CAPTURED_POINTS.make(table.scene)
     touches.SetNthControlPointSelected(6, False)
     table.logic.process()
     pairs = table.logic.comparison.pairs
@@ -178,13 +178,13 @@ def test_a_stated_localization_error_weights_only_the_rigid_fit_and_can_be_undon
 
 def test_reordered_points_keep_their_localization_errors():
     choices = Choices().localized("2", 3.0).rename({"1": "2", "2": "1"}).without(("5",))
-    assert choices == Choices(frozenset({"5"}), (("1", "2"), ("2", "1")), (("2", 3.0),))
+    assert choices == Choices(frozenset({"5"}), {"1": "2", "2": "1"}, {"2": 3.0})
 
 
 def test_another_trial_begins_without_the_changes_of_the_previous_one(table):
     table.touch()
     table.logic.change(table.logic.choices.without(("3",)))
-    setPoints(capturedPointsNode(table.scene), (), np.zeros((0, 3)))
+    setPoints(Role.CAPTURED_POINTS.make(table.scene), (), np.zeros((0, 3)))
     table.logic.process()
     table.touch()
     assert table.logic.comparison.pairs.excluded == ()
@@ -208,7 +208,7 @@ def test_the_head_is_colored_by_the_expected_error_at_each_place_with_a_legend(t
     table.scene.RegisterNodeClass(slicer.vtkMRMLColorLegendDisplayNode())
     table.touch()
     table.logic.setHeadColored(True)
-    head = table.node(Role.HEAD_MODEL, "vtkMRMLModelNode")
+    head = table.node(Role.HEAD_MODEL)
     values = slicer.util.arrayFromModelPointData(head, TRE_SCALARS)
     points = slicer.util.arrayFromModelPoints(head)
     there = table.logic.comparison.targetError(points[100])
@@ -225,7 +225,7 @@ def test_the_head_is_colored_by_the_expected_error_at_each_place_with_a_legend(t
     table.logic.setHeadColored(False)
     assert not display.GetScalarVisibility()
     assert not titles["TRE (mm)"].GetVisibility()
-    arrows = table.node(Role.RESIDUAL_ARROWS, "vtkMRMLModelNode")
+    arrows = table.node(Role.RESIDUAL_ARROWS)
     assert arrows.GetPolyData().GetNumberOfPoints() > 0
     table.touch(table.touched[:2])
     assert not titles["Residual (mm)"].GetVisibility()
@@ -250,14 +250,14 @@ def test_other_lists_can_be_registered_and_deleted_nodes_do_not_matter(table):
     table.scene.RemoveNode(mine)
     table.logic.process()
     np.testing.assert_allclose(table.logic.comparison.shown.moving_mm, table.touched, atol=1e-9)
-    for role, class_name in (
-        (Role.WORLD_TO_HEAD, "vtkMRMLLinearTransformNode"),
-        (Role.RESIDUAL_ARROWS, "vtkMRMLModelNode"),
-        (Role.HEAD_MODEL, "vtkMRMLModelNode"),
-        (Role.TARGET, "vtkMRMLMarkupsFiducialNode"),
-        (Role.FIXED_FIDUCIALS, "vtkMRMLMarkupsFiducialNode"),
+    for role in (
+        Role.WORLD_TO_HEAD,
+        Role.RESIDUAL_ARROWS,
+        Role.HEAD_MODEL,
+        Role.TARGET,
+        Role.FIXED_FIDUCIALS,
     ):
-        table.scene.RemoveNode(table.node(role, class_name))
+        table.scene.RemoveNode(table.node(role))
         table.logic.process()
     assert table.logic.comparison is None
     assert table.logic.problem == "Choose the list of fixed points."
@@ -289,7 +289,7 @@ def test_nothing_is_computed_in_the_main_thread_and_normals_before_points_are_to
     in_turns(work)
     assert threading.get_ident() not in threads.pop("nearest_on_mesh")
     logic_in_turns.setHeadColored(True)
-    setPoints(capturedPointsNode(table.scene), LABELS, table.touched)
+    setPoints(Role.CAPTURED_POINTS.make(table.scene), LABELS, table.touched)
     logic_in_turns.process()
     in_turns(work)
     assert logic_in_turns.comparison is not None
@@ -298,10 +298,10 @@ def test_nothing_is_computed_in_the_main_thread_and_normals_before_points_are_to
 
 
 def test_touches_are_registered_again_on_another_head(table, logic_in_turns, work):
-    head = table.node(Role.HEAD_MODEL, "vtkMRMLModelNode")
+    head = table.node(Role.HEAD_MODEL)
     surface = head.GetPolyData()
     head.SetAndObservePolyData(None)
-    setPoints(capturedPointsNode(table.scene), LABELS, table.touched)
+    setPoints(Role.CAPTURED_POINTS.make(table.scene), LABELS, table.touched)
     logic_in_turns.process()
     in_turns(work)
     without = logic_in_turns.comparison.errors[RIGID]
@@ -323,12 +323,12 @@ def test_with_turns_each_part_of_a_registration_is_shown_in_a_separate_turn(
     table, logic_in_turns, work
 ):
     logic, scene = logic_in_turns, table.scene
-    setPoints(capturedPointsNode(scene), LABELS, table.touched)
+    setPoints(Role.CAPTURED_POINTS.make(scene), LABELS, table.touched)
     logic.process()
     counts = []
 
     def count():
-        arrows = table.node(Role.RESIDUAL_ARROWS, "vtkMRMLModelNode")
+        arrows = table.node(Role.RESIDUAL_ARROWS)
         parts = logic.transform, table.node(Role.FITS), arrows, logic.comparison
         counts.append(sum(part is not None for part in parts))
 
@@ -341,7 +341,7 @@ def test_with_turns_each_part_of_a_registration_is_shown_in_a_separate_turn(
 
 
 def test_lists_that_are_deleted_between_two_turns_are_not_shown(table, logic_in_turns, work):
-    setPoints(capturedPointsNode(table.scene), LABELS, table.touched)
+    setPoints(Role.CAPTURED_POINTS.make(table.scene), LABELS, table.touched)
     logic_in_turns.process()
     work.process()
     table.scene.RemoveNode(table.fixed)
@@ -356,7 +356,7 @@ def test_lists_that_are_deleted_between_two_turns_are_not_shown(table, logic_in_
 def test_of_changes_that_follow_one_another_only_the_last_is_shown(table, logic_in_turns, work):
     shown = []
     logic_in_turns.changed.connect(lambda: shown.append(logic_in_turns.comparison.pairs.excluded))
-    setPoints(capturedPointsNode(table.scene), LABELS, table.touched)
+    setPoints(Role.CAPTURED_POINTS.make(table.scene), LABELS, table.touched)
     logic_in_turns.process()
     work.process()
     logic_in_turns.change(logic_in_turns.choices.without(("4",)))
@@ -369,7 +369,7 @@ def test_a_list_that_changes_back_is_registered_again_even_after_another_registr
     table, logic_in_turns, work
 ):
     logic = logic_in_turns
-    setPoints(capturedPointsNode(table.scene), LABELS, table.touched)
+    setPoints(Role.CAPTURED_POINTS.make(table.scene), LABELS, table.touched)
     logic.process()
     in_turns(work)
     fixed = worldPoints(table.fixed)

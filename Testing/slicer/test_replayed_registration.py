@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from rastrainer.registration.registration import register
-from rastrainer.slicer.scene.nodes import capturedPointsNode
+from rastrainer.slicer.scene.nodes import Role
 from rastrainer.study.outcomes import task_title
 from Testing.slicer.recorded_trial import COLIN27, store_trial_on_colin, write_recorded_trial
 from Testing.slicer.told_module import ToldModule
@@ -71,7 +71,7 @@ def test_a_trial_in_progress_is_not_disturbed_and_begins_without_the_replays_tou
     simulator.responder = lambda name, _arguments: tasks if name == "ListTasks" else {}
     told = ToldModule(host, simulator)
     told.tell(task="task-2")
-    captured = capturedPointsNode(host.scene)
+    captured = Role.CAPTURED_POINTS.make(host.scene)
     host.wait_until(lambda: captured.GetNumberOfControlPoints() == 0, "the trial begins")
     assert captured.GetDisplayNode().GetVisibility()
     host.press("replayButton")

@@ -9,8 +9,8 @@ import slicer
 import vtk
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.scene.nodes import capturedPointsNode
-from rastrainer.slicer.scene.robot import addLink, missingLinks, robotNode, setRobotVisible
+from rastrainer.slicer.scene.nodes import Role
+from rastrainer.slicer.scene.robot import addLink, missingLinks, setRobotVisible
 from rastrainer.slicer.scene.robot_description import readLinkMeshes
 from rastrainer.slicer.scene.scenario_nodes import showTask
 from rastrainer.slicer.scene.trial_scene import followPlacement, setApplied, showPlannedPlace
@@ -36,7 +36,7 @@ def bounds(node):
 @pytest.fixture
 def robot(scene):
     add_links(scene)
-    return [robotNode(scene, number) for number in range(8)]
+    return [Role.LINKS[number].find(scene) for number in range(8)]
 
 
 def add_links(scene):
@@ -91,7 +91,7 @@ def test_the_robot_moves_with_the_poses_of_its_links(scene, robot):
 
 def test_the_robot_is_where_its_touches_are_shown(scene, robot, scenario):
     fixed = showTask(scene, scenario, "task-1")
-    transform = showPlannedPlace(scene, scenario, capturedPointsNode(scene), fixed)
+    transform = showPlannedPlace(scene, scenario, fixed)
     in_world = bounds(robot[0])
     followPlacement(scene)
     on_head = bounds(robot[0])
@@ -108,8 +108,8 @@ def test_deleted_parts_are_recreated_when_the_robot_is_shown_again(scene, robot)
     scene.RemoveNode(scene.GetFirstNode("Link5ToWorld", "vtkMRMLLinearTransformNode"))
     followPlacement(scene)
     add_links(scene)
-    assert robotNode(scene, 3).GetParentTransformNode().GetName() == "Link3ToWorld"
-    assert robotNode(scene, 5).GetParentTransformNode().GetName() == "Link5ToWorld"
+    assert Role.LINKS[3].find(scene).GetParentTransformNode().GetName() == "Link3ToWorld"
+    assert Role.LINKS[5].find(scene).GetParentTransformNode().GetName() == "Link5ToWorld"
 
 
 def test_a_folder_without_a_robot_is_reported(tmp_path):

@@ -12,7 +12,7 @@ from rastrainer.head.mesh import write_head_mesh
 from rastrainer.scenario.points import PlannedTarget, PlannedTrajectory
 from rastrainer.scenario.scenario import SkullFile, SkullKind
 from rastrainer.slicer.scene import scenario_nodes as shown
-from rastrainer.slicer.scene.nodes import Role, findNode, labelsOf, worldPoints
+from rastrainer.slicer.scene.nodes import Role, labelsOf, worldPoints
 from rastrainer.slicer.scene.scenario_nodes import showTask
 from Testing.domain.scenario.made_up_scenario import ball_head
 from Testing.slicer.shown_scenario import show_whole
@@ -37,27 +37,27 @@ def planned(scenario):
 
 def test_all_targets_and_the_trajectory_are_shown_the_scenarios_own_first(scene, planned):
     show_whole(scene, planned)
-    targets = findNode(scene, FIDUCIALS, Role.TARGET)
+    targets = Role.TARGET.find(scene)
     assert labelsOf(targets) == ("center", "Cyst")
     np.testing.assert_allclose(worldPoints(targets), [[0, 10, -20], [10, 20, 30]])
-    line = findNode(scene, LINE, Role.TRAJECTORY)
+    line = Role.TRAJECTORY.find(scene)
     assert (line.GetName(), labelsOf(line)) == ("Biopsy", ("Entry", "Target"))
     np.testing.assert_allclose(worldPoints(line), [[0, 0, 90], [1, 2, 3]])
     assert targets.GetLocked()
     assert line.GetLocked()
-    head, bounds = findNode(scene, MODEL, Role.HEAD_MODEL), [0.0] * 6
+    head, bounds = Role.HEAD_MODEL.find(scene), [0.0] * 6
     head.GetRASBounds(bounds)
     np.testing.assert_allclose(bounds, [-90.0, 90.0] * 3, atol=1.0)
 
 
 def test_the_skull_is_visible_through_the_skin_and_named_for_what_it_is(scene, planned):
     show_whole(scene, planned)
-    skull = findNode(scene, MODEL, Role.SKULL)
+    skull = Role.SKULL.find(scene)
     assert skull.GetName() == "Skull (approximation)"
     bounds = [0.0] * 6
     skull.GetRASBounds(bounds)
     np.testing.assert_allclose(bounds, [-80.0, 80.0] * 3, atol=1.0)
-    assert findNode(scene, MODEL, Role.HEAD_MODEL).GetDisplayNode().GetOpacity() < 1.0
+    assert Role.HEAD_MODEL.find(scene).GetDisplayNode().GetOpacity() < 1.0
     show_whole(
         scene, replace(planned, name="ct", skull=SkullFile(planned.skull.file, SkullKind.BONE))
     )
@@ -67,10 +67,10 @@ def test_the_skull_is_visible_through_the_skin_and_named_for_what_it_is(scene, p
 def test_anything_the_new_scenario_lacks_is_removed(scene, planned, scenario):
     show_whole(scene, planned)
     show_whole(scene, scenario)
-    assert findNode(scene, LINE, Role.TRAJECTORY) is None
-    assert findNode(scene, MODEL, Role.SKULL) is None
-    assert labelsOf(findNode(scene, FIDUCIALS, Role.TARGET)) == ("center",)
-    assert findNode(scene, MODEL, Role.HEAD_MODEL).GetDisplayNode().GetOpacity() == 1.0
+    assert Role.TRAJECTORY.find(scene) is None
+    assert Role.SKULL.find(scene) is None
+    assert labelsOf(Role.TARGET.find(scene)) == ("center",)
+    assert Role.HEAD_MODEL.find(scene).GetDisplayNode().GetOpacity() == 1.0
 
 
 def test_a_surface_is_shown_in_its_final_look_so_that_no_view_draws_it_again(scene, planned):
@@ -89,7 +89,7 @@ def test_a_surface_is_shown_in_its_final_look_so_that_no_view_draws_it_again(sce
     tag = scene.AddObserver(scene.NodeAddedEvent, watch)
     show_whole(scene, planned)
     scene.RemoveObserver(tag)
-    head, skull = (findNode(scene, MODEL, role) for role in (Role.HEAD_MODEL, Role.SKULL))
+    head, skull = (role.find(scene) for role in (Role.HEAD_MODEL, Role.SKULL))
     assert {look[0] for look in looks} == {head.GetDisplayNodeID(), skull.GetDisplayNodeID()}
     assert len(set(looks)) == 2
     assert head.GetDisplayNode().GetVisibility2D()
@@ -113,7 +113,7 @@ def test_a_scenario_rebuilt_under_its_name_is_shown_again(scene, planned):
     show_whole(scene, rebuilt)
     node = showTask(scene, rebuilt, "task-1")
     for role, radius in ((Role.HEAD_MODEL, 70.0), (Role.SKULL, 60.0)):
-        bounds = findNode(scene, MODEL, role).GetPolyData().GetBounds()
+        bounds = role.find(scene).GetPolyData().GetBounds()
         np.testing.assert_allclose(bounds, [-radius, radius] * 3, atol=1.0)
     np.testing.assert_allclose(worldPoints(node), moved.fiducials)
 
@@ -128,7 +128,7 @@ def test_a_shown_mesh_is_not_read_again_and_a_missing_one_is_reported(scene, pla
     planned.head.unlink()
     (problem,) = show_whole(scene, planned)
     assert problem.startswith("No head is shown: The mesh ")
-    assert findNode(scene, MODEL, Role.HEAD_MODEL) is None
+    assert Role.HEAD_MODEL.find(scene) is None
 
 
 def test_the_fiducials_of_a_task_are_numbered_and_locked_and_found_though_renamed(scene, scenario):

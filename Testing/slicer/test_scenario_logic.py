@@ -9,7 +9,7 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.sections.scenario_logic import ScenarioLogic
 from rastrainer.slicer.program.child_process import runHere
-from rastrainer.slicer.scene.nodes import Role, findNode
+from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.robot import missingLinks
 from rastrainer.slicer.scene.robot_description import READ_LINKS
 from rastrainer.slicer.scene.trial_scene import isApplied
@@ -96,7 +96,7 @@ def test_a_scene_that_is_cleared_while_a_scenario_comes_stays_empty(scene, logic
     scene.Clear(0)
     work.forgetScene()
     in_turns(work)
-    assert findNode(scene, "vtkMRMLMarkupsFiducialNode", Role.TARGET) is None
+    assert Role.TARGET.find(scene) is None
 
 
 def test_a_scenario_is_shown_and_the_skin_of_a_volume_becomes_the_head(scene, logic, work):
@@ -105,12 +105,12 @@ def test_a_scenario_is_shown_and_the_skin_of_a_volume_becomes_the_head(scene, lo
     assert not work.isBusy
     logic.show("ball", "task-1")
     in_turns(work)
-    assert isApplied(findNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD))
-    former = findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
+    assert isApplied(Role.WORLD_TO_HEAD.find(scene))
+    former = Role.HEAD_MODEL.find(scene)
     grid = np.indices((50, 50, 50)) - 25.0
     ball = (np.linalg.norm(grid, axis=0) < 20).astype(np.float32) * 100.0
     model, warnings = logic.useHead(volume(scene, ball, 3.0))
-    assert findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL) is model
+    assert Role.HEAD_MODEL.find(scene) is model
     assert model.GetName() == "Head of MRI"
     assert not former.GetDisplayVisibility()
     bounds = np.array(model.GetPolyData().GetBounds())
@@ -121,10 +121,10 @@ def test_a_scenario_is_shown_and_the_skin_of_a_volume_becomes_the_head(scene, lo
 def test_a_broken_volume_is_reported_and_the_head_stays(scene, logic, work):
     logic.show("ball", "task-1")
     in_turns(work)
-    shown = findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
+    shown = Role.HEAD_MODEL.find(scene)
     with pytest.raises(InputError, match="not numbers"):
         logic.useHead(volume(scene, np.full((60, 60, 60), np.nan, np.float32), 3.0))
-    assert findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL) is shown
+    assert Role.HEAD_MODEL.find(scene) is shown
     assert shown.GetDisplayVisibility()
     with pytest.raises(InputError, match="holds no image"):
         logic.useHead(scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode", "Empty"))

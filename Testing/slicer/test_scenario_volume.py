@@ -12,9 +12,8 @@ from rastrainer.head.volume import VolumeFile, write_nrrd
 from rastrainer.scenario.scenario import SkullFile, SkullKind
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.scene import scenario_nodes
-from rastrainer.slicer.scene.nodes import Role, findNode
+from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.scenario_nodes import (
-    MODEL,
     VOLUME,
     SceneFileLoader,
     showImages,
@@ -47,7 +46,7 @@ class Loading:
 
     @property
     def node(self):
-        return findNode(self.scene, VOLUME, Role.HEAD_VOLUME)
+        return Role.HEAD_VOLUME.find(self.scene)
 
 
 @pytest.fixture
@@ -78,7 +77,7 @@ def test_the_images_lie_where_the_head_is_with_their_window_in_all_slice_views(
     assert np.array_equal(slicer.util.arrayFromVolume(node).T, images.values)
     bounds, head = [0.0] * 6, [0.0] * 6
     node.GetRASBounds(bounds)
-    findNode(scene, MODEL, Role.HEAD_MODEL).GetRASBounds(head)
+    Role.HEAD_MODEL.find(scene).GetRASBounds(head)
     assert all(low < other for low, other in zip(bounds[::2], head[::2], strict=True))
     assert all(high > other for high, other in zip(bounds[1::2], head[1::2], strict=True))
     display = node.GetDisplayNode()
@@ -113,7 +112,7 @@ def test_meshes_and_images_are_read_beside_the_main_thread_and_shown_one_in_a_tu
     loading.loader.process()
 
     def count():
-        models = [findNode(scene, MODEL, role) for role in (Role.HEAD_MODEL, Role.SKULL)]
+        models = [role.find(scene) for role in (Role.HEAD_MODEL, Role.SKULL)]
         data = [*(model.GetPolyData() for model in models), loading.node.GetImageData()]
         filled.append(sum(each is not None for each in data))
 
@@ -180,7 +179,7 @@ def test_unusable_images_are_reported_and_the_head_is_shown(scene, loading, imag
     (sentence,) = loading.problems
     assert sentence.startswith("There are no images in the slice views: ")
     assert "volume.nrrd" in sentence
-    assert findNode(scene, MODEL, Role.HEAD_MODEL) is not None
+    assert Role.HEAD_MODEL.find(scene) is not None
 
 
 def test_a_node_deleted_while_it_is_read_stays_deleted_and_one_without_display_is_filled(
@@ -207,7 +206,7 @@ def test_a_saved_scene_carries_the_images_and_shows_them(imaged, tmp_path):
     imaged.volume.file.unlink()
     opened = HeadlessScene()
     load_bundle(opened, tmp_path / "trial.mrb")
-    node = findNode(opened.scene, VOLUME, Role.HEAD_VOLUME)
+    node = Role.HEAD_VOLUME.find(opened.scene)
     assert np.array_equal(slicer.util.arrayFromVolume(node).T, ball_volume().values)
     assert node.GetDisplayNode().GetWindow() == 120.0
     assert backgrounds(opened.scene) == [node.GetID()] * 3

@@ -7,8 +7,7 @@ import pytest
 
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.scenario.points import LABELS
-from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
-from rastrainer.slicer.scene.robot import robotNode
+from rastrainer.slicer.scene.nodes import Role, setPoints
 from Testing.slicer.host.scene_load import SceneLoad
 from Testing.slicer.recorded_trial import (
     COLIN27,
@@ -70,7 +69,7 @@ def test_the_nodes_of_a_replay_come_a_few_in_each_turn(opened, make_record):
 
 def test_the_robot_comes_one_link_at_a_time_and_is_told_of_once(opened):
     load = shown(opened, lambda: opened.check("robotCheckBox"))
-    cells = [robotNode(opened.scene, n).GetPolyData().GetNumberOfCells() for n in range(8)]
+    cells = [Role.LINKS[n].find(opened.scene).GetPolyData().GetNumberOfCells() for n in range(8)]
     assert load.most.cells == max(cells)
     assert load.total.cells == sum(cells)
     # A model, its display and its pose, which are set before they are added to the scene.
@@ -81,7 +80,7 @@ def test_the_robot_comes_one_link_at_a_time_and_is_told_of_once(opened):
 def test_touches_are_shown_in_parts_and_each_once(opened):
     opened.press("showScenarioButton")
     opened.finish_work()
-    touched, points = touches_on_colin(), capturedPointsNode(opened.scene)
+    touched, points = touches_on_colin(), Role.CAPTURED_POINTS.make(opened.scene)
     load = shown(
         opened,
         lambda: setPoints(points, LABELS[:14], touched[:14]),

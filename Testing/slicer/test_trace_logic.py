@@ -11,7 +11,7 @@ from vtk.util.numpy_support import vtk_to_numpy
 from rastrainer import transforms
 from rastrainer.scenario.points import Landmark
 from rastrainer.scenario.scenario import Camera
-from rastrainer.sections.trace_logic import DISTANCE_SCALARS, MODEL, TraceLogic
+from rastrainer.sections.trace_logic import DISTANCE_SCALARS, TraceLogic
 from rastrainer.sections.trial_services import TrialServices
 from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.scenario_nodes import SceneFileLoader
@@ -74,14 +74,14 @@ class Tracing(Room):
     @property
     def shown(self):
         """The positions of the shown points, RAS; None without any."""
-        node = self.node(Role.TRACED_POINTS, MODEL)
+        node = self.node(Role.TRACED_POINTS)
         if node is None or not node.GetPolyData().GetNumberOfPoints():
             return None
         return vtk_to_numpy(node.GetPolyData().GetPoints().GetData())
 
     @property
     def head(self):
-        return self.node(Role.HEAD_MODEL, MODEL)
+        return self.node(Role.HEAD_MODEL)
 
     def close(self):
         self.traces.close()
@@ -146,7 +146,7 @@ def test_the_whole_trace_disappears_when_the_trial_ends(tracing):
     tracing.run_until(lambda: tracing.node(Role.NEXT_PLACE) is not None)
     tracing.tell(phase="registered", method="surface", trace={"kept": 40, "strokes": 1})
     tracing.run_until(lambda: tracing.shown is None)
-    assert tracing.node(Role.TRACED_POINTS, MODEL) is None
+    assert tracing.node(Role.TRACED_POINTS) is None
     assert tracing.node(Role.NEXT_PLACE) is None
     assert not tracing.head.GetDisplayNode().GetScalarVisibility()
     assert tracing.head.GetDisplayNode().GetOpacity() == 1.0

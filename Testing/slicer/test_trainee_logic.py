@@ -12,7 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.procedure.plan import ProcedureKind
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.sections.trainees_logic import TraineeLogic, calibration
-from rastrainer.slicer.scene.nodes import Role, findNode
+from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.score_tables import (
     ctpsRows,
     motionRows,
@@ -116,7 +116,7 @@ def test_the_history_is_a_table_and_two_learning_curves_with_room_for_more(scene
     assert chart.GetXAxisRange() == (0.0, 5.0)
     assert showLearningCurve(scene, "a", trials) is chart
     assert chart.GetNumberOfPlotSeriesNodes() == 2
-    table = findNode(scene, "vtkMRMLTableNode", Role.HISTORY)
+    table = Role.HISTORY.find(scene)
     scores = slicer.util.arrayFromTableColumn(table, "score")
     assert scores.tolist() == [trial.score.score for trial in trials]
     for index in range(2):
@@ -137,7 +137,7 @@ def test_true_and_expected_errors_of_all_trainees_are_a_table_and_a_plot(scene, 
     chart = showCalibration(scene, found)
     assert showCalibration(scene, found) is chart
     assert chart.GetTitle().startswith("True against expected TRE: 2 of 3 inside, 67 % [21, 94]")
-    table = findNode(scene, "vtkMRMLTableNode", Role.CALIBRATION)
+    table = Role.CALIBRATION_TABLE.find(scene)
     expected = slicer.util.arrayFromTableColumn(table, "expected TRE (mm)")
     assert sorted(expected) == sorted(t.registrations["rigid"].expected_tre_mm for t in trials)
     outside = slicer.util.arrayFromTableColumn(table, "true TRE, outside (mm)")
@@ -251,8 +251,8 @@ def test_score_comparison_and_motion_become_tables_in_the_scene(scene, logic, ad
     shown = [(row.title, row.text) for row in motionRows(trial)]
     assert shown == [("Path length", "2500.00 mm"), ("Smoothness, SPARC", "−1.90")]
     assert all(len(row.note) > 20 for row in motionRows(trial))
-    showRows(scene, Role.SCORE, "Score", [*scoreRows(trial), *ctpsRows(trial, COHORT)])
+    showRows(scene, Role.SCORE, [*scoreRows(trial), *ctpsRows(trial, COHORT)])
     showStandings(scene, standings(logic.study, trial, COHORT))
-    showRows(scene, Role.MOTION, "Motion metrics", motionRows(trial))
+    showRows(scene, Role.MOTION, motionRows(trial))
     for role, rows in ((Role.SCORE, 15), (Role.COMPARISON, 2), (Role.MOTION, 2)):
-        assert findNode(scene, "vtkMRMLTableNode", role).GetNumberOfRows() == rows
+        assert role.find(scene).GetNumberOfRows() == rows

@@ -8,7 +8,7 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.igtl.content import Point, Points
 from rastrainer.protocol import DeviceName
-from rastrainer.slicer.scene.nodes import Role, capturedPointsNode
+from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.trial_scene import KIND_ATTRIBUTE, PLANNED, isApplied
 from Testing.slicer.training_room import LOADING_REFUSAL, TRIAL
 
@@ -88,8 +88,8 @@ def test_only_the_trial_run_waits_and_only_on_request_and_not_where_it_is_refuse
 
 def test_fiducials_and_touches_are_on_the_planned_head_while_the_trial_runs(room, scenario):
     room.tell()
-    room.run_until(lambda: room.node(Role.WORLD_TO_HEAD, "vtkMRMLLinearTransformNode"))
-    assert room.node(Role.HEAD_MODEL, "vtkMRMLModelNode") is not None
+    room.run_until(lambda: room.node(Role.WORLD_TO_HEAD))
+    assert room.node(Role.HEAD_MODEL) is not None
     fiducial = scenario.task("task-1").fiducials[0]
     fixed = room.node(Role.FIXED_FIDUCIALS)
     assert fixed.GetNumberOfControlPoints() == 15
@@ -97,14 +97,14 @@ def test_fiducials_and_touches_are_on_the_planned_head_while_the_trial_runs(room
     touched = transforms.apply(scenario.head_to_world, fiducial[None])[0]
     points = Points((Point("1", tuple(touched)),))
     room.simulator.send(DeviceName.CAPTURED_POINTS, points, {"count": "1"})
-    room.run_until(lambda: capturedPointsNode(room.scene).GetNumberOfControlPoints() == 1)
-    transform = room.node(Role.WORLD_TO_HEAD, "vtkMRMLLinearTransformNode")
+    room.run_until(lambda: Role.CAPTURED_POINTS.make(room.scene).GetNumberOfControlPoints() == 1)
+    transform = room.node(Role.WORLD_TO_HEAD)
     assert transform.GetAttribute(KIND_ATTRIBUTE) == PLANNED
     assert isApplied(transform)
     np.testing.assert_allclose(
         arrayFromTransformMatrix(transform) @ scenario.head_to_world, np.eye(4), atol=1e-9
     )
-    shown = capturedPointsNode(room.scene).GetNthControlPointPositionWorld(0)
+    shown = Role.CAPTURED_POINTS.make(room.scene).GetNthControlPointPositionWorld(0)
     np.testing.assert_allclose(shown, fiducial, atol=1e-3)
     assert room.logic.status.touched == 1
 
@@ -127,7 +127,7 @@ def test_progress_contains_the_next_point_the_proximity_and_the_running_time(roo
 
 def test_a_state_in_which_only_time_has_passed_changes_nothing(room):
     room.tell(elapsedS=1.0)
-    room.run_until(lambda: room.node(Role.WORLD_TO_HEAD, "vtkMRMLLinearTransformNode"))
+    room.run_until(lambda: room.node(Role.WORLD_TO_HEAD))
     changes, states = [], []
     room.logic.changed.connect(lambda: changes.append(True))
     room.link.stateChanged.connect(states.append)
@@ -174,4 +174,4 @@ def test_a_cleared_scene_gets_the_running_trial_back_with_its_clock(room):
     room.run_until(lambda: len(room.sent("Hello")) == 2)
     room.tell(elapsedS=36.0)  # The simulator sends its state to everyone who connects.
     room.run_until(lambda: room.node(Role.FIXED_FIDUCIALS) is not None)
-    assert room.node(Role.WORLD_TO_HEAD, "vtkMRMLLinearTransformNode") is not None
+    assert room.node(Role.WORLD_TO_HEAD) is not None

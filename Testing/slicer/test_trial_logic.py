@@ -16,7 +16,7 @@ from rastrainer.sections.trial_logic import MAX_WAITING, TrialLogic
 from rastrainer.sections.trial_services import TrialServices
 from rastrainer.slicer import background_work
 from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.scene.nodes import Role, findNode
+from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.trial_scene import isApplied
 from rastrainer.study.database.database import LockWait, StudyUnreachableError
 from rastrainer.study.database.study import Study
@@ -135,14 +135,14 @@ def test_a_finished_trial_is_stored_acknowledged_scored_and_shown_not_by_the_mai
     assert stored.true_tre_mm == lab.scored[0].truth.true_tre_mm
     expected = lab.scenario.perturbed_head_to_world(SEED)
     np.testing.assert_allclose(np.reshape(stored.truth.head_to_world, (4, 4)), expected)
-    assert isApplied(findNode(lab.scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD))
-    for class_name, role in (
-        ("vtkMRMLTableNode", Role.RESIDUALS),
-        ("vtkMRMLTableNode", Role.FITS),
-        ("vtkMRMLModelNode", Role.RESIDUAL_ARROWS),
-        ("vtkMRMLModelNode", Role.HEAD_MODEL),
+    assert isApplied(Role.WORLD_TO_HEAD.find(lab.scene))
+    for role in (
+        Role.RESIDUALS,
+        Role.FITS,
+        Role.RESIDUAL_ARROWS,
+        Role.HEAD_MODEL,
     ):
-        assert findNode(lab.scene, class_name, role) is not None
+        assert role.find(lab.scene) is not None
     # Once to register it, once with its truth.
     assert len(reviews) == 2
     assert threading.get_ident() not in lab.threads | {thread for _trial, thread in reviews}
@@ -268,7 +268,7 @@ def test_an_old_trial_does_not_disturb_the_one_being_played(lab, make_record):
     lab.run_until(lambda: states)
     lab.receive(make_record(TRIAL))
     lab.run_until(lambda: lab.scored)
-    assert findNode(lab.scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD) is None
+    assert Role.WORLD_TO_HEAD.find(lab.scene) is None
     assert lab.stored().true_tre_mm is not None
 
 

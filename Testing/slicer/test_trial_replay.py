@@ -1,5 +1,6 @@
 """A recorded trial is a Sequence: tool, touches and clearance over the trial's time."""
 
+import re
 from collections import Counter
 
 import numpy as np
@@ -8,7 +9,7 @@ import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import find_track
-from rastrainer.slicer.scene.robot_description import ArmChain, readArmChain
+from rastrainer.slicer.scene.robot_description import toolPoses
 from rastrainer.slicer.scene.trial_replay import (
     STATES_A_SLICE,
     findReplay,
@@ -35,7 +36,7 @@ def tips(tmp_path):
 @pytest.fixture
 def replayed(scene, tips, tmp_path):  # noqa: ARG001 (the journal is needed)
     track = find_track(tmp_path, TRIAL)
-    return showReplay(scene, "Trial 1", track, readArmChain(URDF), WORLD_TO_HEAD)
+    return showReplay(scene, "Trial 1", track, toolPoses(URDF, track.q), WORLD_TO_HEAD)
 
 
 def node(scene, name):
@@ -73,7 +74,7 @@ def test_the_tool_is_where_it_was_at_every_time(scene, replayed, tips):
 def test_touches_and_trace_appear_as_they_were_made_and_leave_with_the_replay(scene, tmp_path):
     tips = write_recorded_trial(tmp_path, TRIAL, traced=45)
     track = find_track(tmp_path, TRIAL)
-    showReplay(scene, "Trial 1", track, readArmChain(URDF), WORLD_TO_HEAD)
+    showReplay(scene, "Trial 1", track, toolPoses(URDF, track.q), WORLD_TO_HEAD)
     counts = []
     for seconds in (0.02, 0.3, 0.5, 1.1, 2.5, 3.0):
         goTo(scene, seconds)
@@ -93,7 +94,7 @@ def test_another_trial_replaces_the_previous_one(scene, replayed, tmp_path):
     before = shown(scene)
     write_recorded_trial(tmp_path / "other", TRIAL, seconds=1.0)
     track = find_track(tmp_path / "other", TRIAL)
-    other = showReplay(scene, "Trial 2", track, readArmChain(URDF), WORLD_TO_HEAD)
+    other = showReplay(scene, "Trial 2", track, toolPoses(URDF, track.q), WORLD_TO_HEAD)
     assert other is not replayed
     assert shown(scene) == before
     removeReplay(scene)
@@ -105,7 +106,7 @@ def test_another_trial_replaces_the_previous_one(scene, replayed, tmp_path):
 def test_a_replay_with_its_trace_is_saved_with_the_scene(headless_scene, scene, tmp_path):
     write_recorded_trial(tmp_path, TRIAL, traced=45)
     track = find_track(tmp_path, TRIAL)
-    replayed = showReplay(scene, "Trial 1", track, readArmChain(URDF), WORLD_TO_HEAD)
+    replayed = showReplay(scene, "Trial 1", track, toolPoses(URDF, track.q), WORLD_TO_HEAD)
     headless_scene.save(tmp_path / "trial.mrb")
     again = HeadlessScene()
     load_bundle(again, tmp_path / "trial.mrb")
@@ -115,12 +116,12 @@ def test_a_replay_with_its_trace_is_saved_with_the_scene(headless_scene, scene, 
 
 
 def test_a_missing_journal_or_one_from_another_robot_is_reported(scene, tips, tmp_path):  # noqa: ARG001
-    chain = readArmChain(URDF)
-    longer = chain.origins.copy()
-    longer[3, 2, 3] += 10.0
-    track, other = find_track(tmp_path, TRIAL), ArmChain(longer, chain.axes)
+    track, longer = find_track(tmp_path, TRIAL), tmp_path / "longer.urdf"
+    longer.write_text(re.sub(r'xyz="0 0 0\.(?=\d)', 'xyz="0 0 1.', URDF.read_text()))
     with pytest.raises(InputError, match="another robot"):
-        showReplay(scene, "Trial 1", track, other, WORLD_TO_HEAD)
+        showReplay(scene, "Trial 1", track, toolPoses(longer, track.q), WORLD_TO_HEAD)
+    with pytest.raises(InputError, match="another robot"):
+        toolPoses(URDF, track.q[:, :6])
     assert findReplay(scene) is None
     with pytest.raises(InputError, match="only on the computer whose simulator recorded it"):
         find_track(tmp_path, TRIAL[:-1] + "2")
@@ -129,7 +130,7 @@ def test_a_missing_journal_or_one_from_another_robot_is_reported(scene, tips, tm
 def test_the_application_may_redraw_after_each_slice_of_a_replay(scene, tips, tmp_path):  # noqa: ARG001
     shares = []
     track = find_track(tmp_path, TRIAL)
-    replay = showReplay(scene, "1", track, readArmChain(URDF), WORLD_TO_HEAD, shares.append)
+    replay = showReplay(scene, "1", track, toolPoses(URDF, track.q), WORLD_TO_HEAD, shares.append)
     states = 2 * replay.GetNumberOfItems() + len(track.trajectory.touches) + 1
     # The first are between the nodes, before there are any states.
     assert sum(share > 0.0 for share in shares) == states // STATES_A_SLICE

@@ -13,7 +13,7 @@ from rastrainer.slicer.scene import trial_scene
 from rastrainer.slicer.scene.nodes import labelsOf, setPoints, worldPoints
 from rastrainer.slicer.scene.registration_input import Choices, readPairs
 from rastrainer.slicer.scene.tables import showFits, showResiduals
-from rastrainer.slicer.scene.trial_scene import showRegistration
+from rastrainer.slicer.scene.trial_scene import placeWorld
 from Testing.slicer.scene_bundle import load_bundle
 
 LABELS = tuple(str(i + 1) for i in range(15))
@@ -49,25 +49,29 @@ def registered(moving, fixed, kind="rigid"):
     return register(pairs.moving, pairs.fixed, kind, pairs.labels)
 
 
+def placed(scene, registration, moving, fixed):
+    return placeWorld(scene, registration.matrix, registration.kind, moving, fixed)
+
+
 def test_the_result_is_applied_or_not_and_another_registration_gives_the_same(
     scene, moving, fixed, points
 ):
     registration = registered(moving, fixed)
-    node = showRegistration(scene, registration, moving, fixed)
+    node = placed(scene, registration, moving, fixed)
     assert trial_scene.isApplied(node)
     residuals = np.linalg.norm(worldPoints(moving) - points, axis=1)
     np.testing.assert_allclose(residuals, registration.residuals_mm, atol=1e-6)
     np.testing.assert_array_equal(registered(moving, fixed).matrix, registration.matrix)
     trial_scene.setApplied(node, False)
     np.testing.assert_allclose(worldPoints(moving), arrayFromMarkupsControlPoints(moving))
-    assert showRegistration(scene, registration, moving, fixed) is node
+    assert placed(scene, registration, moving, fixed) is node
     assert not trial_scene.isApplied(node)
 
 
 def test_the_transform_remembers_its_lists_even_in_a_saved_scene(
     headless_scene, moving, fixed, tmp_path
 ):
-    node = showRegistration(headless_scene.scene, registered(moving, fixed), moving, fixed)
+    node = placed(headless_scene.scene, registered(moving, fixed), moving, fixed)
     assert trial_scene.movingNode(node) is moving
     headless_scene.save(tmp_path / "trial.mrb")
     load_bundle(headless_scene, tmp_path / "trial.mrb")
@@ -78,7 +82,7 @@ def test_the_transform_remembers_its_lists_even_in_a_saved_scene(
 
 
 def test_deleted_lists_cause_no_trouble(scene, moving, fixed):
-    node = showRegistration(scene, registered(moving, fixed), moving, fixed)
+    node = placed(scene, registered(moving, fixed), moving, fixed)
     scene.RemoveNode(moving)
     assert trial_scene.movingNode(node) is None
     assert not trial_scene.isApplied(node)
@@ -111,8 +115,10 @@ def test_the_residual_table_has_one_row_per_fiducial_and_units_in_its_columns(sc
 
 
 def test_the_fits_are_compared_side_by_side(scene, moving, fixed):
-    fits = [registered(moving, fixed, kind) for kind in ("rigid", "similarity", "affine")]
-    errors = [target_error(fit, np.array([10.0, 20.0, -30.0])) for fit in fits]
+    kinds = ("rigid", "similarity", "affine")
+    fits = {kind: registered(moving, fixed, kind) for kind in kinds}
+    target = np.array([10.0, 20.0, -30.0])
+    errors = {kind: target_error(fit, target) for kind, fit in fits.items()}
     table = showFits(scene, fits, errors)
     fre = slicer.util.arrayFromTableColumn(table, "FRE (mm)")
     assert fre[0] >= fre[1] >= fre[2]

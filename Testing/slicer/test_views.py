@@ -6,7 +6,7 @@ import pytest
 from rastrainer import transforms
 from rastrainer.protocol import DeviceName
 from rastrainer.sections.views import LEAST_MOVE_MM, PERIOD_S, SliceFollower, jumpTo, poseOnHead
-from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, prepareNodes
+from rastrainer.slicer.scene.nodes import Role, poseKind, prepareNodes
 from rastrainer.slicer.scene.scenario_nodes import showTask
 from rastrainer.slicer.scene.trial_scene import showPlannedPlace
 from rastrainer.slicer.settings import (
@@ -49,14 +49,14 @@ def play(room, follower, point, task="task-1"):
 
 def put_tool(scene, tip):
     list(prepareNodes(scene))
-    pose = findNode(scene, TRANSFORM, DeviceName.TOOL_TIP_TO_WORLD)
+    pose = poseKind(DeviceName.TOOL_TIP_TO_WORLD).find(scene)
     pose.SetMatrixTransformToParent(vtk_matrix(transforms.rigid(np.eye(3), tip)))
 
 
 def stand(room, scenario):
     """Place the head in World as planned."""
     fixed = showTask(room.scene, scenario, "task-1")
-    showPlannedPlace(room.scene, scenario, capturedPointsNode(room.scene), fixed)
+    showPlannedPlace(room.scene, scenario, fixed)
 
 
 def test_the_slices_jump_to_each_next_point(room, follower, scenario):
@@ -185,7 +185,7 @@ def test_a_scene_cleared_and_shown_again_at_once_gets_its_next_point(room, follo
 
 def put_instrument(scene, tip, direction):
     list(prepareNodes(scene))
-    pose = findNode(scene, TRANSFORM, DeviceName.INSTRUMENT_TIP_TO_WORLD)
+    pose = poseKind(DeviceName.INSTRUMENT_TIP_TO_WORLD).find(scene)
     across = np.cross(direction, [0.3, 0.9, 0.1])
     across /= np.linalg.norm(across)
     axes = np.column_stack([across, np.cross(direction, across), direction])

@@ -5,7 +5,7 @@ import pytest
 from PySide6 import QtWidgets
 
 from rastrainer.scenario.points import LABELS
-from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
+from rastrainer.slicer.scene.nodes import Role, setPoints
 from rastrainer.transforms import MM_PER_M
 from Testing.slicer.recorded_trial import touches_on_colin
 
@@ -26,7 +26,7 @@ def touch(host, points):
     """Put touches into the scene, and wait until the panel has processed them."""
     host.finish_work()
     host.find("registrationText").text = ""
-    setPoints(capturedPointsNode(host.scene), LABELS[: len(points)], points)
+    setPoints(Role.CAPTURED_POINTS.make(host.scene), LABELS[: len(points)], points)
     host.wait_until(lambda: host.text("registrationText"), "the touches are registered")
 
 

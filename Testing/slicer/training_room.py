@@ -6,7 +6,6 @@ import uuid
 from rastrainer.igtl.content import Status, String
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 from rastrainer.sections.training_logic import TrainingLogic
-from rastrainer.slicer.scene.nodes import findNode
 from rastrainer_simulator.texts.texts import ENGLISH
 from Testing.slicer.simulator_double import LinkedLab
 
@@ -43,8 +42,8 @@ class Room(LinkedLab):
         values = {"trialId": TRIAL, "phase": "running", "task": "task-1", "trainee": "T001"}
         self.simulator.send(DeviceName.SIM_STATE, String(json.dumps({**values, **state})))
 
-    def node(self, role, class_name="vtkMRMLMarkupsFiducialNode"):
-        return findNode(self.scene, class_name, role)
+    def node(self, role):
+        return role.find(self.scene)
 
     def close(self):
         self.logic.close()

@@ -19,7 +19,7 @@ from rastrainer.files.point_list import PointList
 from rastrainer.scenario.points import Landmark
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.sections.scenario_files import ScenarioFiles
-from rastrainer.slicer.scene.nodes import LIST, Role, findNode, findOrAddNode, setDisplay
+from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.plan_points import (
     PlacedPoint,
     UndoablePoints,
@@ -30,7 +30,7 @@ from rastrainer.slicer.scene.plan_points import (
 from rastrainer.slicer.translation import _
 from rastrainer.work_progress import Progress, no_progress
 
-FILE, COLOR = "landmarks.mrk.json", (0.1, 0.55, 0.9)
+FILE = "landmarks.mrk.json"
 
 
 class LandmarkPoints(UndoablePoints):
@@ -41,7 +41,7 @@ class LandmarkPoints(UndoablePoints):
 
     def placed(self, areSelected: bool = True) -> tuple[Landmark, ...]:
         """Return the landmarks that are selected, or the others, in the order of touching."""
-        points = placedPoints(findNode(self._scene, LIST, Role.LANDMARKS), inRas=True)
+        points = placedPoints(Role.LANDMARKS.find(self._scene), inRas=True)
         return tuple(
             Landmark(point.label, np.array(point.position))
             for point in points
@@ -49,13 +49,13 @@ class LandmarkPoints(UndoablePoints):
         )
 
     def show(self, landmarks: Sequence[Landmark]) -> None:
-        node = self._list()
+        node = Role.LANDMARKS.make(self._scene)
         self.remember(node)
         putPoints(node, [PlacedPoint(each.name, each.position_ras.tolist()) for each in landmarks])
 
     def startPlacing(self, name: str) -> None:
         """Let the next click in a view place a landmark, in place of one of the same name."""
-        node = self._list()
+        node = Role.LANDMARKS.make(self._scene)
         points = self.remember(node)
         if name in [point.label for point in points]:
             putPoints(node, [point for point in points if point.label != name])
@@ -66,15 +66,10 @@ class LandmarkPoints(UndoablePoints):
     def remove(self, row: int) -> None:
         """Remove the landmark of a row of those that are `placed` and selected."""
         if 0 <= row < len(self.placed()):
-            node = self._list()
+            node = Role.LANDMARKS.make(self._scene)
             points = self.remember(node)
             points.remove([point for point in points if point.isSelected][row])
             putPoints(node, points)
-
-    def _list(self) -> Any:
-        node = findOrAddNode(self._scene, LIST, Role.LANDMARKS, _("Landmarks"))
-        setDisplay(node, SelectedColor=COLOR, OccludedVisibility=True)
-        return node
 
 
 class LandmarkLogic:

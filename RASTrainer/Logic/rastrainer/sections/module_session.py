@@ -249,8 +249,6 @@ class ModuleSession:
         """Forget references into the old scene; a running trial is shown again."""
         # Not yet now, as Slicer shows its last layout again after a scene is closed.
         self._callSoon(self.layout.giveBack)
-        self.plan.points.forget()
-        self.landmarks.points.forget()
         shown = self.work, self.replay, self.slices, self.scenario, self.registration
         for part in (*shown, self.traces, self.training):
             part.forgetScene()

@@ -29,16 +29,12 @@ from rastrainer.slicer.program.child_process import Run, runChild
 from rastrainer.slicer.scene.nodes import (
     ROLE_ATTRIBUTE,
     Role,
-    findNode,
-    findOrAddNode,
     isUsed,
     labelsOf,
-    nodesOf,
     nodesOfClass,
     usedPoints,
     worldPoints,
 )
-from rastrainer.slicer.scene.scenario_nodes import SKIN_COLOR
 from rastrainer.slicer.translation import _
 from rastrainer.work_progress import Progress, no_progress
 
@@ -46,7 +42,6 @@ if TYPE_CHECKING:
     from rastrainer.slicer.head.volume import HeadSettings, SegmentImage
 
 MAKE_DRAFT = "rastrainer.slicer.head.head_draft:makeDraft"
-SEGMENTATION, MODEL = "vtkMRMLSegmentationNode", "vtkMRMLModelNode"
 PREVIEWED_ATTRIBUTE = "RASTrainer.previewed"
 SETTINGS_ATTRIBUTE = "RASTrainer.previewedWith"
 
@@ -107,8 +102,8 @@ class ScenarioMaker:
 
         volume, settings = options.volume, options.headSettings
         found, skin, warnings = findSkin(self._run, volume, settings, progress)
-        draft = findOrAddNode(self._scene, SEGMENTATION, Role.HEAD_SEGMENT, "Head to be edited")
-        model = findOrAddNode(self._scene, MODEL, Role.HEAD_PREVIEW, "Head as found")
+        draft = Role.HEAD_SEGMENT.make(self._scene)
+        model = Role.HEAD_PREVIEW.make(self._scene)
         for node in (draft, model):
             # It is shown where it was found.
             node.SetAndObserveTransformNodeID(None)
@@ -117,7 +112,6 @@ class ScenarioMaker:
         draft.SetAttribute(PREVIEWED_ATTRIBUTE, volume.GetID())
         draft.SetAttribute(SETTINGS_ATTRIBUTE, repr(settings))
         model.SetAndObservePolyData(meshPolyData(skin))
-        model.GetDisplayNode().SetColor(SKIN_COLOR)
         for node in (draft, model):
             node.SetDisplayVisibility(True)
         return warnings
@@ -171,9 +165,8 @@ class ScenarioMaker:
 
     def _hidePreview(self, volume: Any) -> None:
         """Hide the head as found, and a rendering of its volume: the result is shown instead."""
-        for className, role in ((SEGMENTATION, Role.HEAD_SEGMENT), (MODEL, Role.HEAD_PREVIEW)):
-            for node in nodesOf(self._scene, className, role):
-                node.SetDisplayVisibility(False)
+        for node in (*Role.HEAD_SEGMENT.all(self._scene), *Role.HEAD_PREVIEW.all(self._scene)):
+            node.SetDisplayVisibility(False)
         for index in range(volume.GetNumberOfDisplayNodes()):
             display = volume.GetNthDisplayNode(index)
             if display is not None and display.IsA("vtkMRMLVolumeRenderingDisplayNode"):
@@ -184,7 +177,7 @@ def editedHead(volume: Any, settings: HeadSettings) -> SegmentImage | None:
     """Return the segment of the head that is shown of a volume; None if none is."""
     from rastrainer.slicer.head.volume import SEGMENT_NAME, readSegment
 
-    node = findNode(volume.GetScene(), SEGMENTATION, Role.HEAD_SEGMENT)
+    node = Role.HEAD_SEGMENT.find(volume.GetScene())
     if node is None or node.GetAttribute(PREVIEWED_ATTRIBUTE) != volume.GetID():
         return None
     if node.GetAttribute(SETTINGS_ATTRIBUTE) != repr(settings):

@@ -13,14 +13,12 @@ from rastrainer.procedure.plan import ProcedureKind
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, chosenScenario, connectClick
 from rastrainer.sections.procedure_plan_logic import PlanDescription
-from rastrainer.slicer.scene.nodes import LIST, Role, findNode, worldPoints
-from rastrainer.slicer.scene.plan_points import startPlacing
+from rastrainer.slicer.scene.nodes import Role, worldPoints
+from rastrainer.slicer.scene.plan_points import startPlacing, unfinishedLine
 from rastrainer.slicer.scene.procedure_lines import (
-    checkpointList,
     instrumentOf,
     isNoGo,
     lengthMm,
-    newPlanLine,
     noGoNodes,
     placeLine,
     planLines,
@@ -97,13 +95,13 @@ class ProcedurePlanPanel(Panel):
             ui.procedureSourceLineEdit.text = procedure.source
             ui.procedureSourceLineEdit.cursorPosition = 0
             fillComboBox(ui.procedureKindComboBox, KINDS, procedure.kind.value)
-        checkpoints = findNode(slicer.mrmlScene, LIST, Role.CHECKPOINTS)
+        checkpoints = Role.CHECKPOINTS.find(slicer.mrmlScene)
         ui.checkpointsComboBox.setCurrentNode(checkpoints)
         self.showState()
 
     def placeLine(self) -> None:
         """Let the next two clicks place a line, from its entry to its target."""
-        startPlacing(slicer.mrmlScene, newPlanLine(slicer.mrmlScene))
+        startPlacing(slicer.mrmlScene, unfinishedLine(slicer.mrmlScene, Role.PLAN_LINE))
         self.showState()
 
     def removeLine(self) -> None:
@@ -131,7 +129,7 @@ class ProcedurePlanPanel(Panel):
     def placeCheckpoint(self) -> None:
         """Let the next click place a checkpoint, in the chosen list or in the plan's own."""
         chosen = self._ui.checkpointsComboBox
-        node = chosen.currentNode() or checkpointList(slicer.mrmlScene)
+        node = chosen.currentNode() or Role.CHECKPOINTS.make(slicer.mrmlScene)
         chosen.setCurrentNode(node)
         startPlacing(slicer.mrmlScene, node)
 

@@ -23,7 +23,7 @@ from rastrainer.slicer.scene.error_colors import (
     removeHeadColors,
     showResidualArrows,
 )
-from rastrainer.slicer.scene.nodes import LIST, Role, findNode, surfaceOf, worldPoints
+from rastrainer.slicer.scene.nodes import Role, surfaceOf, worldPoints
 from rastrainer.slicer.scene.registration_input import (
     Choices,
     Pairs,
@@ -36,7 +36,7 @@ from rastrainer.slicer.scene.registration_input import (
 )
 from rastrainer.slicer.scene.scenario_nodes import TASK_ATTRIBUTE
 from rastrainer.slicer.scene.tables import showFits, showResiduals
-from rastrainer.slicer.scene.trial_scene import checkSameTask, showRegistration
+from rastrainer.slicer.scene.trial_scene import checkSameTask, placeWorld
 from rastrainer.slicer.signal import Signal
 
 
@@ -105,9 +105,8 @@ def compareFits(
     return Comparison(pairs, shown, fits, localizations, errors, leaveOneOut, found, headErrors)
 
 
-MODEL = "vtkMRMLModelNode"
 Request = Callable[[], Comparison]
-ROLES = (Role.CAPTURED_POINTS, Role.FIXED_FIDUCIALS, Role.TARGET)
+LISTS = (Role.CAPTURED_POINTS, Role.FIXED_FIDUCIALS, Role.TARGET)
 
 
 class RegistrationLogic:
@@ -150,7 +149,7 @@ class RegistrationLogic:
     @property
     def transform(self) -> Any | None:
         """The transform node of the result, if there is one."""
-        return findNode(self._scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
+        return Role.WORLD_TO_HEAD.find(self._scene)
 
     def lists(self) -> list[Any | None]:
         """Return the moving points, the fixed points, and the list whose first is the target.
@@ -158,8 +157,8 @@ class RegistrationLogic:
         The lists of the trial and its task stand in for lists that are not chosen.
         """
         chosen = [self._scene.GetNodeByID(each) if each else None for each in self._chosen]
-        pairs = zip(chosen, ROLES, strict=True)
-        return [node or findNode(self._scene, LIST, role) for node, role in pairs]
+        pairs = zip(chosen, LISTS, strict=True)
+        return [node or kind.find(self._scene) for node, kind in pairs]
 
     def chooseLists(self, *lists: Any | None) -> None:
         """Choose `lists`; None means the list of the trial or its task."""
@@ -209,7 +208,7 @@ class RegistrationLogic:
         tasks = [node and node.GetAttribute(TASK_ATTRIBUTE) for node in (moving, fixed)]
         movingList = snapshot(moving, slicer.util.arrayFromMarkupsControlPoints)
         lists = movingList, snapshot(fixed), snapshot(target)
-        return *lists, *tasks, surfaceOf(findNode(self._scene, MODEL, Role.HEAD_MODEL))
+        return *lists, *tasks, surfaceOf(Role.HEAD_MODEL.find(self._scene))
 
     def _compute(self) -> None:
         """Register the lists as they are now; a running computation is outdated."""
@@ -219,7 +218,7 @@ class RegistrationLogic:
         # The key of the present registration, so that lists that change back count as changed.
         self._seen = self._snapshot()
         self._request = None
-        head = findNode(self._scene, MODEL, Role.HEAD_MODEL)
+        head = Role.HEAD_MODEL.find(self._scene)
         if surfaceOf(head) != self._surface:
             self._surface, self._skin = surfaceOf(head), readSkin(head)
         skin = self._skin
@@ -255,8 +254,7 @@ class RegistrationLogic:
         """Show a comparison, each part in a separate turn, unless it is outdated."""
         if comparison is None:
             return
-        scene, shown, fits = self._scene, comparison.shown, comparison.fits
-        errors = [comparison.errors.get(kind) for kind in fits]
+        scene, shown = self._scene, comparison.shown
 
         def inTurn(show: Callable[[], object]) -> None:
             def showIfWanted() -> None:
@@ -269,16 +267,16 @@ class RegistrationLogic:
             self.comparison, self.problem = comparison, ""
             self.changed.emit()
 
-        inTurn(lambda: showRegistration(scene, shown, *self.lists()[:2]))
+        inTurn(lambda: placeWorld(scene, shown.matrix, shown.kind, *self.lists()[:2]))
         inTurn(lambda: showResiduals(scene, shown, comparison.leaveOneOut.get(shown.kind)))
-        inTurn(lambda: showFits(scene, list(fits.values()), errors))
+        inTurn(lambda: showFits(scene, comparison.fits, comparison.errors))
         inTurn(lambda: showResidualArrows(scene, shown))
         inTurn(lambda: self._colorHead(comparison.headErrors))
         inTurn(finish)
 
     def _colorHead(self, errors: np.ndarray | None) -> None:
         """Color the head by errors at its points, or show its own color where there are none."""
-        head = findNode(self._scene, MODEL, Role.HEAD_MODEL)
+        head = Role.HEAD_MODEL.find(self._scene)
         if head is None:
             return
         if errors is None or not self.isHeadColored:

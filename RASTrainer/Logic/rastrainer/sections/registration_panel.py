@@ -111,7 +111,7 @@ class RegistrationPanel(Panel):
         rows: list[tuple[str, ...]] = []
         self._labels = ()
         if comparison is not None:
-            shown, sizes = comparison.shown, dict(self._logic.choices.fle)
+            shown, sizes = comparison.shown, self._logic.choices.fle
             self._labels = shown.labels
             without = comparison.leaveOneOut.get(shown.kind, [None] * len(shown.labels))
             for row, label in enumerate(shown.labels):

@@ -13,10 +13,10 @@ from rastrainer.sections.scenario_files import ScenarioCache
 from rastrainer.slicer.background_work import BackgroundWork, inBackground
 from rastrainer.slicer.polydata import meshPolyData
 from rastrainer.slicer.program.child_process import Run
-from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, Role, capturedPointsNode, findNode
-from rastrainer.slicer.scene.robot import addLink, missingLinks, robotNode, setRobotVisible
+from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, SKIN_COLOR, Role
+from rastrainer.slicer.scene.robot import addLink, missingLinks, setRobotVisible
 from rastrainer.slicer.scene.robot_description import READ_LINKS, LinkMesh
-from rastrainer.slicer.scene.scenario_nodes import SKIN_COLOR, showImages, showScenario, showTask
+from rastrainer.slicer.scene.scenario_nodes import showImages, showScenario, showTask
 from rastrainer.slicer.scene.trial_scene import (
     KIND_ATTRIBUTE,
     PLANNED,
@@ -70,30 +70,25 @@ class ScenarioLogic:
 
     def _showPlace(self, scenario: Scenario, taskName: str) -> None:
         fixed = showTask(self._scene, scenario, taskName)
-        placed = findNode(self._scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
+        placed = Role.WORLD_TO_HEAD.find(self._scene)
         if placed is None or placed.GetAttribute(KIND_ATTRIBUTE) == PLANNED:
-            showPlannedPlace(self._scene, scenario, capturedPointsNode(self._scene), fixed)
+            showPlannedPlace(self._scene, scenario, fixed)
 
     def useHead(self, node: Any, progress: Progress = no_progress) -> tuple[Any, list[str]]:
         """Make a model, or the skin of a volume, the displayed head; return it with warnings.
 
         The head that was one before is hidden, and is no longer ours to fill.
         """
-        model, warnings = node, list[str]()
+        model, warnings, former = node, list[str](), Role.HEAD_MODEL.find(self._scene)
         if node.IsA("vtkMRMLVolumeNode"):
             _body, mesh, warnings = findSkin(self._run, node, None, progress)
-            name = f"Head of {node.GetName()}"
-            model = self._scene.AddNewNodeByClass("vtkMRMLModelNode", name)
+            model = Role.HEAD_MODEL.add(self._scene, f"Head of {node.GetName()}")
             model.SetAndObservePolyData(meshPolyData(mesh))
-            model.CreateDefaultDisplayNodes()
             model.GetDisplayNode().SetColor(SKIN_COLOR)
-        former = findNode(self._scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
         if former is not None and former is not model:
             former.RemoveAttribute(ROLE_ATTRIBUTE)
             former.SetDisplayVisibility(False)
-        model.SetAttribute(ROLE_ATTRIBUTE, Role.HEAD_MODEL)
-        model.CreateDefaultDisplayNodes()
-        model.SetDisplayVisibility(True)
+        Role.HEAD_MODEL.dress(model).SetDisplayVisibility(True)
         return model, warnings
 
     def setRobotShown(self, shown: bool) -> None:
@@ -116,7 +111,7 @@ class ScenarioLogic:
 
     @property
     def isRobotShown(self) -> bool:
-        node = robotNode(self._scene, 0)
+        node = Role.LINKS[0].find(self._scene)
         return self._isRobotComing or (node is not None and bool(node.GetDisplayVisibility()))
 
     def _addLinks(self, links: tuple[LinkMesh, ...]) -> None:

@@ -15,7 +15,7 @@ from rastrainer.journal.recording import ReplayTrack
 from rastrainer.registration.fits import RIGID
 from rastrainer.sections.trial_services import TrialServices
 from rastrainer.slicer.background_work import inBackground
-from rastrainer.slicer.scene.robot_description import URDF, readArmChain
+from rastrainer.slicer.scene.robot_description import URDF, toolPoses
 from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
 from rastrainer.slicer.scene.trial_replay import (
     TRIAL_ATTRIBUTE,
@@ -163,13 +163,16 @@ class ReplayLogic:
         isThere = isReplayOf(scene, record.trial_id)
 
         def read(report: Progress) -> tuple[Any, ...]:
-            track = None if isThere else self._track(record.trial_id, report)
+            track = poses = None
+            if not isThere:
+                track = self._track(record.trial_id, report)
+                poses = toolPoses(self._robot / URDF, track.q)
             scenario, outcome = services.findScenario(record.scenario), None
             if record.procedure is not None and trial.truth is not None:
                 outcome = services.run(EXPLAIN_PROCEDURE, report, record, scenario, trial.truth)
-            return track, readArmChain(self._robot / URDF), scenario, outcome
+            return track, poses, scenario, outcome
 
-        track, chain, scenario, outcome = inBackground(read, progress)
+        track, poses, scenario, outcome = inBackground(read, progress)
         self._checkNoTrialIsOpen()
         if isThere and not isReplayOf(scene, record.trial_id):
             raise InputError(_("The scene was changed before the trial could be shown."))
@@ -191,7 +194,7 @@ class ReplayLogic:
             progress(_("Showing"), 0.0)
             name, matrix = f"{record.trainee}, {record.task}", np.reshape(rigid.matrix, (4, 4))
             browser = showReplay(
-                scene, name, track, chain, matrix, lambda share: progress(_("Showing"), share)
+                scene, name, track, poses, matrix, lambda share: progress(_("Showing"), share)
             )
             browser.SetAttribute(TRIAL_ATTRIBUTE, record.trial_id)
         # The replay shows them one by one, as they were made.

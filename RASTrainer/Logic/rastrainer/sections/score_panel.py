@@ -79,9 +79,9 @@ class ScorePanel(Panel):
         if trial is None:
             return
         showStandings(scene, standings(self._trainees.study, trial, cohort))
-        showRows(scene, Role.MOTION, "Motion metrics", motionRows(trial))
+        showRows(scene, Role.MOTION, motionRows(trial))
         rows = [*scoreRows(trial), *ctpsRows(trial, cohort)]
-        table = showRows(scene, Role.SCORE, "Score", rows)
+        table = showRows(scene, Role.SCORE, rows)
         showTable(self._session.layout, table)
         self._showMessage(_("Score, Comparison and Motion metrics are now tables in the scene."))
 

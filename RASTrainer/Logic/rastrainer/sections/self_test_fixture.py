@@ -16,7 +16,7 @@ from rastrainer.sections.application import callSoon, findPlaces
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel_stack import PanelStack
 from rastrainer.slicer.link.connection import desktopKit
-from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
+from rastrainer.slicer.scene.nodes import Role, setPoints
 from rastrainer.slicer.settings import Settings
 
 SCENARIO = "colin27"
@@ -76,7 +76,7 @@ class SelfTestFixture:
 
     def touch(self, points: np.ndarray) -> None:
         """Put touches (n, 3) float, World, mm into the scene, as the simulator sends them."""
-        setPoints(capturedPointsNode(slicer.mrmlScene), LABELS[: len(points)], points)
+        setPoints(Role.CAPTURED_POINTS.make(slicer.mrmlScene), LABELS[: len(points)], points)
         self.process()
 
     def child(self, name: str) -> Any:

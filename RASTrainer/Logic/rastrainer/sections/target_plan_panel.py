@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -16,6 +15,7 @@ from rastrainer.sections.panel import Panel, connectClick
 from rastrainer.sections.scenario_files import planArguments
 from rastrainer.sections.target_plan_logic import PlanOnImages, targetsOf
 from rastrainer.slicer.link.link_status import LinkState
+from rastrainer.slicer.scene.nodes import NodeKind, Role
 from rastrainer.slicer.scene.plan_points import startPlacing, whyNotRemoved
 from rastrainer.slicer.translation import _
 from rastrainer.widgets.controls import (
@@ -40,13 +40,14 @@ class PlanPanel(Panel):
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
         self._logic = session.plan
-        failure, points = _("The plan was not saved."), self._logic.points
+        failure = _("The plan was not saved.")
         self._keeping = CancelableWork(
             ui.keepPlanButton, self.save, failure, lambda _sentence: None, self.showState
         )
         noTarget, noLine = _("No target can be placed."), _("No trajectory can be placed.")
-        connectClick(ui.placeTargetButton, partial(self._place, points.newTarget), noTarget)
-        connectClick(ui.placeTrajectoryButton, partial(self._place, points.newTrajectory), noLine)
+        connectClick(ui.placeTargetButton, partial(self._place, Role.PLAN_TARGET), noTarget)
+        placeLine = partial(self._place, Role.PLAN_TRAJECTORY)
+        connectClick(ui.placeTrajectoryButton, placeLine, noLine)
         connectClick(ui.removePlanPointButton, self.removePoint, _("The point was not removed."))
         connectClick(ui.undoPlanButton, self.undo, _("Nothing was undone."))
         connectClick(ui.sendPlanButton, self.send, _("The plan was not sent."))
@@ -132,8 +133,8 @@ class PlanPanel(Panel):
         """Return which point of the chosen list is the target; the last of a line."""
         return int(chosenData(self._ui.planTargetComboBox) or -1)
 
-    def _place(self, newNode: Callable[[], Any]) -> None:
-        node = newNode()
+    def _place(self, kind: NodeKind) -> None:
+        node = self._logic.points.ready(kind)
         self._ui.planComboBox.setCurrentNode(node)
         startPlacing(slicer.mrmlScene, node)
         self.showState()

@@ -20,18 +20,7 @@ from rastrainer.sections.trial_services import Question, Steps, TrialServices
 from rastrainer.sections.trial_status import TraceStatus, readStatus
 from rastrainer.slicer.polydata import pointCloud
 from rastrainer.slicer.scene.error_colors import colorSkin, removeHeadColors
-from rastrainer.slicer.scene.nodes import (
-    LIST,
-    MODEL,
-    Role,
-    drawAsPoints,
-    findNode,
-    findOrAddNode,
-    removeNode,
-    setDisplay,
-    setPoints,
-    surfaceOf,
-)
+from rastrainer.slicer.scene.nodes import Role, setPoints, surfaceOf
 from rastrainer.slicer.scene.scenario_nodes import requestedFile
 from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
@@ -87,7 +76,7 @@ class TraceLogic(Listening):
         if wanted is None or wanted == self._shown or not isDue or not services.link.seen.isOpen:
             return
         # The head that is to be colored may still be being read.
-        isReading = requestedFile(findNode(services.scene, MODEL, Role.HEAD_MODEL))
+        isReading = requestedFile(Role.HEAD_MODEL.find(services.scene))
         if self._scenario is not None and not isReading:
             self._isAsking, self._asked = True, self._clock()
             services.converse(self._updating(self._scenario, wanted))
@@ -131,34 +120,27 @@ class TraceLogic(Listening):
 DISTANCE_SCALARS = "distance to the trace (mm)"
 FARTHEST_MM = 20.0
 """Skin farther from the trace has the color of this distance."""
-NEXT_LOOK = {"SelectedColor": (0.75, 0.0, 0.5), "GlyphScale": 4.0, "TextScale": 3.5}
-"""Far from the trace, the head is yellow."""
 
 
 def showTrace(scene: Any, trace: FollowedTrace, isGuided: bool) -> None:
     """Show a trace on the head; to guide, color the distance to it, and mark where to draw next."""
-    node = findOrAddNode(scene, MODEL, Role.TRACED_POINTS, _("Traced points"))
-    drawAsPoints(node)
-    node.SetAndObservePolyData(pointCloud(trace.places))
-    head = findNode(scene, MODEL, Role.HEAD_MODEL)
+    Role.TRACED_POINTS.make(scene).SetAndObservePolyData(pointCloud(trace.places))
+    head = Role.HEAD_MODEL.find(scene)
     if head is not None and not (isGuided and len(trace.places)):
         removeHeadColors(head, DISTANCE_SCALARS)
     elif head is not None:
         near = np.minimum(trace.away_mm, FARTHEST_MM)
         colorSkin(head, DISTANCE_SCALARS, near, (0.0, FARTHEST_MM), _("To trace (mm)"))
     if trace.next_place is None or not isGuided:
-        removeNode(scene, LIST, Role.NEXT_PLACE)
-        return
-    node = findOrAddNode(scene, LIST, Role.NEXT_PLACE, _("Draw here next"))
-    setPoints(node, (_("Next"),), trace.next_place[None])
-    node.SetLocked(True)
-    setDisplay(node, **NEXT_LOOK, OccludedVisibility=True)
+        Role.NEXT_PLACE.remove(scene)
+    else:
+        setPoints(Role.NEXT_PLACE.make(scene), (_("Next"),), trace.next_place[None])
 
 
 def forgetTrace(scene: Any) -> None:
-    removeNode(scene, MODEL, Role.TRACED_POINTS)
-    removeNode(scene, LIST, Role.NEXT_PLACE)
-    head = findNode(scene, MODEL, Role.HEAD_MODEL)
+    Role.TRACED_POINTS.remove(scene)
+    Role.NEXT_PLACE.remove(scene)
+    head = Role.HEAD_MODEL.find(scene)
     if head is not None and surfaceOf(head):
         removeHeadColors(head, DISTANCE_SCALARS)
         head.GetPolyData().GetPointData().RemoveArray(DISTANCE_SCALARS)

@@ -17,7 +17,7 @@ from rastrainer.sections.trial_status import TrialStatus, readStatus
 from rastrainer.slicer.background_work import CallLater, callNow
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.link.link_status import LinkState
-from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode
+from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
 from rastrainer.slicer.scene.trial_scene import (
     forgetStoredTouches,
@@ -77,7 +77,7 @@ class TrainingLogic(Listening):
         said, elapsed = self._said, self._said.elapsedS
         if said.phase == Phase.RUNNING.value:
             elapsed += self._clock() - self._saidAt
-        touches = findNode(self._scene, "vtkMRMLMarkupsFiducialNode", Role.CAPTURED_POINTS)
+        touches = Role.CAPTURED_POINTS.find(self._scene)
         touched = touches.GetNumberOfControlPoints() if said.trialId and touches else 0
         return replace(said, touched=touched, total=self._total, elapsedS=elapsed)
 
@@ -200,7 +200,7 @@ class TrainingLogic(Listening):
             return
         self._total = fixed.GetNumberOfControlPoints()
         noteTouchedTask(self._scene, scenario.name, task, method)
-        showPlannedPlace(self._scene, scenario, capturedPointsNode(self._scene), fixed)
+        showPlannedPlace(self._scene, scenario, fixed)
         self.sceneShown.emit(scenario)
         self.changed.emit()
 

@@ -19,9 +19,9 @@ from rastrainer.slicer.scene.nodes import (
     CONTENT_ATTRIBUTE,
     TASK_ATTRIBUTE,
     Role,
-    findNode,
     labelsOf,
     nodesOfClass,
+    poseKind,
     worldPoints,
 )
 from rastrainer.slicer.settings import (
@@ -81,7 +81,6 @@ class BorrowedLayout:
         return self._scene.GetSingletonNode(LAYOUT_TAG, LAYOUT_TAG)
 
 
-TRANSFORM, FIDUCIALS = "vtkMRMLLinearTransformNode", "vtkMRMLMarkupsFiducialNode"
 LEAST_MOVE_MM = 0.5
 PERIOD_S = 0.09
 """Shortest time between two jumps after the tool: each renders all slice views."""
@@ -218,7 +217,7 @@ class SliceFollower:
 
     def _showNextPoint(self) -> None:
         status = self._training.status
-        fixed = findNode(self._scene, FIDUCIALS, Role.FIXED_FIDUCIALS)
+        fixed = Role.FIXED_FIDUCIALS.find(self._scene)
         point: tuple[str, ...] = ()
         task = "" if fixed is None else fixed.GetAttribute(TASK_ATTRIBUTE) or ""
         # The fiducials of a trial that has just started come a moment later than its first point.
@@ -240,8 +239,8 @@ def poseOnHead(scene: Any, device: str) -> np.ndarray | None:
 
     None if its pose, or the pose of the head, is not known.
     """
-    pose = findNode(scene, TRANSFORM, device)
-    toHead = findNode(scene, TRANSFORM, Role.WORLD_TO_HEAD)
+    pose = poseKind(device).find(scene)
+    toHead = Role.WORLD_TO_HEAD.find(scene)
     if pose is None or toHead is None:
         return None
     toWorld = slicer.util.arrayFromTransformMatrix(pose)

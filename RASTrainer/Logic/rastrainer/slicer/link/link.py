@@ -25,12 +25,11 @@ from rastrainer.slicer.link.link_status import (
 )
 from rastrainer.slicer.link.probe import Probe
 from rastrainer.slicer.scene.nodes import (
-    capturedPointsNode,
+    Role,
     decodedText,
     labelsOf,
     prepareNodes,
     shownText,
-    simStateNode,
 )
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
@@ -174,13 +173,13 @@ class Link(SimulatorConnection):
         self.send(CommandName.HELLO, {**hello, "toolTipHz": hz, "linksHz": hz}, welcome)
 
     def _emitNodes(self) -> None:
-        node = capturedPointsNode(self._scene)
+        node = Role.CAPTURED_POINTS.make(self._scene)
         rows = range(node.GetNumberOfControlPoints())
         points = labelsOf(node), tuple(node.GetNthControlPointPosition(row) for row in rows)
         if points != self._points:
             self._points = points
             self._guard.emit("The touched points", self.pointsChanged, node)
-        text = simStateNode(self._scene).GetText()
+        text = Role.SIM_STATE.make(self._scene).GetText()
         if text and text != self._stateText:
             self._stateText = text
             self._emitContent(text, DeviceName.SIM_STATE, self.stateChanged)

@@ -13,10 +13,7 @@ from rastrainer import transforms
 from rastrainer.registration.registration import Registration
 from rastrainer.slicer.polydata import vtkArray
 from rastrainer.slicer.scene.nodes import (
-    MODEL,
     Role,
-    findNode,
-    findOrAddNode,
     nodesOfClass,
     setValues,
     surfaceOf,
@@ -151,7 +148,7 @@ def glyphsPolyData(
 
 
 def showResidualArrows(scene: Any, registration: Registration) -> Any:
-    node = findOrAddNode(scene, MODEL, Role.RESIDUAL_ARROWS, "Residual arrows")
+    node = Role.RESIDUAL_ARROWS.make(scene)
     with slicer.util.NodeModify(node):
         node.SetDescription(f"Residuals, {magnification(registration):g} times as long")
         node.SetAndObservePolyData(glyphsPolyData(registration))
@@ -161,7 +158,7 @@ def showResidualArrows(scene: Any, registration: Registration) -> Any:
 
 def clearResidualArrows(scene: Any) -> None:
     """Leave the arrows' model empty: there is no registration that they could show."""
-    node = findNode(scene, MODEL, Role.RESIDUAL_ARROWS)
+    node = Role.RESIDUAL_ARROWS.find(scene)
     if node is not None and node.GetPolyData() and node.GetPolyData().GetNumberOfPoints():
         node.SetAndObservePolyData(vtk.vtkPolyData())
         _hideLegend(node)

@@ -1,74 +1,106 @@
-"""Our nodes in the scene: found or made, their content, their points, and the link's nodes."""
+"""Our nodes in the scene: what each is, found, made or removed, with its content and its points."""
 
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 import slicer
+import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList
+from rastrainer.procedure.errors import PLACED_COLOR, PLANNED_COLOR, REGISTERED_COLOR
 from rastrainer.protocol import DeviceName
+from rastrainer.slicer.translation import _
 
 MODEL, SEGMENTATION = "vtkMRMLModelNode", "vtkMRMLSegmentationNode"
 VOLUME, TABLE = "vtkMRMLScalarVolumeNode", "vtkMRMLTableNode"
 LIST, LINE = "vtkMRMLMarkupsFiducialNode", "vtkMRMLMarkupsLineNode"
 TRANSFORM, TEXT = "vtkMRMLLinearTransformNode", "vtkMRMLTextNode"
+SELECTION = "vtkMRMLSelectionNodeSingleton"
+INTERACTION = "vtkMRMLInteractionNodeSingleton"
 
 ROLE_ATTRIBUTE = "RASTrainer.role"
+TASK_ATTRIBUTE = "RASTrainer.task"
+CONTENT_ATTRIBUTE = "RASTrainer.content"
+"""Stamp of a node's content: a rebuilt scenario may keep its name."""
+ORIGINAL_NAME = "OriginalNodeName"
+"""The attribute in which Slicer's connector keeps the name of the device that fills a node."""
 
 
-class Role:
-    """The purpose of one of our nodes; it survives renaming, saving and loading."""
+@dataclass(frozen=True, eq=False)
+class NodeKind:
+    """Our nodes of one purpose.
 
-    HEAD_MODEL = "head model"
-    HEAD_PREVIEW = "head preview"
-    HEAD_SEGMENT = "head segment"
-    HEAD_VOLUME = "head volume"
-    SKULL = "skull"
-    FIXED_FIDUCIALS = "fixed fiducials"
-    TARGET = "target"
-    TRAJECTORY = "trajectory"
-    CAPTURED_POINTS = "captured points"
-    SIM_STATE = "simulator state"
-    WORLD_TO_HEAD = "world to head"
-    RESIDUALS = "residuals"
-    RESIDUAL_ARROWS = "residual arrows"
-    FITS = "fits"
-    HISTORY = "history"
-    LEARNING_CURVE = "learning curve"
-    CALIBRATION = "calibration"
-    SCORE = "score"
-    COMPARISON = "comparison"
-    MOTION = "motion metrics"
-    PLAN_TARGET = "plan target"
-    PLAN_TRAJECTORY = "plan trajectory"
-    PLAN_LINE = "procedure plan line"
-    NO_GO = "procedure no-go structure"
-    CHECKPOINTS = "procedure checkpoints"
-    PLANNED_LINE = "procedure planned line"
-    REGISTERED_LINE = "procedure registered line"
-    TRUE_LINE = "procedure true line"
-    ERRORS_BY_REGISTRATION = "procedure errors by registration"
-    ERRORS_BY_HAND = "procedure errors by hand"
-    PROCEDURE_ERRORS = "procedure errors"
-    ROBOT = "robot"
-    REPLAY = "replay"
-    LANDMARKS = "landmarks"
-    TRACED_POINTS = "traced points"
-    NEXT_PLACE = "next place of the trace"
+    Attributes:
+        role: marks them; it survives renaming, saving and loading.
+        name: of a node without another name.
+        look: values of the display.
+        values: values of the node.
+    """
+
+    className: str
+    role: str
+    name: str = ""
+    look: Mapping[str, Any] = field(default_factory=dict)
+    values: Mapping[str, Any] = field(default_factory=dict)
+
+    def all(self, scene: Any) -> list[Any]:
+        nodes = nodesOfClass(scene, self.className)
+        return [node for node in nodes if node.GetAttribute(ROLE_ATTRIBUTE) == self.role]
+
+    def find(self, scene: Any) -> Any | None:
+        return next(iter(self.all(scene)), None)
+
+    def make(self, scene: Any, name: str = "") -> Any:
+        """Return the node, with its look, and the name if one is given; add a missing one."""
+        node = self.find(scene)
+        return self.add(scene, name) if node is None else self.dress(node, name)
+
+    def add(self, scene: Any, name: str = "") -> Any:
+        """Add a node and return it.
+
+        Slicer has the next click place a point of the newest list; while the user is placing
+        points, they still go into the user's list.
+        """
+        selection, interaction = scene.GetNodeByID(SELECTION), scene.GetNodeByID(INTERACTION)
+        isPlacing = interaction and interaction.GetCurrentInteractionMode() == interaction.Place
+        active = scene.GetNodeByID(selection.GetActivePlaceNodeID() or "") if isPlacing else None
+        node = scene.AddNewNodeByClass(self.className, name or self.name)
+        if active is not None:
+            selection.SetReferenceActivePlaceNodeClassName(active.GetClassName())
+            selection.SetActivePlaceNodeID(active.GetID())
+        return self.dress(node)
+
+    def remove(self, scene: Any) -> None:
+        for node in self.all(scene):
+            scene.RemoveNode(node)
+
+    def dress(self, node: Any, name: str = "") -> Any:
+        """Make a node one of this kind and return it."""
+        node.SetAttribute(ROLE_ATTRIBUTE, self.role)
+        setValues(node, **self.values, **({"Name": name} if name else {}))
+        if node.IsA("vtkMRMLDisplayableNode") and self.className != TRANSFORM:
+            node.CreateDefaultDisplayNodes()
+            setDisplay(node, **self.look)
+        return node
 
 
-def findNode(scene: Any, className: str, role: str) -> Any | None:
-    return next(iter(nodesOf(scene, className, role)), None)
+class LinkedKind(NodeKind):
+    """A node that Slicer's connector fills; what the user makes of its look stays.
 
+    The connector adopts a node of that name and class; a node that it has made itself is adopted.
+    """
 
-def nodesOf(scene: Any, className: str, role: str) -> list[Any]:
-    nodes = nodesOfClass(scene, className)
-    return [node for node in nodes if node.GetAttribute(ROLE_ATTRIBUTE) == role]
+    def find(self, scene: Any) -> Any | None:
+        return super().find(scene) or scene.GetFirstNode(self.name, self.className)
+
+    def make(self, scene: Any, name: str = "") -> Any:
+        return super().find(scene) or super().make(scene, name)
 
 
 def nodesOfClass(scene: Any, className: str) -> list[Any]:
@@ -78,20 +110,124 @@ def nodesOfClass(scene: Any, className: str) -> list[Any]:
     return [nodes.GetItemAsObject(index) for index in range(nodes.GetNumberOfItems())]
 
 
-def removeNode(scene: Any, className: str, role: str) -> None:
-    node = findNode(scene, className, role)
-    if node is not None:
-        scene.RemoveNode(node)
+Color = tuple[float, float, float]
+LOCKED, UNSAVED, UNSELECTABLE = {"Locked": True}, {"SaveWithScene": False}, {"Selectable": False}
+TOUCH_COLOR = (0.95, 0.55, 0.1)
+SKIN_COLOR = (0.87, 0.72, 0.62)
+TRACE_LOOK = {
+    "Representation": slicer.vtkMRMLDisplayNode.PointsRepresentation,
+    "PointSize": 5.0,
+    "Color": TOUCH_COLOR,
+    "Lighting": False,
+}
 
 
-def findOrAddNode(scene: Any, className: str, role: str, name: str) -> Any:
-    """Return the node of the class with the role, added under `name` where there is none."""
-    node = findNode(scene, className, role)
-    if node is None:
-        node = addNode(scene, className, role, name)
-        if node.IsA("vtkMRMLDisplayableNode"):
-            node.CreateDefaultDisplayNodes()
-    return node
+TOUCH_LOOK = {"SelectedColor": TOUCH_COLOR, "GlyphScale": 2.5, "TextScale": 3.5}
+FIDUCIAL_LOOK = {"SelectedColor": (0.25, 0.55, 0.95), "GlyphScale": 2.0, "TextScale": 3.5}
+TARGET_LOOK = {"SelectedColor": (0.2, 0.75, 0.35)}
+ON_TOP = {"OccludedVisibility": True}
+PLAN_LOOK = {"SelectedColor": (0.85, 0.2, 0.55), **ON_TOP}
+LANDMARK_LOOK = {"SelectedColor": (0.1, 0.55, 0.9), **ON_TOP}
+NEXT_LOOK = {"SelectedColor": (0.75, 0.0, 0.5), "GlyphScale": 4.0, "TextScale": 3.5, **ON_TOP}
+"""Far from the trace, the head is yellow."""
+COLORS = "color"
+LINK_LOOK = {
+    **UNSAVED,
+    "ActiveScalarName": COLORS,
+    "ActiveAttributeLocation": vtk.vtkAssignAttribute.POINT_DATA,
+    "ScalarRangeFlag": slicer.vtkMRMLDisplayNode.UseDirectMapping,
+    "ScalarVisibility": True,
+}
+LINE_LOOK = {**ON_TOP, "PropertiesLabelVisibility": False, "GlyphScale": 1.0, "TextScale": 2.5}
+
+
+def _procedureLine(role: str, name: str, color: Color, isLabeled: bool = False) -> NodeKind:
+    look = {**LINE_LOOK, "SelectedColor": color, "PointLabelsVisibility": isLabeled}
+    return NodeKind(LINE, f"procedure {role} line", name, look, LOCKED)
+
+
+def _solid(role: str, name: str, color: Color) -> NodeKind:
+    return NodeKind(MODEL, f"procedure {role}", name, {"Color": color, "Visibility2D": True})
+
+
+def _link(number: int) -> NodeKind:
+    """Return the kind of a robot's link: rebuilt from the module's files, and never saved."""
+    name = f"Robot link {number}"
+    return NodeKind(MODEL, name.lower(), name, LINK_LOOK, {**UNSAVED, **UNSELECTABLE})
+
+
+def _chart(role: str, name: str, xTitle: str, yTitle: str) -> NodeKind:
+    ranges = {"XAxisRangeAuto": False, "YAxisRangeAuto": False}
+    axes = {"XAxisTitle": xTitle, "YAxisTitle": yTitle, **ranges}
+    return NodeKind("vtkMRMLPlotChartNode", role, name, {}, axes)
+
+
+def _table(role: str, name: str = "") -> NodeKind:
+    return NodeKind(TABLE, role, name, {}, LOCKED)
+
+
+class Role:
+    """Our kinds of nodes."""
+
+    HEAD_MODEL = NodeKind(MODEL, "head model", "Head")
+    HEAD_PREVIEW = NodeKind(MODEL, "head preview", "Head as found", {"Color": SKIN_COLOR})
+    HEAD_SEGMENT = NodeKind(SEGMENTATION, "head segment", "Head to be edited")
+    HEAD_VOLUME = NodeKind(VOLUME, "head volume")
+    SKULL = NodeKind(MODEL, "skull", "Skull")
+    FIXED_FIDUCIALS = NodeKind(LIST, "fixed fiducials", "", FIDUCIAL_LOOK, LOCKED)
+    TARGET = NodeKind(LIST, "target", "Targets", TARGET_LOOK, LOCKED)
+    TRAJECTORY = NodeKind(LINE, "trajectory", "", TARGET_LOOK, LOCKED)
+    CAPTURED_POINTS = LinkedKind(
+        LIST, "captured points", DeviceName.CAPTURED_POINTS, {**TOUCH_LOOK, **ON_TOP}, LOCKED
+    )
+    SIM_STATE = LinkedKind(TEXT, "simulator state", DeviceName.SIM_STATE, {}, UNSAVED)
+    WORLD_TO_HEAD = NodeKind(TRANSFORM, "world to head", "WorldToHead")
+    RESIDUALS = _table("residuals", "Residuals")
+    RESIDUAL_ARROWS = NodeKind(MODEL, "residual arrows", "Residual arrows")
+    FITS = _table("fits", "Fits")
+    HISTORY = _table("history")
+    LEARNING_CURVE = _chart("learning curve", "", "Trial", "Score, and completion time in s")
+    CALIBRATION = _chart(
+        "calibration", "True against expected TRE", _("Expected TRE (mm)"), _("True TRE (mm)")
+    )
+    CALIBRATION_TABLE = _table("calibration", "True and expected TRE")
+    CALIBRATION_LINE = _table("calibration line", "True equals expected TRE")
+    SCORE = _table("score", "Score")
+    COMPARISON = _table("comparison", "Comparison")
+    MOTION = _table("motion metrics", "Motion metrics")
+    PLAN_TARGET = NodeKind(LIST, "plan target", _("Planned target"), PLAN_LOOK)
+    PLAN_TRAJECTORY = NodeKind(LINE, "plan trajectory", _("Planned trajectory"), PLAN_LOOK)
+    PLAN_LINE = NodeKind(LINE, "procedure plan line", _("Line"), PLAN_LOOK)
+    NO_GO = _solid("no-go structure", "", (0.8, 0.2, 0.2))
+    CHECKPOINTS = NodeKind(LIST, "procedure checkpoints", _("Checkpoints"))
+    PLANNED_LINE = _procedureLine("planned", "{}", PLANNED_COLOR, True)
+    REGISTERED_LINE = _procedureLine("registered", _("{}, registered"), REGISTERED_COLOR)
+    TRUE_LINE = _procedureLine("true", _("{}, true"), PLACED_COLOR)
+    ERRORS_BY_REGISTRATION = _solid(
+        "errors by registration", _("Errors due to registration"), REGISTERED_COLOR
+    )
+    ERRORS_BY_HAND = _solid("errors by hand", _("Errors due to hand or robot"), PLACED_COLOR)
+    PROCEDURE_ERRORS = _table("procedure errors", "Procedure errors")
+    LANDMARKS = NodeKind(LIST, "landmarks", _("Landmarks"), LANDMARK_LOOK)
+    TRACED_POINTS = NodeKind(MODEL, "traced points", _("Traced points"), TRACE_LOOK, UNSELECTABLE)
+    NEXT_PLACE = NodeKind(LIST, "next place of the trace", _("Draw here next"), NEXT_LOOK, LOCKED)
+    LINKS = tuple(_link(number) for number in range(len(DeviceName.LINK_TO_WORLD)))
+    """Of the robot; the tool belongs to the last one."""
+
+
+TOOLS = DeviceName.TOOL_TIP_TO_WORLD, DeviceName.INSTRUMENT_TIP_TO_WORLD
+
+
+def poseKind(device: str) -> NodeKind:
+    """Return the kind of the transform that the connector fills for a device; never saved."""
+    return LinkedKind(TRANSFORM, device, device, {}, UNSAVED)
+
+
+def prepareNodes(scene: Any) -> Iterator[Any]:
+    """Make the nodes of the link that are missing, one at each step, and yield all."""
+    poses = map(poseKind, (*TOOLS, *DeviceName.LINK_TO_WORLD))
+    for kind in (Role.CAPTURED_POINTS, Role.SIM_STATE, *poses):
+        yield kind.make(scene)
 
 
 def setValues(thing: Any, **values: Any) -> Any:
@@ -106,32 +242,6 @@ def setValues(thing: Any, **values: Any) -> Any:
 def setDisplay(node: Any, **values: Any) -> Any:
     """Call `Set…` of a node's display for each value; return the display."""
     return setValues(node.GetDisplayNode(), **values)
-
-
-SELECTION = "vtkMRMLSelectionNodeSingleton"
-INTERACTION = "vtkMRMLInteractionNodeSingleton"
-
-
-def addNode(scene: Any, className: str, role: str, name: str) -> Any:
-    """Add a node of ours, without display.
-
-    Slicer has the next click place a point of the newest list; while the user is placing points,
-    they still go into the user's list.
-    """
-    selection, interaction = scene.GetNodeByID(SELECTION), scene.GetNodeByID(INTERACTION)
-    isPlacing = interaction and interaction.GetCurrentInteractionMode() == interaction.Place
-    active = scene.GetNodeByID(selection.GetActivePlaceNodeID() or "") if isPlacing else None
-    node = scene.AddNewNodeByClass(className, name)
-    node.SetAttribute(ROLE_ATTRIBUTE, role)
-    if active is not None:
-        selection.SetReferenceActivePlaceNodeClassName(active.GetClassName())
-        selection.SetActivePlaceNodeID(active.GetID())
-    return node
-
-
-TASK_ATTRIBUTE = "RASTrainer.task"
-CONTENT_ATTRIBUTE = "RASTrainer.content"
-"""Stamp of a node's content: a rebuilt scenario may keep its name."""
 
 
 def surfaceOf(model: Any | None) -> tuple:
@@ -175,65 +285,6 @@ def setPoints(node: Any, labels: Sequence[str], points: Any) -> None:
         slicer.util.updateMarkupsControlPointsFromArray(node, places)
         for index, label in enumerate(labels):
             node.SetNthControlPointLabel(index, label)
-
-
-ORIGINAL_NAME = "OriginalNodeName"
-"""The attribute in which Slicer's connector keeps the name of the device that fills a node."""
-
-TOUCH_COLOR = (0.95, 0.55, 0.1)
-TOUCH_LOOK = {"SelectedColor": TOUCH_COLOR, "GlyphScale": 2.5, "TextScale": 3.5}
-POINT_PIXELS = 5.0
-
-
-def prepareNodes(scene: Any) -> Iterator[Any]:
-    """Make the nodes that are missing, one at each step, and yield all.
-
-    The connector adopts nodes of that name and class; nodes that it has made itself are adopted.
-    """
-    yield capturedPointsNode(scene)
-    yield simStateNode(scene)
-    tips = (DeviceName.TOOL_TIP_TO_WORLD, DeviceName.INSTRUMENT_TIP_TO_WORLD)
-    for device in (*tips, *DeviceName.LINK_TO_WORLD):
-        yield poseNode(scene, device)
-
-
-def poseNode(scene: Any, device: str) -> Any:
-    """Return the transform that the connector fills for a device, or a new one; never saved."""
-    return setValues(_adopted(scene, TRANSFORM, device, device), SaveWithScene=False)
-
-
-def capturedPointsNode(scene: Any) -> Any:
-    """Return the list of touched points (World, mm) under any name, or add it."""
-    node = findNode(scene, LIST, Role.CAPTURED_POINTS)
-    if node is None:
-        node = _adopted(scene, LIST, Role.CAPTURED_POINTS, DeviceName.CAPTURED_POINTS)
-        node.SetLocked(True)
-        node.CreateDefaultDisplayNodes()
-        setDisplay(node, **TOUCH_LOOK, OccludedVisibility=True)
-    return node
-
-
-def simStateNode(scene: Any) -> Any:
-    """Return the text of the simulator's state, or a new one; it is never saved."""
-    node = _adopted(scene, TEXT, Role.SIM_STATE, DeviceName.SIM_STATE)
-    return setValues(node, SaveWithScene=False)
-
-
-def drawAsPoints(node: Any) -> None:
-    node.SetSelectable(False)
-    points = slicer.vtkMRMLDisplayNode.PointsRepresentation
-    setDisplay(
-        node, Representation=points, PointSize=POINT_PIXELS, Color=TOUCH_COLOR, Lighting=False
-    )
-
-
-def _adopted(scene: Any, className: str, role: str, name: str) -> Any:
-    """Return the node with the role, else with the name, else a new node."""
-    node = findNode(scene, className, role)
-    if node is None:
-        node = scene.GetFirstNode(name, className) or addNode(scene, className, role, name)
-        node.SetAttribute(ROLE_ATTRIBUTE, role)
-    return node
 
 
 def decodedText(text: str | bytes | None) -> str:

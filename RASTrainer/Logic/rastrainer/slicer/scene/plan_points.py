@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import starmap
 from typing import Any, NamedTuple
 
 import slicer
@@ -11,14 +12,9 @@ from rastrainer.errors import InputError
 from rastrainer.slicer.scene.nodes import (
     INTERACTION,
     LINE,
-    LIST,
     SELECTION,
-    Role,
-    addNode,
-    findOrAddNode,
+    NodeKind,
     labelOf,
-    nodesOf,
-    setDisplay,
     setPoints,
 )
 from rastrainer.slicer.translation import _
@@ -39,7 +35,6 @@ def stopPlacing(scene: Any) -> None:
         interaction.SetCurrentInteractionMode(interaction.ViewTransform)
 
 
-TARGET_COLOR = (0.85, 0.2, 0.55)
 ENDS = 2
 """Points of a line: its entry and its target."""
 
@@ -64,14 +59,10 @@ def placedPoints(node: Any | None, inRas: bool = False) -> list[PlacedPoint]:
     ]
 
 
-def unfinishedLine(scene: Any, role: str, name: str) -> Any:
-    """Return the first line of a role that lacks its entry or target, or a new one."""
-    for line in nodesOf(scene, LINE, role):
-        if len(placedPoints(line)) < ENDS:
-            return line
-    line = addNode(scene, LINE, role, scene.GenerateUniqueName(name))
-    line.CreateDefaultDisplayNodes()
-    return line
+def unfinishedLine(scene: Any, kind: NodeKind) -> Any:
+    """Return the first line of a kind that lacks its entry or target, or a new one."""
+    unfinished = (line for line in kind.all(scene) if len(placedPoints(line)) < ENDS)
+    return next(unfinished, None) or kind.add(scene, scene.GenerateUniqueName(kind.name))
 
 
 def putPoints(node: Any, points: Sequence[PlacedPoint]) -> None:
@@ -86,49 +77,42 @@ class UndoablePoints:
 
     def __init__(self, scene: Any) -> None:
         self._scene = scene
-        self._before: list[tuple[str, list[PlacedPoint]]] = []
+        self._before: list[tuple[Any, list[PlacedPoint]]] = []
 
     def remember(self, node: Any) -> list[PlacedPoint]:
         """Return the placed points, which `undo` will restore; the next click places none."""
         stopPlacing(self._scene)
         points = placedPoints(node)
-        self._before.append((node.GetID(), list(points)))
+        self._before.append((node, list(points)))
         return points
 
     @property
     def canUndo(self) -> bool:
-        return any(self._changed(*before) is not None for before in self._before)
+        return any(starmap(_isChanged, self._before))
 
     def undo(self) -> None:
         """Undo the last change whose list or line still exists."""
         stopPlacing(self._scene)
         while self._before:
-            nodeId, before = self._before.pop()
-            node = self._changed(nodeId, before)
-            if node is not None:
+            node, before = self._before.pop()
+            if _isChanged(node, before):
                 putPoints(node, before)
                 return
 
-    def forget(self) -> None:
-        """Forget what could be undone: the scene was closed."""
-        self._before.clear()
 
-    def _changed(self, nodeId: str, before: list[PlacedPoint]) -> Any | None:
-        node = self._scene.GetNodeByID(nodeId)
-        return None if node is None or placedPoints(node) == before else node
+def _isChanged(node: Any, before: list[PlacedPoint]) -> bool:
+    return node.GetScene() is not None and placedPoints(node) != before
 
 
 class PlanPoints(UndoablePoints):
     """The points of targets and trajectories; placing more never erases any."""
 
-    def newTarget(self) -> Any:
-        node = findOrAddNode(self._scene, LIST, Role.PLAN_TARGET, _("Planned target"))
-        return self._readyToPlace(node)
-
-    def newTrajectory(self) -> Any:
-        """Return a line that lacks its entry or target, for the next clicks."""
-        node = unfinishedLine(self._scene, Role.PLAN_TRAJECTORY, _("Planned trajectory"))
-        return self._readyToPlace(node)
+    def ready(self, kind: NodeKind) -> Any:
+        """Return the list of a kind, or its line that lacks its entry or target, to be placed."""
+        isLine = kind.className == LINE
+        node = unfinishedLine(self._scene, kind) if isLine else kind.make(self._scene)
+        self.remember(node)
+        return node
 
     def remove(self, node: Any | None, row: int = -1) -> None:
         """Remove one of a node's placed points, the last where left out."""
@@ -138,11 +122,6 @@ class PlanPoints(UndoablePoints):
         points = self.remember(node)
         del points[row]
         putPoints(node, points)
-
-    def _readyToPlace(self, node: Any) -> Any:
-        setDisplay(node, SelectedColor=TARGET_COLOR, OccludedVisibility=True)
-        self.remember(node)
-        return node
 
 
 def whyNotRemoved(node: Any | None) -> str:

@@ -14,9 +14,6 @@ import vtk
 
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.procedure.errors import (
-    PLACED_COLOR,
-    PLANNED_COLOR,
-    REGISTERED_COLOR,
     ProcedureAnalysis,
     SplitError,
     TrajectoryErrors,
@@ -26,23 +23,15 @@ from rastrainer.procedure.plan import Procedure
 from rastrainer.slicer.polydata import meshPolyData
 from rastrainer.slicer.scene.error_colors import arrowPolyData
 from rastrainer.slicer.scene.nodes import (
-    LINE,
-    LIST,
     MODEL,
     ROLE_ATTRIBUTE,
     SEGMENTATION,
-    TABLE,
+    NodeKind,
     Role,
-    addNode,
-    findOrAddNode,
-    nodesOf,
     nodesOfClass,
-    removeNode,
-    setDisplay,
     setPoints,
-    worldPoints,
 )
-from rastrainer.slicer.scene.plan_points import ENDS, TARGET_COLOR, placedPoints, unfinishedLine
+from rastrainer.slicer.scene.plan_points import ENDS, placedPoints
 from rastrainer.slicer.scene.tables import Columns, showTable
 from rastrainer.slicer.translation import _
 
@@ -51,11 +40,10 @@ NO_GO_ATTRIBUTE = "RASTrainer.noGo"
 ORDER_ATTRIBUTE, LAST = "RASTrainer.order", 1e6
 """A line that was never moved comes after those that were, in the order of the scene."""
 USUAL_DIAMETER_MM, USUAL_SAFETY_MM = 1.3, 2.0
-NO_GO_COLOR = (0.8, 0.2, 0.2)
 
 
 def planLines(scene: Any) -> list[Any]:
-    lines = nodesOf(scene, LINE, Role.PLAN_LINE)
+    lines = Role.PLAN_LINE.all(scene)
     return sorted(lines, key=lambda line: float(line.GetAttribute(ORDER_ATTRIBUTE) or LAST))
 
 
@@ -67,13 +55,6 @@ def placeLine(scene: Any, line: Any, place: int) -> None:
     lines = [each for each in planLines(scene) if each is not line]
     for number, each in enumerate([*lines[:place], line, *lines[place:]]):
         each.SetAttribute(ORDER_ATTRIBUTE, str(number))
-
-
-def newPlanLine(scene: Any) -> Any:
-    """Return a line of the plan that lacks its entry or target, for the next clicks."""
-    line = unfinishedLine(scene, Role.PLAN_LINE, _("Line"))
-    setDisplay(line, SelectedColor=TARGET_COLOR, OccludedVisibility=True)
-    return line
 
 
 def instrumentOf(line: Any) -> tuple[float, float]:
@@ -89,10 +70,7 @@ def setInstrument(line: Any, diameterMm: float, safetyMm: float) -> None:
 
 def lengthMm(line: Any) -> float | None:
     """Return the length of a line; None while one of its ends is missing."""
-    if len(placedPoints(line)) < ENDS:
-        return None
-    ends = worldPoints(line)
-    return float(np.linalg.norm(ends[1] - ends[0]))
+    return line.GetLineLengthWorld() if len(placedPoints(line)) == ENDS else None
 
 
 def showPlan(scene: Any, procedure: Procedure | None, noGo: Mapping[str, HeadMesh]) -> None:
@@ -101,28 +79,21 @@ def showPlan(scene: Any, procedure: Procedure | None, noGo: Mapping[str, HeadMes
         scene.RemoveNode(line)
     for node in noGoNodes(scene):
         setNoGo(node, False)
-        if node.GetAttribute(ROLE_ATTRIBUTE) == Role.NO_GO:
+        if node.GetAttribute(ROLE_ATTRIBUTE) == Role.NO_GO.role:
             scene.RemoveNode(node)
     for trajectory in () if procedure is None else procedure.trajectories:
-        line = newPlanLine(scene)
-        line.SetName(trajectory.name)
+        line = Role.PLAN_LINE.add(scene, trajectory.name)
         setInstrument(line, trajectory.diameter_mm, trajectory.safety_mm)
         ends = trajectory.entry_ras, trajectory.target_ras
         setPoints(line, (_("Entry"), _("Target")), ends)
     for name, mesh in noGo.items():
-        model = scene.AddNewNodeByClass(MODEL, name)
-        model.SetAttribute(ROLE_ATTRIBUTE, Role.NO_GO)
+        model = Role.NO_GO.add(scene, name)
         model.SetAndObservePolyData(meshPolyData(mesh))
-        model.CreateDefaultDisplayNodes()
-        setDisplay(model, Color=NO_GO_COLOR, Visibility2D=True)
         setNoGo(model, True)
     checkpoints = () if procedure is None else procedure.checkpoints
     places = [checkpoint.position_ras for checkpoint in checkpoints]
-    setPoints(checkpointList(scene), [checkpoint.name for checkpoint in checkpoints], places)
-
-
-def checkpointList(scene: Any) -> Any:
-    return findOrAddNode(scene, LIST, Role.CHECKPOINTS, _("Checkpoints"))
+    names = [checkpoint.name for checkpoint in checkpoints]
+    setPoints(Role.CHECKPOINTS.make(scene), names, places)
 
 
 def noGoNodes(scene: Any) -> list[Any]:
@@ -147,14 +118,17 @@ def showPlannedLines(scene: Any, procedure: Procedure | None) -> None:
 
     The errors of an earlier procedure are removed. None removes all lines.
     """
-    for role in (Role.REGISTERED_LINE, Role.TRUE_LINE):
-        _showLines(scene, role, "{}", {})
-    for role in (Role.ERRORS_BY_REGISTRATION, Role.ERRORS_BY_HAND):
-        removeNode(scene, MODEL, role)
-    removeNode(scene, TABLE, Role.PROCEDURE_ERRORS)
+    for kind in (
+        Role.REGISTERED_LINE,
+        Role.TRUE_LINE,
+        Role.ERRORS_BY_REGISTRATION,
+        Role.ERRORS_BY_HAND,
+        Role.PROCEDURE_ERRORS,
+    ):
+        kind.remove(scene)
     planned = [] if procedure is None else procedure.trajectories
     lines = {each.name: (each.entry_ras, each.target_ras) for each in planned}
-    _showLines(scene, Role.PLANNED_LINE, "{}", lines)
+    _showLines(scene, Role.PLANNED_LINE, lines)
 
 
 def showProcedureErrors(scene: Any, analysis: ProcedureAnalysis, lines: Sequence[TrueLine]) -> Any:
@@ -164,65 +138,37 @@ def showProcedureErrors(scene: Any, analysis: ProcedureAnalysis, lines: Sequence
     target, an arrow leads from the planned point to its registered position, and another from there
     to the reached point; both are true to scale.
     """
-    for role, title, member in (
-        (Role.PLANNED_LINE, "{}", "planned"),
-        (Role.REGISTERED_LINE, _("{}, registered"), "shown"),
-        (Role.TRUE_LINE, _("{}, true"), "placed"),
-    ):
-        _showLines(scene, role, title, {each.trajectory: getattr(each, member) for each in lines})
+    _showLines(scene, Role.PLANNED_LINE, {each.trajectory: each.planned for each in lines})
+    _showLines(scene, Role.REGISTERED_LINE, {each.trajectory: each.shown for each in lines})
+    _showLines(scene, Role.TRUE_LINE, {each.trajectory: each.placed for each in lines})
     _showArrows(scene, analysis.trajectories, [line.planned for line in lines])
     return _showTable(scene, analysis.trajectories)
 
 
-_COLORS = {
-    Role.PLANNED_LINE: PLANNED_COLOR,
-    Role.REGISTERED_LINE: REGISTERED_COLOR,
-    Role.TRUE_LINE: PLACED_COLOR,
-}
-
-
-def _showLines(scene: Any, role: str, title: str, lines: Mapping[str, Any]) -> None:
-    """Show lines of a role, in place of others; ends are (2, 3) float, RAS mm, by name."""
-    nodes = nodesOf(scene, LINE, role)
-    for node in nodes[len(lines) :]:
-        scene.RemoveNode(node)
-    for row, (name, ends) in enumerate(lines.items()):
-        node = nodes[row] if row < len(nodes) else addNode(scene, LINE, role, "")
-        node.SetName(title.format(name))
+def _showLines(scene: Any, kind: NodeKind, lines: Mapping[str, Any]) -> None:
+    """Show lines of a kind, in place of others; ends are (2, 3) float, RAS mm, by name."""
+    kind.remove(scene)
+    for name, ends in lines.items():
         # Only the planned lines show a label, at their entries.
-        setPoints(node, (name, ""), ends)
-        node.SetLocked(True)
-        node.CreateDefaultDisplayNodes()
-        setDisplay(
-            node,
-            SelectedColor=_COLORS[role],
-            OccludedVisibility=True,
-            PropertiesLabelVisibility=False,
-            PointLabelsVisibility=role == Role.PLANNED_LINE,
-            GlyphScale=1.0,
-            TextScale=2.5,
-        )
+        setPoints(kind.add(scene, kind.name.format(name)), (name, ""), ends)
 
 
 def _showArrows(
     scene: Any, each: Sequence[TrajectoryErrors], planned: Sequence[np.ndarray]
 ) -> None:
-    for role, name, color in (
-        (Role.ERRORS_BY_REGISTRATION, _("Errors due to registration"), REGISTERED_COLOR),
-        (Role.ERRORS_BY_HAND, _("Errors due to hand or robot"), PLACED_COLOR),
+    byRegistration, byHand = vtk.vtkAppendPolyData(), vtk.vtkAppendPolyData()
+    for errors, ends in zip(each, planned, strict=True):
+        splits = errors.entry_point_error, errors.target_point_error
+        for start, split in zip(ends, splits, strict=True):
+            shift, rest = np.array(split.by_registration_ras), np.array(split.by_hand_ras)
+            byRegistration.AddInputData(arrowPolyData(start, shift, THICKNESS))
+            byHand.AddInputData(arrowPolyData(start + shift, rest, THICKNESS))
+    for kind, append in (
+        (Role.ERRORS_BY_REGISTRATION, byRegistration),
+        (Role.ERRORS_BY_HAND, byHand),
     ):
-        append = vtk.vtkAppendPolyData()
-        for errors, ends in zip(each, planned, strict=True):
-            splits = errors.entry_point_error, errors.target_point_error
-            for start, split in zip(ends, splits, strict=True):
-                begin, vector = start, np.array(split.by_registration_ras)
-                if role == Role.ERRORS_BY_HAND:
-                    begin, vector = start + vector, np.array(split.by_hand_ras)
-                append.AddInputData(arrowPolyData(begin, vector, THICKNESS))
         append.Update()
-        node = findOrAddNode(scene, MODEL, role, name)
-        node.SetAndObservePolyData(append.GetOutput())
-        setDisplay(node, Color=color, Visibility2D=True)
+        kind.make(scene).SetAndObservePolyData(append.GetOutput())
 
 
 def _showTable(scene: Any, each: Sequence[TrajectoryErrors]) -> Any:
@@ -249,4 +195,4 @@ def _showTable(scene: Any, each: Sequence[TrajectoryErrors]) -> Any:
         "distance kept (mm)": [min(e.kept_mm.values(), default=None) for e in each],
         "alignments": [float(errors.alignments) for errors in each],
     }
-    return showTable(scene, Role.PROCEDURE_ERRORS, "Procedure errors", columns)
+    return showTable(scene, Role.PROCEDURE_ERRORS, columns)

@@ -5,8 +5,8 @@ The user may change the pairs. Touches on the skin have different errors along a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -36,30 +36,28 @@ class Choices:
     """
 
     excluded: frozenset[str] = frozenset()
-    renamed: tuple[tuple[str, str], ...] = ()
-    fle: tuple[tuple[str, float], ...] = ()
+    renamed: Mapping[str, str] = field(default_factory=dict)
+    fle: Mapping[str, float] = field(default_factory=dict)
 
     def without(self, labels: tuple[str, ...]) -> Choices:
         return replace(self, excluded=self.excluded | set(labels))
 
     def localized(self, label: str, fleMm: float) -> Choices:
-        sizes = {**dict(self.fle), label: fleMm}
+        sizes = {**self.fle, label: fleMm}
         if fleMm == USUAL_FLE_MM:
             del sizes[label]
-        return replace(self, fle=tuple(sorted(sizes.items())))
+        return replace(self, fle=sizes)
 
     def weights(self, labels: Sequence[str]) -> np.ndarray | None:
         """Return the weight of each point, 1/FLE², (n,) float; None if all count alike."""
-        sizes = dict(self.fle)
-        fle = np.array([sizes.get(label, USUAL_FLE_MM) for label in labels])
+        fle = np.array([self.fle.get(label, USUAL_FLE_MM) for label in labels])
         return None if (fle == USUAL_FLE_MM).all() else 1.0 / fle**2
 
     def rename(self, order: dict[str, str]) -> Choices:
         """Return the choices with moving points given to other labels, on top of before."""
-        names = dict(self.renamed)
-        shown = {label: names.get(label, label) for label in {*order, *names}}
-        renamed = sorted((label, order.get(name, name)) for label, name in shown.items())
-        return replace(self, renamed=tuple(renamed))
+        shown = {**{label: label for label in order}, **self.renamed}
+        renamed = {label: order.get(name, name) for label, name in shown.items()}
+        return replace(self, renamed=renamed)
 
 
 @dataclass(frozen=True)
@@ -89,8 +87,7 @@ def readPairs(moving: Any, fixed: Any, choices: Choices) -> Pairs:
             raise InputError(_("Choose the list of {which} points.").format(which=words))
         if node.GetNumberOfControlPoints() == 0:
             raise InputError(_("The list of {which} points is empty.").format(which=words))
-    names = dict(choices.renamed)
-    movingLabels = tuple(names.get(label, label) for label in labelsOf(moving))
+    movingLabels = tuple(choices.renamed.get(label, label) for label in labelsOf(moving))
     movingPoints = slicer.util.arrayFromMarkupsControlPoints(moving)
     movingList = usedPoints(moving, movingPoints, movingLabels)
     fixedList = usedPoints(fixed, worldPoints(fixed), labelsOf(fixed))

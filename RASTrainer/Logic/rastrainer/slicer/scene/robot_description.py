@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
-from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
@@ -56,58 +55,40 @@ def originOf(element: Element) -> np.ndarray:
     return transforms.rigid(turn.as_matrix(), MM_PER_M * xyz)
 
 
-@dataclass(frozen=True, eq=False)
-class ArmChain:
-    """The joints from the robot's base to the tip of its tool, in their order.
+OTHER_ROBOT = "The trial was recorded with another robot than the one that is here."
 
-    Attributes:
-        origins: (n, 4, 4) float, each joint in its predecessor's frame, mm.
-        axes: (n, 3) float, unit; zeros for a joint that does not move.
+
+def toolPoses(urdf: Path, q: np.ndarray) -> np.ndarray:
+    """Return the poses (m, 4, 4) float, mm, of the tool at joint angles q (m, n) float, rad.
+
+    The joints are a chain from the robot's base to the tip of its tool.
     """
+    from scipy.spatial.transform import Rotation
 
-    origins: np.ndarray
-    axes: np.ndarray
-
-    def toolToWorld(self, q: np.ndarray) -> np.ndarray:
-        """Return the poses (m, 4, 4) float, mm, of the tool at joint angles q (m, n) float, rad."""
-        from scipy.spatial.transform import Rotation
-
-        poses = np.broadcast_to(np.eye(4), (len(q), 4, 4))
-        column = 0
-        for origin, axis in zip(self.origins, self.axes, strict=True):
-            poses = poses @ origin
-            if not axis.any():
-                continue
-            turn = np.broadcast_to(np.eye(4), poses.shape).copy()
-            turn[:, :3, :3] = Rotation.from_rotvec(q[:, column, None] * axis).as_matrix()
-            column += 1
-            poses = poses @ turn
-        return poses
-
-
-def readArmChain(urdf: Path) -> ArmChain:
-    root = readUrdf(urdf)
+    joints = readUrdf(urdf).findall("joint")
+    types = [joint.get("type") for joint in joints]
+    isArm = {*types} <= {"revolute", "fixed"}
+    if isArm and types.count("revolute") != q.shape[1]:
+        raise InputError(OTHER_ROBOT)
+    poses, angles = np.broadcast_to(np.eye(4), (len(q), 4, 4)), iter(q.T)
     try:
-        joints = {attribute(joint, "parent", "link"): joint for joint in root.findall("joint")}
-        children = {attribute(joint, "child", "link") for joint in joints.values()}
-        (base,) = joints.keys() - children
-        if len(joints) != len(root.findall("joint")):
+        following = {attribute(joint, "parent", "link"): joint for joint in joints}
+        (link,) = following.keys() - {attribute(joint, "child", "link") for joint in joints}
+        if len(following) != len(joints) or not isArm:
             raise ValueError
-        origins, axes, link = [], [], base
-        while link in joints:
-            joint = joints.pop(link)
-            origins.append(originOf(joint))
-            axis = np.zeros(3)
+        while link in following:
+            joint = following.pop(link)
+            poses = poses @ originOf(joint)
             if joint.get("type") == "revolute":
                 axis = numbers(attribute(joint, "axis", "xyz"))
-                axis /= np.linalg.norm(axis)
-            elif joint.get("type") != "fixed":
-                raise ValueError
-            axes.append(axis)
+                turns = next(angles)[:, None] * axis / np.linalg.norm(axis)
+                turn = np.broadcast_to(np.eye(4), poses.shape).copy()
+                turn[:, :3, :3] = Rotation.from_rotvec(turns).as_matrix()
+                poses = poses @ turn
             link = attribute(joint, "child", "link")
     except ValueError:
         raise InputError(f"The URDF {urdf} is not a chain of revolute and fixed joints.") from None
-    return ArmChain(np.array(origins), np.array(axes))
+    return poses
 
 
 URDF = "iiwa7.urdf"

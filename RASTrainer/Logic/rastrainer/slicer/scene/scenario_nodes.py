@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import slicer
-import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
@@ -19,33 +18,25 @@ from rastrainer.head.volume import read_nrrd
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import Scenario, SkullKind, task_by_method
 from rastrainer.slicer.background_work import BackgroundWork, CallLater, callNow
-from rastrainer.slicer.polydata import meshPolyData, vtkArray
+from rastrainer.slicer.polydata import meshPolyData
 from rastrainer.slicer.scene.nodes import (
     CONTENT_ATTRIBUTE,
-    LINE,
-    LIST,
-    MODEL,
+    SKIN_COLOR,
     TASK_ATTRIBUTE,
     VOLUME,
+    NodeKind,
     Role,
-    findNode,
-    findOrAddNode,
     nodesOfClass,
-    removeNode,
     setDisplay,
     setPoints,
 )
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 
-SKIN_COLOR = (0.87, 0.72, 0.62)
 SKULL_COLOR = (0.95, 0.92, 0.82)
 SKIN_OPACITY_OVER_SKULL = 0.5
 OUTLINE = {"Visibility2D": True, "SliceIntersectionThickness": 2}
 """Of head and skull in slice views: a width of one pixel is hardly visible on an MRI."""
-
-FIDUCIAL_LOOK = {"SelectedColor": (0.25, 0.55, 0.95), "GlyphScale": 2.0, "TextScale": 3.5}
-TARGET_COLOR = (0.2, 0.75, 0.35)
 
 
 def showScenario(scene: Any, scenario: Scenario, later: CallLater = callNow) -> None:
@@ -53,17 +44,16 @@ def showScenario(scene: Any, scenario: Scenario, later: CallLater = callNow) -> 
 
     Called again, nothing is made twice. Meshes and images come still later, by a `SceneFileLoader`.
     """
-    skull, name = scenario.skull, "Skull"
-    if skull is not None and skull.kind is SkullKind.APPROXIMATION:
-        name = "Skull (approximation)"
-    opacity = 1.0 if skull is None else SKIN_OPACITY_OVER_SKULL
+    skull, opacity, showSurface = scenario.skull, 1.0, partial(_showSurface, scene, scenario)
+    showSkull = partial(Role.SKULL.remove, scene)
+    if skull is not None:
+        opacity, bone = SKIN_OPACITY_OVER_SKULL, {"Color": SKULL_COLOR, "Opacity": 1.0}
+        isApproximate = skull.kind is SkullKind.APPROXIMATION
+        name = "Skull (approximation)" if isApproximate else "Skull"
+        showSkull = partial(showSurface, Role.SKULL, name, skull.file, bone)
     skin = {"Color": SKIN_COLOR, "Opacity": opacity}
-    bone = {"Color": SKULL_COLOR, "Opacity": 1.0}
-    for surface in (
-        (Role.HEAD_MODEL, "Head", scenario.head, skin),
-        (Role.SKULL, name, None if skull is None else skull.file, bone),
-    ):
-        later(partial(_showSurface, scene, scenario, *surface))
+    later(partial(showSurface, Role.HEAD_MODEL, "Head", scenario.head, skin))
+    later(showSkull)
     later(partial(_showPlan, scene, scenario))
     later(partial(requestVolume, scene, scenario))
 
@@ -79,15 +69,13 @@ def showTask(
     A trial by another method shows its touched landmarks instead.
     """
     task = task_by_method(scenario, taskName, method)
-    node = findOrAddNode(scene, LIST, Role.FIXED_FIDUCIALS, "")
+    node = Role.FIXED_FIDUCIALS.make(scene)
     name = taskKey(scenario.name, task.name)
     stamp = f"{name} {sha256(task.fiducials.tobytes()).hexdigest()}"
     if node.GetAttribute(CONTENT_ATTRIBUTE) != stamp:
         with slicer.util.NodeModify(node):
             node.SetName(f"{task.title} fiducials")
             setPoints(node, task.labels, task.fiducials)
-            node.SetLocked(True)
-            setDisplay(node, **FIDUCIAL_LOOK)
         node.SetAttribute(TASK_ATTRIBUTE, name)
         node.SetAttribute(CONTENT_ATTRIBUTE, stamp)
     return node
@@ -98,13 +86,9 @@ def taskKey(scenarioName: str, taskName: str) -> str:
 
 
 def _showSurface(
-    scene: Any, scenario: Scenario, role: str, name: str, path: Path | None, look: dict[str, Any]
+    scene: Any, scenario: Scenario, kind: NodeKind, name: str, path: Path, look: dict[str, Any]
 ) -> None:
-    """Have the model of a role show a mesh of a scenario, or remove it if there is none."""
-    if path is None:
-        removeNode(scene, MODEL, role)
-        return
-    node = findOrAddNode(scene, MODEL, role, name)
+    node = kind.make(scene)
     # Called before every trial: the file is read only if it is not shown yet.
     if node.GetAttribute(CONTENT_ATTRIBUTE) == _stamp(scenario, path):
         return
@@ -119,18 +103,13 @@ def _showSurface(
 def _showPlan(scene: Any, scenario: Scenario) -> None:
     """Show the targets, the first of which is where the target error is reported, and the line."""
     targets, line = (scenario.target, *scenario.targets), scenario.trajectory
-    shown = [(LIST, Role.TARGET, "Targets", [(each.name, each.position_ras) for each in targets])]
+    names, places = [each.name for each in targets], [each.position_ras for each in targets]
+    setPoints(Role.TARGET.make(scene), names, places)
     if line is None:
-        removeNode(scene, LINE, Role.TRAJECTORY)
+        Role.TRAJECTORY.remove(scene)
     else:
-        ends = [("Entry", line.entry_ras), ("Target", line.target_ras)]
-        shown.append((LINE, Role.TRAJECTORY, line.name, ends))
-    for className, role, name, points in shown:
-        node = findOrAddNode(scene, className, role, name)
-        node.SetName(name)
-        setPoints(node, *zip(*points, strict=True))
-        node.SetLocked(True)
-        setDisplay(node, SelectedColor=TARGET_COLOR)
+        ends = line.entry_ras, line.target_ras
+        setPoints(Role.TRAJECTORY.make(scene, line.name), ("Entry", "Target"), ends)
 
 
 def requestVolume(scene: Any, scenario: Scenario) -> None:
@@ -138,14 +117,14 @@ def requestVolume(scene: Any, scenario: Scenario) -> None:
 
     Called again, nothing is read twice: window, level and what the views show stay as they are.
     """
-    node, file = findNode(scene, VOLUME, Role.HEAD_VOLUME), scenario.volume
+    node, file = Role.HEAD_VOLUME.find(scene), scenario.volume
     stamp = None if file is None else _stamp(scenario, file.file)
     if node is not None and node.GetAttribute(CONTENT_ATTRIBUTE) == stamp:
         return
-    removeNode(scene, VOLUME, Role.HEAD_VOLUME)
+    Role.HEAD_VOLUME.remove(scene)
     if file is None:
         return
-    node = findOrAddNode(scene, VOLUME, Role.HEAD_VOLUME, scenario.title)
+    node = Role.HEAD_VOLUME.make(scene, scenario.title)
     _requestFile(node, scenario, file.file)
     display = setDisplay(node, AutoWindowLevel=False)
     display.SetWindowLevel(file.window, file.level)
@@ -153,7 +132,7 @@ def requestVolume(scene: Any, scenario: Scenario) -> None:
 
 def showImages(scene: Any) -> None:
     """Show the images of the scenario behind all else again, where others are."""
-    node = findNode(scene, VOLUME, Role.HEAD_VOLUME)
+    node = Role.HEAD_VOLUME.find(scene)
     if node is not None and not requestedFile(node):
         showAsBackground(scene, node)
 
@@ -187,12 +166,12 @@ def requestedFile(node: Any | None) -> tuple[str, ...]:
     return (node.GetID(), *attributes)
 
 
-_SHOWN = (
-    (MODEL, Role.HEAD_MODEL, _("No head is shown: {problem}")),
-    (MODEL, Role.SKULL, _("No skull is shown: {problem}")),
-    (VOLUME, Role.HEAD_VOLUME, _("There are no images in the slice views: {problem}")),
-)
-"""Class and role of each node that shows a file, and the message for an unusable file."""
+_SHOWN = {
+    Role.HEAD_MODEL: _("No head is shown: {problem}"),
+    Role.SKULL: _("No skull is shown: {problem}"),
+    Role.HEAD_VOLUME: _("There are no images in the slice views: {problem}"),
+}
+"""Nodes that show a file, each with the message for an unusable file."""
 
 
 class SceneFileLoader:
@@ -215,12 +194,14 @@ class SceneFileLoader:
 
     def process(self) -> None:
         """Start reading requested files; called about ten times a second."""
-        for className, role, problem in _SHOWN:
-            requested = requestedFile(findNode(self._scene, className, role))
+        for kind, problem in _SHOWN.items():
+            requested = requestedFile(kind.find(self._scene))
             if requested and requested not in self._reading:
                 self._reading.add(requested)
                 self._work.do(
-                    partial(read_nrrd if className == VOLUME else _readMesh, Path(requested[-1])),
+                    partial(
+                        read_nrrd if kind is Role.HEAD_VOLUME else _readMesh, Path(requested[-1])
+                    ),
                     partial(self._take, requested),
                     partial(self._refuse, requested, problem),
                 )
@@ -234,11 +215,8 @@ class SceneFileLoader:
             node.SetAndObservePolyData(meshPolyData(found))
         else:
             values, ijkToRas = found
-            data = vtk.vtkImageData()
-            data.SetDimensions(values.shape)
-            data.GetPointData().SetScalars(vtkArray(values.ravel(order="F")))
             node.SetIJKToRASMatrix(slicer.util.vtkMatrixFromArray(ijkToRas))
-            node.SetAndObserveImageData(data)
+            slicer.util.updateVolumeFromArray(node, values.T)
         self._work.later(partial(self._emitShown, node))
 
     def _emitShown(self, node: Any) -> None:

@@ -7,8 +7,7 @@ from typing import Any
 import slicer
 import vtk
 
-from rastrainer.protocol import DeviceName
-from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, Role
+from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, TOOLS, Role
 from rastrainer.slicer.signal import Signal
 
 _MARKUPS = slicer.vtkMRMLMarkupsNode
@@ -32,7 +31,6 @@ CONTENT = {
 }
 """Events of what the panels show, by class."""
 TRANSFORM, TEXT = "vtkMRMLTransformNode", "vtkMRMLTextNode"
-TOOLS = (DeviceName.TOOL_TIP_TO_WORLD, DeviceName.INSTRUMENT_TIP_TO_WORLD)
 
 
 class SceneWatch:
@@ -98,7 +96,7 @@ class SceneWatch:
     def _noteIncoming(self, node: Any, _event: str) -> None:
         """Note the head, a tool or the state; the links of the robot move by themselves."""
         role = node.GetAttribute(ROLE_ATTRIBUTE)
-        if role == Role.WORLD_TO_HEAD:
+        if role == Role.WORLD_TO_HEAD.role:
             self._noteChange()
-        elif role in TOOLS or role == Role.SIM_STATE:
+        elif role in (*TOOLS, Role.SIM_STATE.role):
             self.noticed.emit()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from typing import Any
 
 import numpy as np
@@ -11,8 +11,8 @@ import numpy as np
 from rastrainer.number_text import fixed
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.target_error import INTERVAL_NOTE
-from rastrainer.slicer.scene.nodes import Role
-from rastrainer.slicer.scene.tables import Columns, showTable
+from rastrainer.slicer.scene.nodes import NodeKind, Role
+from rastrainer.slicer.scene.tables import showTable
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
@@ -206,20 +206,13 @@ def standings(
 
 def showStandings(scene: Any, found: Sequence[GroupComparison]) -> Any:
     """Show comparisons in a `vtkMRMLTableNode` and return it."""
-    columns: Columns = {
-        "measure": [each.title for each in found],
-        "unit": [each.unit for each in found],
-        "value": [each.value for each in found],
-        "compared with": [each.group for each in found],
-        "trials": [each.count for each in found],
-        "median": [each.median for each in found],
-        "better than (share)": [each.betterThan for each in found],
-    }
-    return showTable(scene, Role.COMPARISON, "Comparison", columns)
+    titles = "measure", "unit", "value", "compared with", "trials", "median", "better than (share)"
+    values = zip(*map(astuple, found), strict=True) if found else [()] * len(titles)
+    return showTable(scene, Role.COMPARISON, dict(zip(titles, values, strict=True)))
 
 
-def showRows(scene: Any, role: str, name: str, rows: Sequence[Row]) -> Any:
+def showRows(scene: Any, kind: NodeKind, rows: Sequence[Row]) -> Any:
     """Show scores with their parts, or motion metrics, in a `vtkMRMLTableNode`; return it."""
     parts = {"measure": "title", "value": "value", "unit": "unit", "note": "note"}
     columns = {title: [getattr(row, part) for row in rows] for title, part in parts.items()}
-    return showTable(scene, role, name, columns)
+    return showTable(scene, kind, columns)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +14,7 @@ import vtk
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
-from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, TABLE, Role, findOrAddNode, setValues
+from rastrainer.slicer.scene.nodes import Color, NodeKind, Role
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.values import StoredTrial
 
@@ -29,12 +30,14 @@ EXPECTED, TRUE = "expected TRE (mm)", "true TRE (mm)"
 LOW, HIGH = "TRE from, 95 % (mm)", "TRE to, 95 % (mm)"
 
 
-def showTable(scene: Any, role: str, name: str, columns: Columns, fewestRows: int = 0) -> Any:
-    """Put columns, texts or numbers or None, into the `vtkMRMLTableNode` of a role; return it.
+def showTable(
+    scene: Any, kind: NodeKind, columns: Columns, name: str = "", fewestRows: int = 0
+) -> Any:
+    """Put columns, texts or numbers or None, into the `vtkMRMLTableNode` of a kind; return it.
 
     Rows without values follow where there are fewer than `fewestRows`.
     """
-    node = findOrAddNode(scene, TABLE, role, name)
+    node = kind.make(scene, name)
     with slicer.util.NodeModify(node):
         node.RemoveAllColumns()
         node.SetUseColumnTitleAsColumnHeader(True)
@@ -46,7 +49,6 @@ def showTable(scene: Any, role: str, name: str, columns: Columns, fewestRows: in
                 unknown = "" if isText else math.nan
                 array.InsertNextValue(unknown if value is None else value)
             node.AddColumn(array)
-        node.SetLocked(True)
     return node
 
 
@@ -65,23 +67,23 @@ def showResiduals(
         **{f"residual {axis} (mm)": vectors[:, row] for row, axis in enumerate("RAS")},
         "without it (mm)": leftOut,
     }
-    return showTable(scene, Role.RESIDUALS, "Residuals", columns)
+    return showTable(scene, Role.RESIDUALS, columns)
 
 
 def showFits(
-    scene: Any, fits: Sequence[Registration], targetErrors: Sequence[TargetError | None]
+    scene: Any, fits: Mapping[str, Registration], errors: Mapping[str, TargetError | None]
 ) -> Any:
     """Compare fits of the same points, and what to expect at the target, in a table node."""
-    known = [(e.expected_mm, *e.interval_mm) if e else (None, None, None) for e in targetErrors]
+    known = [errors.get(kind) for kind in fits]
     columns: Columns = {
-        "fit": [fit.kind for fit in fits],
-        "FRE (mm)": [fit.fre_mm for fit in fits],
-        "largest residual (mm)": [fit.residuals_mm.max() for fit in fits],
-        EXPECTED: [expected for expected, _low, _high in known],
-        LOW: [low for _expected, low, _high in known],
-        HIGH: [high for _expected, _low, high in known],
+        "fit": list(fits),
+        "FRE (mm)": [fit.fre_mm for fit in fits.values()],
+        "largest residual (mm)": [fit.residuals_mm.max() for fit in fits.values()],
+        EXPECTED: [error.expected_mm if error else None for error in known],
+        LOW: [error.interval_mm[0] if error else None for error in known],
+        HIGH: [error.interval_mm[1] if error else None for error in known],
     }
-    return showTable(scene, Role.FITS, "Fits", columns)
+    return showTable(scene, Role.FITS, columns)
 
 
 BEST_SCORE = 100.0
@@ -92,8 +94,7 @@ SCORE_COLUMN = "score"
 TIME_COLUMN = "completion time (s)"
 
 
-def showHistory(scene: Any, pseudonym: str, trials: Sequence[StoredTrial]) -> Any:
-    """Show the trials of a trainee in a `vtkMRMLTableNode`, one a row, and return it."""
+def _showHistory(scene: Any, pseudonym: str, trials: Sequence[StoredTrial]) -> Any:
     records = [trial.record for trial in trials]
     rigid = [trial.registrations.get(RIGID) for trial in trials]
     columns: Columns = {
@@ -108,62 +109,79 @@ def showHistory(scene: Any, pseudonym: str, trials: Sequence[StoredTrial]) -> An
         SCORE_COLUMN: [trial.score.score if trial.score else None for trial in trials],
         "method": [record.method.value for record in records],
     }
-    return showTable(scene, Role.HISTORY, f"History of {pseudonym}", columns, FEWEST_ROWS)
+    return showTable(scene, Role.HISTORY, columns, f"History of {pseudonym}", FEWEST_ROWS)
+
+
+SERIES = slicer.vtkMRMLPlotSeriesNode
+INSIDE, OUTSIDE = "true TRE, inside (mm)", "true TRE, outside (mm)"
+ROOM = 1.5
+"""Ratio of the plot's height to its content: the legend lies above and hides no trial."""
+
+
+_LINE = {"LineStyle": SERIES.LineStyleSolid, "MarkerStyle": SERIES.MarkerStyleCircle}
+_DASHES = {"LineStyle": SERIES.LineStyleDash, "MarkerStyle": SERIES.MarkerStyleNone}
+_DOTS = {"LineStyle": SERIES.LineStyleNone, "MarkerStyle": SERIES.MarkerStyleCircle}
+
+
+def _series(
+    chart: NodeKind, across: str, look: dict[str, int], column: str, title: str, color: Color
+) -> NodeKind:
+    """Return a series that draws a column of a table over another one, `across`."""
+    columns = {"XColumnName": across, "YColumnName": column, "Color": color}
+    values = {"PlotType": SERIES.PlotTypeScatter, **look, **columns}
+    return NodeKind("vtkMRMLPlotSeriesNode", f"{chart.role} {column}", title, {}, values)
+
+
+_BLUE, _ORANGE, _RED = (0.15, 0.4, 0.75), (0.85, 0.45, 0.1), (0.8, 0.15, 0.1)
+_GRAY, _BLACK = (0.55, 0.6, 0.65), (0.1, 0.1, 0.1)
+_over_trials = partial(_series, Role.LEARNING_CURVE, TRIAL_COLUMN, _LINE)
+_CURVES = (
+    _over_trials(SCORE_COLUMN, "Score (0 to 100)", _BLUE),
+    _over_trials(TIME_COLUMN, "Completion time (s)", _ORANGE),
+)
+_over_expected = partial(_series, Role.CALIBRATION, EXPECTED)
+_IDENTITY = _over_expected(_DASHES, TRUE, _("True = expected"), _BLACK)
+_CALIBRATION = (
+    _over_expected(_DASHES, LOW, _("95 %, from"), _GRAY),
+    _over_expected(_DASHES, HIGH, _("95 %, to"), _GRAY),
+    _over_expected(_DOTS, INSIDE, _("Inside"), _BLUE),
+    _over_expected(_DOTS, OUTSIDE, _("Outside"), _RED),
+)
+
+
+def _showChart(
+    chart: Any, title: str, ends: tuple[float, float], tables: Mapping[NodeKind, Any]
+) -> Any:
+    """Have a chart show series, each from its table, along axes from 0 to these ends."""
+    chart.SetTitle(title)
+    chart.SetXAxisRange(0.0, ends[0])
+    chart.SetYAxisRange(0.0, ends[1])
+    chart.RemoveAllPlotSeriesNodeIDs()
+    for kind, table in tables.items():
+        series = kind.make(chart.GetScene())
+        series.SetAndObserveTableNodeID(table.GetID())
+        chart.AddAndObservePlotSeriesNodeID(series.GetID())
+    return chart
 
 
 def showLearningCurve(scene: Any, pseudonym: str, trials: Sequence[StoredTrial]) -> Any:
     """Plot score and time over the trials in a `vtkMRMLPlotChartNode` and return it."""
-    table = showHistory(scene, pseudonym, trials)
+    table = _showHistory(scene, pseudonym, trials)
     title = f"Learning curve of {pseudonym}"
-    chart = _emptyChart(scene, Role.LEARNING_CURVE, title)
-    _addSeries(chart, table, TRIAL_COLUMN, SCORE_COLUMN, "Score (0 to 100)", (0.15, 0.4, 0.75))
-    _addSeries(chart, table, TRIAL_COLUMN, TIME_COLUMN, "Completion time (s)", (0.85, 0.45, 0.1))
+    chart = Role.LEARNING_CURVE.make(scene, title)
     methods = sorted({trial.record.method.value for trial in trials if trial.score})
     if len(methods) > 1:
         title += f" (scores by {' and '.join(methods)} cannot be compared)"
-    setValues(chart, Title=title, XAxisTitle="Trial", YAxisTitle="Score, and completion time in s")
     times = [trial.record.completion_time_s for trial in trials]
-    chart.SetXAxisRange(0.0, max(FEWEST_SHOWN, len(trials) + 1.0))
-    chart.SetYAxisRange(0.0, 1.05 * max((BEST_SCORE, *times)))
-    return chart
-
-
-def _emptyChart(scene: Any, role: str, name: str) -> Any:
-    chart = findOrAddNode(scene, "vtkMRMLPlotChartNode", role, name)
-    chart.RemoveAllPlotSeriesNodeIDs()
-    return setValues(chart, Name=name, XAxisRangeAuto=False, YAxisRangeAuto=False)
-
-
-def _addSeries(
-    chart: Any, table: Any, across: str, column: str, title: str, color: tuple[float, float, float]
-) -> Any:
-    """Draw a column of a table over another one, `across`; return the `vtkMRMLPlotSeriesNode`."""
-    role = f"{chart.GetAttribute(ROLE_ATTRIBUTE)} {column}"
-    node = findOrAddNode(chart.GetScene(), "vtkMRMLPlotSeriesNode", role, title)
-    node.SetAndObserveTableNodeID(table.GetID())
-    setValues(node, PlotType=node.PlotTypeScatter, XColumnName=across, YColumnName=column)
-    setValues(node, Color=color, LineStyle=node.LineStyleSolid, MarkerStyle=node.MarkerStyleCircle)
-    chart.AddAndObservePlotSeriesNodeID(node.GetID())
-    return node
-
-
-INSIDE = "true TRE, inside (mm)"
-OUTSIDE = "true TRE, outside (mm)"
-ROOM = 1.5
-"""Ratio of the plot's height to its content: the legend lies above and hides no trial."""
-_DOTS = {INSIDE: (_("Inside"), (0.15, 0.4, 0.75)), OUTSIDE: (_("Outside"), (0.8, 0.15, 0.1))}
-_LINES = {
-    TRUE: (_("True = expected"), (0.1, 0.1, 0.1)),
-    LOW: (_("95 %, from"), (0.55, 0.6, 0.65)),
-    HIGH: (_("95 %, to"), (0.55, 0.6, 0.65)),
-}
+    ends = max(FEWEST_SHOWN, len(trials) + 1.0), 1.05 * max((BEST_SCORE, *times))
+    return _showChart(chart, title, ends, dict.fromkeys(_CURVES, table))
 
 
 def showCalibration(scene: Any, found: TreCalibration) -> Any:
     """Plot true over expected TRE in a `vtkMRMLPlotChartNode` and return it."""
     from rastrainer.study.tre_calibration import share_text
 
-    points, role = found.points, Role.CALIBRATION
+    points = found.points
     columns: Columns = {
         "trainee": [point.trainee for point in points],
         "mode": [point.mode for point in points],
@@ -174,26 +192,15 @@ def showCalibration(scene: Any, found: TreCalibration) -> Any:
         INSIDE: [point.true_mm if point.is_inside else None for point in points],
         OUTSIDE: [None if point.is_inside else point.true_mm for point in points],
     }
-    table = showTable(scene, role, "True and expected TRE", columns, FEWEST_ROWS)
+    table = showTable(scene, Role.CALIBRATION_TABLE, columns, fewestRows=FEWEST_ROWS)
     end = 1.1 * max((point.expected_mm for point in points), default=1.0)
-    ends = {EXPECTED: [0.0, end], TRUE: [0.0, end]}
-    identity = showTable(scene, f"{role} line", "True equals expected TRE", ends)
-    chart = _emptyChart(scene, role, "True against expected TRE")
-    for column, (title, color) in {**_LINES, **_DOTS}.items():
-        source = identity if column == TRUE else table
-        series = _addSeries(chart, source, EXPECTED, column, title, color)
-        if column in _LINES:
-            setValues(series, LineStyle=series.LineStyleDash, MarkerStyle=series.MarkerStyleNone)
-        else:
-            series.SetLineStyle(series.LineStyleNone)
+    identity = {EXPECTED: [0.0, end], TRUE: [0.0, end]}
+    tables = {_IDENTITY: showTable(scene, Role.CALIBRATION_LINE, identity)}
     title = _("True against expected TRE")
     if found.inside is not None:
         counted = _("True against expected TRE: {count} of {total} inside, {share}")
         inside, total = found.inside.count, found.inside.total
         title = counted.format(count=inside, total=total, share=share_text(found.inside))
-    axes = {"XAxisTitle": _("Expected TRE (mm)"), "YAxisTitle": _("True TRE (mm)")}
-    setValues(chart, Title=title, **axes)
-    chart.SetXAxisRange(0.0, end)
-    highest = [max(point.true_mm, point.interval_mm[1]) for point in points]
-    chart.SetYAxisRange(0.0, ROOM * max(highest, default=1.0))
-    return chart
+    highest = max((max(point.true_mm, point.interval_mm[1]) for point in points), default=1.0)
+    tables |= dict.fromkeys(_CALIBRATION, table)
+    return _showChart(Role.CALIBRATION.make(scene), title, (end, ROOM * highest), tables)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack
 from typing import Any
 
 import numpy as np
@@ -12,25 +13,23 @@ import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import ReplayTrack
-from rastrainer.motion.trajectory import Trajectory
 from rastrainer.number_text import fixed
 from rastrainer.slicer.polydata import pointCloud
 from rastrainer.slicer.scene.nodes import (
     LIST,
+    LOCKED,
     MODEL,
     ROLE_ATTRIBUTE,
     TEXT,
     TOUCH_LOOK,
+    TRACE_LOOK,
     TRANSFORM,
-    Role,
-    drawAsPoints,
-    findNode,
-    findOrAddNode,
+    UNSELECTABLE,
+    NodeKind,
     nodesOfClass,
-    setDisplay,
     setValues,
 )
-from rastrainer.slicer.scene.robot_description import ArmChain
+from rastrainer.slicer.scene.robot_description import OTHER_ROBOT
 
 BROWSER, SEQUENCE = "vtkMRMLSequenceBrowserNode", "vtkMRMLSequenceNode"
 SAMPLE_HZ = 10.0
@@ -40,13 +39,18 @@ TRIAL_ATTRIBUTE = "RASTrainer.trial"
 STATES_A_SLICE = 50
 """States added to the scene before the application may draw again."""
 SAME_ROBOT_MM = 0.01
-TOOL_COLOR = (0.2, 0.45, 0.85)
 TOOL_LENGTH_MM, TOOL_RADIUS_MM = 120.0, 2.0
 
-_BROWSER, _PLACE, _TOOL, _TIP, _TOUCHES, _TRACE, _CLEARANCE = (
-    f"{Role.REPLAY} {part}"
-    for part in ("browser", "WorldToHead", "tool", "tool model", "touches", "trace", "clearance")
-)
+REPLAY = "replay"
+_MODE = slicer.vtkMRMLSequenceBrowserNode.IndexDisplayAsIndexValue
+_PLAYED = {"IndexDisplayMode": _MODE, "PlaybackRateFps": SAMPLE_HZ}
+_BROWSER = NodeKind(BROWSER, f"{REPLAY} browser", values=_PLAYED)
+_PLACE = NodeKind(TRANSFORM, f"{REPLAY} WorldToHead")
+_TOOL = NodeKind(TRANSFORM, f"{REPLAY} tool")
+_TIP = NodeKind(MODEL, f"{REPLAY} tool model", look={"Color": (0.2, 0.45, 0.85)})
+_TOUCHES = NodeKind(LIST, f"{REPLAY} touches", "", TOUCH_LOOK, LOCKED)
+_TRACE = NodeKind(MODEL, f"{REPLAY} trace", "", TRACE_LOOK, UNSELECTABLE)
+_CLEARANCE = NodeKind(TEXT, f"{REPLAY} clearance")
 POINTS_A_STATE = 10
 """Points of a trace that are added each time."""
 
@@ -55,11 +59,13 @@ def showReplay(
     scene: Any,
     name: str,
     track: ReplayTrack,
-    chain: ArmChain,
+    poses: np.ndarray,
     worldToHead: np.ndarray,
     rest: Callable[[float], None] = lambda _share: None,
 ) -> Any:
     """Put a trial into the scene as a Sequence, replacing the previous one.
+
+    `poses` (n, 4, 4) float, mm, are those of the tool at the samples of the track.
 
     It uses separate nodes, so that a running simulator does not disturb it. `rest` is called with
     the share of the work done after each slice; it may let the application draw, and may raise to
@@ -71,90 +77,68 @@ def showReplay(
     times = trajectory.times_s
     wanted = np.arange(times[0], times[-1], 1.0 / SAMPLE_HZ)
     rows = np.unique([*np.searchsorted(times, wanted), len(times) - 1])
-    isSameLength = chain.axes.any(axis=1).sum() == track.q.shape[1]
-    poses = chain.toolToWorld(track.q[rows]) if isSameLength else None
-    tips = trajectory.tip_mm[rows]
-    if poses is None or np.abs(poses[:, :3, 3] - tips).max() > SAME_ROBOT_MM:
-        raise InputError("The trial was recorded with another robot than the one that is here.")
+    poses = poses[rows]
+    if np.abs(poses[:, :3, 3] - trajectory.tip_mm[rows]).max() > SAME_ROBOT_MM:
+        raise InputError(OTHER_ROBOT)
     removeReplay(scene, rest)
-    try:
-        return _fillScene(scene, name, trajectory, rows, poses, worldToHead, rest)
-    except BaseException:
-        removeReplay(scene)
-        raise
 
-
-def _fillScene(
-    scene: Any,
-    name: str,
-    trajectory: Trajectory,
-    rows: np.ndarray,
-    poses: np.ndarray,
-    worldToHead: np.ndarray,
-    rest: Callable[[float], None],
-) -> Any:
-    def add(className: str, role: str, under: Any | None = None) -> Any:
+    def add(kind: NodeKind, under: Any | None = None) -> Any:
         rest(0.0)
-        title = role.removeprefix(f"{Role.REPLAY} ")
-        node = findOrAddNode(scene, className, role, f"{name}: {title}")
+        node = kind.make(scene, f"{name}: {kind.role.removeprefix(f'{REPLAY} ')}")
         if under is not None:
             node.SetAndObserveTransformNodeID(under.GetID())
         return node
 
-    placed = add(TRANSFORM, _PLACE)
-    placed.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(worldToHead))
-    tool = add(TRANSFORM, _TOOL, placed)
-    tip = add(MODEL, _TIP, tool)
-    tip.SetAndObservePolyData(_needle())
-    setDisplay(tip, Color=TOOL_COLOR)
-    touches = add(LIST, _TOUCHES, placed)
-    touches.SetLocked(True)
-    setDisplay(touches, **TOUCH_LOOK)
-    clearance = add(TEXT, _CLEARANCE)
-    browser = findOrAddNode(scene, BROWSER, _BROWSER, f"Replay of {name}")
-    setValues(browser, IndexDisplayMode=browser.IndexDisplayAsIndexValue, PlaybackRateFps=SAMPLE_HZ)
-    rest(0.0)
-    _checkIsThere(placed, tool, touches, clearance, browser)
-    matrices = map(slicer.util.vtkMatrixFromArray, poses)
-    poseStates = (
-        setValues(slicer.vtkMRMLLinearTransformNode(), MatrixTransformToParent=matrix)
-        for matrix in matrices
-    )
-    distances = (f"{fixed(mm, 1)} mm" for mm in trajectory.clearance_mm[rows])
-    distanceStates = (setValues(slicer.vtkMRMLTextNode(), Text=text) for text in distances)
-    start, times = float(trajectory.times_s[0]), trajectory.times_s[rows]
-    total, done = 2 * len(rows) + len(trajectory.touches) + 1, 0
-    shown = [
-        (tool, zip(times, poseStates, strict=True)),
-        (touches, _growing(trajectory.touches, 1, _touchesState, start)),
-        (clearance, zip(times, distanceStates, strict=True)),
-    ]
-    if trajectory.traced:
-        trace = add(MODEL, _TRACE, placed)
-        drawAsPoints(trace)
-        shown.append((trace, _growing(trajectory.traced, POINTS_A_STATE, _traceState, start)))
-        total += 1 + -(-len(trajectory.traced) // POINTS_A_STATE)
-    for proxy, states in shown:
-        title = f"{proxy.GetName()} sequence"
-        sequence = findOrAddNode(scene, SEQUENCE, f"{Role.REPLAY} {title}", title)
-        setValues(sequence, IndexName="time", IndexUnit="s", IndexType=sequence.NumericIndex)
-        # Saving the states needs units from the scene that contains them.
-        sequence.GetSequenceScene().AddNode(slicer.vtkMRMLSelectionNode())
-        for time, state in states:
-            # The proxy becomes what the state is, with all its attributes.
-            state.SetAttribute(ROLE_ATTRIBUTE, proxy.GetAttribute(ROLE_ATTRIBUTE))
-            sequence.SetDataNodeAtValue(state, f"{time:.3f}")
-            done += 1
-            if done % STATES_A_SLICE == 0:
-                rest(done / total)
-                _checkIsThere(browser, sequence)
-        # Notified of both at once, Slicer creates no proxy itself.
-        with slicer.util.NodeModify(browser):
-            browser.AddSynchronizedSequenceNode(sequence)
-            browser.AddProxyNode(proxy, sequence, False)
-            browser.SetOverwriteProxyName(sequence, False)
-            browser.SetSaveChanges(sequence, False)
-    browser.SetSelectedItemNumber(0)
+    with ExitStack() as undoing:
+        undoing.callback(removeReplay, scene)
+        placed = add(_PLACE)
+        placed.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(worldToHead))
+        tool = add(_TOOL, placed)
+        add(_TIP, tool).SetAndObservePolyData(_needle())
+        touches, clearance = add(_TOUCHES, placed), add(_CLEARANCE)
+        browser = _BROWSER.make(scene, f"Replay of {name}")
+        rest(0.0)
+        _checkIsThere(placed, tool, touches, clearance, browser)
+        matrices = map(slicer.util.vtkMatrixFromArray, poses)
+        poseStates = (
+            setValues(slicer.vtkMRMLLinearTransformNode(), MatrixTransformToParent=matrix)
+            for matrix in matrices
+        )
+        distances = (f"{fixed(mm, 1)} mm" for mm in trajectory.clearance_mm[rows])
+        distanceStates = (setValues(slicer.vtkMRMLTextNode(), Text=text) for text in distances)
+        start, times = float(trajectory.times_s[0]), trajectory.times_s[rows]
+        total, done = 2 * len(rows) + len(trajectory.touches) + 1, 0
+        shown = [
+            (tool, zip(times, poseStates, strict=True)),
+            (touches, _growing(trajectory.touches, 1, _touchesState, start)),
+            (clearance, zip(times, distanceStates, strict=True)),
+        ]
+        if trajectory.traced:
+            trace = add(_TRACE, placed)
+            shown.append((trace, _growing(trajectory.traced, POINTS_A_STATE, _traceState, start)))
+            total += 1 + -(-len(trajectory.traced) // POINTS_A_STATE)
+        for proxy, states in shown:
+            title = f"{proxy.GetName()} sequence"
+            sequence = NodeKind(SEQUENCE, f"{REPLAY} {title}", title).make(scene)
+            setValues(sequence, IndexName="time", IndexUnit="s", IndexType=sequence.NumericIndex)
+            # Saving the states needs units from the scene that contains them.
+            sequence.GetSequenceScene().AddNode(slicer.vtkMRMLSelectionNode())
+            for time, state in states:
+                # The proxy becomes what the state is, with all its attributes.
+                state.SetAttribute(ROLE_ATTRIBUTE, proxy.GetAttribute(ROLE_ATTRIBUTE))
+                sequence.SetDataNodeAtValue(state, f"{time:.3f}")
+                done += 1
+                if done % STATES_A_SLICE == 0:
+                    rest(done / total)
+                    _checkIsThere(browser, sequence)
+            # Notified of both at once, Slicer creates no proxy itself.
+            with slicer.util.NodeModify(browser):
+                browser.AddSynchronizedSequenceNode(sequence)
+                browser.AddProxyNode(proxy, sequence, False)
+                browser.SetOverwriteProxyName(sequence, False)
+                browser.SetSaveChanges(sequence, False)
+        browser.SetSelectedItemNumber(0)
+        undoing.pop_all()
     return browser
 
 
@@ -177,7 +161,7 @@ def goTo(scene: Any, timeS: float) -> None:
 def moment(scene: Any) -> tuple[float, str] | None:
     """Return the replay's time in s and its text about the clearance; None without a replay."""
     browser = findReplay(scene)
-    text = findNode(scene, TEXT, _CLEARANCE)
+    text = _CLEARANCE.find(scene)
     if browser is None or text is None or browser.GetMasterSequenceNode() is None:
         return None
     if browser.GetSelectedItemNumber() < 0:
@@ -188,17 +172,16 @@ def moment(scene: Any) -> tuple[float, str] | None:
 
 
 def findReplay(scene: Any) -> Any | None:
-    return findNode(scene, BROWSER, _BROWSER)
+    return _BROWSER.find(scene)
 
 
 def isReplayOf(scene: Any, trialId: str) -> bool:
     browser = findReplay(scene)
-    parts = (TRANSFORM, _PLACE), (TRANSFORM, _TOOL), (MODEL, _TIP), (LIST, _TOUCHES)
     return (
         browser is not None
         and browser.GetAttribute(TRIAL_ATTRIBUTE) == trialId
         and browser.GetMasterSequenceNode() is not None
-        and all(findNode(scene, *part) for part in (*parts, (TEXT, _CLEARANCE)))
+        and all(part.find(scene) for part in (_PLACE, _TOOL, _TIP, _TOUCHES, _CLEARANCE))
     )
 
 
@@ -227,7 +210,7 @@ def emptyReplay(scene: Any) -> Iterator[None]:
 
 def _nodesOfReplay(scene: Any, className: str) -> list[Any]:
     nodes = nodesOfClass(scene, className)
-    return [n for n in nodes if (n.GetAttribute(ROLE_ATTRIBUTE) or "").startswith(Role.REPLAY)]
+    return [n for n in nodes if (n.GetAttribute(ROLE_ATTRIBUTE) or "").startswith(REPLAY)]
 
 
 def _slicesOf(sequence: Any) -> Iterator[None]:

@@ -13,19 +13,10 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.protocol import TRACED_METHODS, RegistrationMethod
 from rastrainer.registration.fits import MINIMUM_POINTS, RIGID
-from rastrainer.registration.registration import Registration
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import CallLater, callNow
 from rastrainer.slicer.scene.error_colors import showResidualArrows
-from rastrainer.slicer.scene.nodes import (
-    TRANSFORM,
-    Role,
-    capturedPointsNode,
-    findNode,
-    findOrAddNode,
-    labelsOf,
-    setPoints,
-)
+from rastrainer.slicer.scene.nodes import Role, labelsOf, setPoints
 from rastrainer.slicer.scene.robot import placeRobot
 from rastrainer.slicer.scene.scenario_nodes import TASK_ATTRIBUTE, showScenario, showTask, taskKey
 from rastrainer.slicer.scene.tables import showFits, showResiduals
@@ -41,7 +32,7 @@ STORED_ATTRIBUTE = "RASTrainer.storedTouches"
 
 def showTouches(scene: Any, record: TrialRecord) -> Any:
     """Show the touches of a stored trial in place of those before; return their list."""
-    node = capturedPointsNode(scene)
+    node = Role.CAPTURED_POINTS.make(scene)
     setPoints(node, record.labels, record.positions_mm)
     node.SetAttribute(STORED_ATTRIBUTE, _stamp(node))
     noteTouchedTask(scene, record.scenario, record.task, record.method)
@@ -50,27 +41,25 @@ def showTouches(scene: Any, record: TrialRecord) -> Any:
 
 
 def noteTouchedTask(scene: Any, scenario: str, task: str, method: RegistrationMethod) -> None:
-    node = capturedPointsNode(scene)
+    node = Role.CAPTURED_POINTS.make(scene)
     node.SetAttribute(TASK_ATTRIBUTE, taskKey(scenario, task))
     node.SetAttribute(TRACED_ATTRIBUTE, method.value if method in TRACED_METHODS else None)
 
 
 def setTouchesVisible(scene: Any, visible: bool) -> None:
     """Show the list of touches, or hide it while a replay shows them one by one."""
-    display = capturedPointsNode(scene).GetDisplayNode()
-    if display is not None:
-        display.SetVisibility(visible)
+    Role.CAPTURED_POINTS.make(scene).SetDisplayVisibility(visible)
 
 
 def showOnlyTouchesOf(scene: Any, scenario: str, task: str) -> None:
     """Hide touches that belong to another task than the task on display."""
-    touched = capturedPointsNode(scene).GetAttribute(TASK_ATTRIBUTE)
+    touched = Role.CAPTURED_POINTS.make(scene).GetAttribute(TASK_ATTRIBUTE)
     setTouchesVisible(scene, touched in (None, taskKey(scenario, task)))
 
 
 def forgetStoredTouches(scene: Any) -> None:
     """Empty the list if it holds a stored trial's touches: another trial has started."""
-    node = capturedPointsNode(scene)
+    node = Role.CAPTURED_POINTS.make(scene)
     if node.GetAttribute(STORED_ATTRIBUTE) == _stamp(node):
         node.RemoveAllControlPoints()
     node.RemoveAttribute(STORED_ATTRIBUTE)
@@ -109,25 +98,21 @@ KIND_ATTRIBUTE = "RASTrainer.registration"
 PLANNED = "planned"
 
 
-def showRegistration(scene: Any, registration: Registration, moving: Any, fixed: Any) -> Any:
-    """Put a registration into the scene's WorldToHead transform and return that node."""
-    return _placeWorld(scene, registration.matrix, registration.kind, moving, fixed)
-
-
-def showPlannedPlace(scene: Any, scenario: Scenario, moving: Any, fixed: Any) -> Any:
+def showPlannedPlace(scene: Any, scenario: Scenario, fixed: Any) -> Any:
     """Place World as the scenario plans it, and return the WorldToHead transform.
 
     The head of a trial is placed a little differently; only its registration shows where.
     """
-    return _placeWorld(scene, transforms.inverse(scenario.head_to_world), PLANNED, moving, fixed)
+    place = transforms.inverse(scenario.head_to_world), PLANNED
+    return placeWorld(scene, *place, Role.CAPTURED_POINTS.make(scene), fixed)
 
 
-def _placeWorld(scene: Any, matrix: np.ndarray, kind: str, moving: Any, fixed: Any) -> Any:
+def placeWorld(scene: Any, matrix: np.ndarray, kind: str, moving: Any, fixed: Any) -> Any:
     """Set the WorldToHead transform, which remembers its lists of points, and return its node.
 
     At first it is applied to the moving points; later that stays as it was.
     """
-    node = findOrAddNode(scene, TRANSFORM, Role.WORLD_TO_HEAD, "WorldToHead")
+    node = Role.WORLD_TO_HEAD.make(scene)
     wanted = movingNode(node) is None or isApplied(node)
     # Touches and robot follow it.
     with slicer.util.NodeModify(node):
@@ -161,7 +146,7 @@ def setApplied(transformNode: Any, applied: bool) -> None:
 
 def followPlacement(scene: Any) -> None:
     """Show the robot where the touched points are shown: at the head, or in World."""
-    node = findNode(scene, TRANSFORM, Role.WORLD_TO_HEAD)
+    node = Role.WORLD_TO_HEAD.find(scene)
     placeRobot(scene, node if node is not None and isApplied(node) else None)
 
 
@@ -173,18 +158,19 @@ def showTrial(
     The touches come from its record.
     """
     record, rigid = analysis.record, analysis.rigid
-    errors = [analysis.target_errors[kind] for kind in analysis.fits]
     # Touches that do not register alone say nothing about each other.
     isByTouches = record.method not in TRACED_METHODS
     isEnough = isByTouches and len(rigid.labels) > MINIMUM_POINTS[RIGID]
 
-    def findFixed() -> Any:
-        return showTask(scene, scenario, record.task, record.method)
+    def place() -> None:
+        touches, fixed = Role.CAPTURED_POINTS.make(scene), findFixed()
+        placeWorld(scene, rigid.matrix, rigid.kind, touches, fixed)
 
+    findFixed = partial(showTask, scene, scenario, record.task, record.method)
     showScenario(scene, scenario, later)
     later(findFixed)
     later(partial(showTouches, scene, record))
-    later(lambda: showRegistration(scene, rigid, capturedPointsNode(scene), findFixed()))
+    later(place)
     later(lambda: showResiduals(scene, rigid, rigid.leave_one_out_mm() if isEnough else None))
-    later(partial(showFits, scene, list(analysis.fits.values()), errors))
+    later(partial(showFits, scene, analysis.fits, analysis.target_errors))
     later(partial(showResidualArrows, scene, rigid))
