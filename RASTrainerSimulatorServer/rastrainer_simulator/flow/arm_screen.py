@@ -10,7 +10,6 @@ from typing import Any
 from rastrainer.commands import CommandName
 from rastrainer.journal.entries import FeedChange, PhaseChange, Reach, Rejected
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.flow.pages.session_page import clickable_hint
 from rastrainer_simulator.flow.session.operator_device import SHOW, TILT
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
@@ -108,7 +107,7 @@ class ArmScreen:
         )
 
     def warnings(self) -> tuple[ScreenMessage, ...]:
-        say = self._session.texts.say
+        say = self._session.say
         warnings = []
         state = self._state
         if state.touch in (TouchStage.PRESSED, TouchStage.TOO_DEEP):
@@ -139,23 +138,23 @@ class ArmScreen:
         session = self._session
         up_and_down = session.operator.pair_label(ControlName.MOVE_UP, ControlName.MOVE_DOWN)
         return (
-            Hint(session.operator.stick_label(_LEVEL), session.texts.say("hint.move")),
-            Hint(up_and_down, session.texts.say("hint.up_and_down")),
+            Hint(session.operator.stick_label(_LEVEL), session.say("hint.move")),
+            Hint(up_and_down, session.say("hint.up_and_down")),
         )
 
     def _hints(
         self, moving: Iterable[Hint], names: Mapping[ControlName, str], can_tilt: bool = False
     ) -> tuple[Hint, ...]:
         session, operator = self._session, self._session.operator
-        say, sticks = session.texts.say, session.screen_sticks
+        say, sticks = session.say, session.screen_sticks
         hints = list(moving)
         for control, key in names.items():
             if control is not ControlName.FINE:
-                hints.append(clickable_hint(session, control, key))
+                hints.append(session.operator.hint(control, key))
             elif operator.steers_by_mouse:
                 # A mouse switches on and off the control that other devices hold.
                 key = "hint.on" if sticks.is_slow else "hint.off"
-                hints.append(clickable_hint(session, control, key))
+                hints.append(session.operator.hint(control, key))
             else:
                 hints.append(Hint(operator.label(control), say("hint.fine")))
         if operator.is_one_of(SourceKind.MOUSE):
@@ -175,19 +174,19 @@ class ArmScreen:
         session = self._session
         away = MM_PER_M * distance(session.tip, target)
         if away < nearest_mm:
-            return session.texts.say("status.near", name=name, distance=f"{nearest_mm:.0f}")
+            return session.say("status.near", name=name, distance=f"{nearest_mm:.0f}")
         step_mm = STEP_MM if away >= LOOKED_AT_MM else PRACTICED_STEP_MM
         words = direction_words(session.tip, target, self._axes())
-        return session.texts.say(
+        return session.say(
             "status.toward",
             name=name,
             distance=f"{step_mm * round(away / step_mm):.0f}",
-            direction=session.texts.listed(session.texts.say(f"way.{word}") for word in words),
+            direction=session.texts.listed(session.say(f"way.{word}") for word in words),
         )
 
     def _slipped(self, label: str, error_mm: float, key: str = "tutorial.slipped") -> str:
         undo = self._session.operator.label(ControlName.UNDO)
-        point, say = self._state.training.next_point, self._session.texts.say
+        point, say = self._state.training.next_point, self._session.say
         return say(key, label=label, error=error_mm, point=point, undo=undo)
 
     def _axes(self) -> Axes:

@@ -164,7 +164,7 @@ class FlowPresenter(Presenter):
         )
 
     def instruct(self, order: InstructorOrder, text: str) -> str:
-        say, page = self._session.texts.say, self._session.pages.top
+        say, page = self._session.say, self._session.pages.top
         is_running = self._session.training.is_running or self._session.tutorial is not None
         problem = ""
         if order is InstructorOrder.SAY:
@@ -308,14 +308,14 @@ class FlowPresenter(Presenter):
         return page is not None and page.input_pressed(device, name)
 
     def taken_over(self, source: Source) -> None:
-        say = self._session.texts.say
+        say = self._session.say
         name = say(f"source.{source.kind.value}")
         self._session.notices.add(say("control.taken", source=name))
         self._flow.taken_over()
         self._is_changed = True
 
     def refused(self, _source: Source) -> None:
-        holder, say = self.controls.holder, self._session.texts.say
+        holder, say = self.controls.holder, self._session.say
         if holder is not None:
             name, menu = say(f"source.{holder.kind.value}"), say("control.menu")
             key = "control.locked" if self._session.lock.is_locked else "control.held"

@@ -11,10 +11,9 @@ from rastrainer.number_text import clock
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.arm_screen import ArmScreen
-from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind
-from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow, page_kind
 from rastrainer_simulator.flow.session.plan_marks import ball, plan_marks
-from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.flow.session.session import SessionPage, TrainingSession
 from rastrainer_simulator.flow.trial_screen import TrialScreen
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
 from rastrainer_simulator.presentation.screen import (
@@ -72,7 +71,7 @@ class ProcedureScreen(ArmScreen):
         self._trial_screen.open_menu()
 
     def warnings(self) -> tuple[ScreenMessage, ...]:
-        session, say = self._session, self._session.texts.say
+        session, say = self._session, self._session.say
         training = session.training
         if training.phase is Phase.VERIFYING and self._procedure.registration is None:
             # Why the touches are not registered yet, if that will not change by itself.
@@ -94,7 +93,7 @@ class ProcedureScreen(ArmScreen):
         return (ScreenMessage(say(f"felt.{self._arm.layer}"), _FELT[self._arm.layer]),)
 
     def _status(self) -> tuple[str, ...]:
-        session, say = self._session, self._session.texts.say
+        session, say = self._session, self._session.say
         procedure = self._procedure
         facts = [session.task_title(session.training.task)]
         if procedure.present is not None:
@@ -146,7 +145,7 @@ class ProcedureScreen(ArmScreen):
 
     def _ruler(self) -> DepthRuler | None:
         """Return the scale along the axis of a locked guide; None before it is locked."""
-        procedure, say = self._procedure, self._session.texts.say
+        procedure, say = self._procedure, self._session.say
         if procedure.stage not in FED or procedure.present is None:
             return None
         guide, line = procedure.present.guide, procedure.present.line
@@ -172,7 +171,7 @@ class ProcedureScreen(ArmScreen):
         return procedure
 
     def _figures(self) -> tuple[str, ...]:
-        state, say = self._session.state, self._session.texts.say
+        state, say = self._session.state, self._session.say
         alignment, ruler = state.alignment, self._ruler()
         if ruler is not None:
             depth = MM_PER_M * state.feed
@@ -192,7 +191,7 @@ class ProcedureScreen(ArmScreen):
 
     def _moving_hints(self, phase: Phase) -> tuple[Hint, ...]:
         """Return the functions of the sticks; in a headset only those not drawn in the hands."""
-        session, say = self._session, self._session.texts.say
+        session, say = self._session, self._session.say
         up_and_down = session.operator.pair_label(ControlName.MOVE_DOWN, ControlName.MOVE_UP)
         if phase in FED:
             return (Hint(up_and_down, say("hint.feed")),)

@@ -144,7 +144,7 @@ class TutorialScreen(ArmScreen):
 
     def _instruction(self) -> ScreenMessage:
         session, tutorial = self._session, self._tutorial
-        say = session.texts.say
+        say = session.say
         if self._way:
             return ScreenMessage(say("tutorial.homing"))
         if self._is_refused:
@@ -174,7 +174,7 @@ class TutorialScreen(ArmScreen):
         return ScreenMessage(self._sentence(TutorialStep.LOWER if is_lifted else tutorial.step))
 
     def _status(self) -> list[str]:
-        tutorial, say = self._tutorial, self._session.texts.say
+        tutorial, say = self._tutorial, self._session.say
         step, steps = tutorial.place
         place = () if tutorial.practiced else (say("tutorial.place", step=step, steps=steps),)
         facts: list[str] = [self._session.practice_title, *place]
@@ -190,7 +190,7 @@ class TutorialScreen(ArmScreen):
 
     def _all_hints(self) -> tuple[Hint, ...]:
         session, step = self._session, self._tutorial.step
-        say, operator = session.texts.say, session.operator
+        say, operator = session.say, session.operator
         if step is None:
             return ()
         controls = STEPS[step].controls
@@ -233,9 +233,7 @@ class TutorialScreen(ArmScreen):
             if f"{key}.{variant}" in session.texts:
                 key = f"{key}.{variant}"
         point = self._tutorial.practice.training.state.next_point
-        return session.texts.say(
-            key, control=name, point=point, count=GUIDED_TOUCHES, limit=LIMIT_MM
-        )
+        return session.say(key, control=name, point=point, count=GUIDED_TOUCHES, limit=LIMIT_MM)
 
 
 def _banner(error_mm: float) -> Tone:

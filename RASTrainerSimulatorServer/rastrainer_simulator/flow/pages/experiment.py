@@ -14,7 +14,6 @@ from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.scenario import method_of, playable_methods
 from rastrainer.study_messages import AssignmentStanding, StudyStep
 from rastrainer.trial.scoring import PASS_MARK
-from rastrainer_simulator.flow.pages.session_page import SessionPage, ShownPage, page_kind
 from rastrainer_simulator.flow.pages.trainee_id import (
     clicked_id_page,
     keyboard_page,
@@ -33,8 +32,8 @@ from rastrainer_simulator.flow.session.chosen_trial import (
     tutorial_rule,
     usual_id,
 )
-from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
-from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow, page_kind
+from rastrainer_simulator.flow.session.session import SessionPage, TrainingSession
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.presentation.screen import ItemKind, MenuItem, ScoreTrend
 
@@ -205,7 +204,7 @@ def open_experiment(
 Listing = Future[list[ListedScenario]]
 
 
-def _leave_when_loaded(page: ShownPage, _dt: float, _listing: Listing, wanted: str = "") -> None:
+def _leave_when_loaded(page: SessionPage, _dt: float, _listing: Listing, wanted: str = "") -> None:
     """Go back once the chosen head is loaded; stay if it was refused."""
     session = page.session
     if wanted == session.scenario.name and not session.reload.is_under_way:
@@ -213,7 +212,7 @@ def _leave_when_loaded(page: ShownPage, _dt: float, _listing: Listing, wanted: s
 
 
 @page_kind("scenario", advance=_leave_when_loaded)
-def scenario_page(page: ShownPage, listing: Listing, wanted: str = "") -> PageContent:
+def scenario_page(page: SessionPage, listing: Listing, wanted: str = "") -> PageContent:
     """List the scenarios, and why some cannot be used."""
     session, is_loading = page.session, page.session.reload.is_under_way
     present = session.scenario.name

@@ -8,7 +8,6 @@ from rastrainer.number_text import clock
 from rastrainer.protocol import TRIAL_RUN, TutorialRule
 from rastrainer_simulator.flow.pages.controls import controls_page
 from rastrainer_simulator.flow.pages.experiment import open_experiment
-from rastrainer_simulator.flow.pages.session_page import SessionPage, ShownPage, page_kind
 from rastrainer_simulator.flow.pages.trial_review import error_tone
 from rastrainer_simulator.flow.session.chosen_trial import (
     may_skip,
@@ -16,22 +15,23 @@ from rastrainer_simulator.flow.session.chosen_trial import (
     start_task,
     tutorial_rule,
 )
-from rastrainer_simulator.flow.session.open_pages import PageContent
+from rastrainer_simulator.flow.session.open_pages import PageContent, page_kind
+from rastrainer_simulator.flow.session.session import SessionPage
 from rastrainer_simulator.presentation.screen import Fact
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 
 SHEETS = 3
 
 
-def _leave_sheet(page: ShownPage, sheet: int = 1) -> None:
+def _leave_sheet(page: SessionPage, sheet: int = 1) -> None:
     if sheet == 1:
         page.session.pages.close()
     else:
         page.set_value("sheet", sheet - 1)
 
 
-@page_kind("introduction", leave=_leave_sheet)
-def introduction_page(page: ShownPage, sheet: int = 1) -> PageContent:
+@page_kind("introduction", back=_leave_sheet)
+def introduction_page(page: SessionPage, sheet: int = 1) -> PageContent:
     """Show one of a few sheets of text; the last leads to the controls."""
     session = page.session
     key, alone = f"introduction.text.{sheet}", f"introduction.text.{sheet}.alone"

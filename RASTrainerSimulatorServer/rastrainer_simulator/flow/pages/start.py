@@ -9,8 +9,7 @@ from functools import partial
 from rastrainer_simulator.flow.pages.controls import controls_page
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.introduction import introduction_page
-from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind
-from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow, page_kind
 from rastrainer_simulator.flow.session.preferences import (
     OF_A_TRIAL,
     OF_INSTRUCTORS,
@@ -18,13 +17,13 @@ from rastrainer_simulator.flow.session.preferences import (
     OPTIONS,
     PREFERENCES_FILE,
 )
-from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.flow.session.session import SessionPage, TrainingSession
 from rastrainer_simulator.input.inputs import InputDevice
 from rastrainer_simulator.ops.instructor_pin import LONGEST_PIN, SHORTEST_PIN, PinAnswer
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 
 
-@page_kind("start", leave=lambda _page: None)
+@page_kind("start", back=lambda _page: None)
 def start_page(page: SessionPage) -> PageContent:
     """Show the first menu. It leads new trainees through the introduction once."""
     has_read = page.session.has_read_introduction

@@ -8,8 +8,8 @@ from functools import partial
 
 from rastrainer.study.protocol.questionnaires import QuestionnaireItem, find_questionnaire
 from rastrainer.study_messages import StudyStep
-from rastrainer_simulator.flow.pages.session_page import SessionPage, ShownPage, page_kind
-from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow, page_kind
+from rastrainer_simulator.flow.session.session import SessionPage
 from rastrainer_simulator.presentation.screen import Fact
 
 ROWS = ("ABCDEFGHIJ", "KLMNOPQRST", "UVWXYZ-_.", "0123456789")
@@ -30,7 +30,7 @@ def _delete(page: SessionPage, write: Write) -> PageRow:
 
 
 @page_kind("keyboard")
-def keyboard_page(page: ShownPage, write: Write, **chosen: str) -> PageContent:
+def keyboard_page(page: SessionPage, write: Write, **chosen: str) -> PageContent:
     """Show rows of characters: left and right choose one, accepting types it."""
 
     def row(number: int, characters: str) -> PageRow:
@@ -83,7 +83,7 @@ def _follow_study(page: SessionPage, _dt: float, step: StudyStep, **_answers: in
 
 
 @page_kind("questionnaire", advance=_follow_study)
-def questionnaire_page(page: ShownPage, step: StudyStep, **answers: int) -> PageContent:
+def questionnaire_page(page: SessionPage, step: StudyStep, **answers: int) -> PageContent:
     """Collect an answer to each item, and submit them together for Slicer to store."""
     asked = find_questionnaire(step.questionnaire)
 

@@ -8,10 +8,9 @@ from functools import partial
 
 from rastrainer.errors import InputError
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.flow.pages.session_page import SessionPage, clickable_hint, page_kind
-from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow, page_kind
 from rastrainer_simulator.flow.session.plan_marks import plan_marks, scored_lines
-from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.flow.session.session import SessionPage, TrainingSession
 from rastrainer_simulator.flow.session.trainee_history import OwnTrial
 from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice, SourceKind
 from rastrainer_simulator.presentation.screen import ErrorArrow, Hint, Screen, ScreenMessage, Tone
@@ -128,10 +127,10 @@ class ReplayPage(SessionPage):
         session = self.session
         label, pair_label = session.operator.label, session.operator.pair_label
         hints = (
-            clickable_hint(session, ControlName.ACCEPT, "hint.play"),
+            session.operator.hint(ControlName.ACCEPT, "hint.play"),
             Hint(pair_label(ControlName.LEFT, ControlName.RIGHT), self.say("hint.seek")),
-            clickable_hint(session, ControlName.UP, "hint.worst"),
-            clickable_hint(session, ControlName.CAMERA, "hint.camera"),
+            session.operator.hint(ControlName.UP, "hint.worst"),
+            session.operator.hint(ControlName.CAMERA, "hint.camera"),
             Hint(label(ControlName.BACK), self.say("hint.result"), "back"),
         )
         shown = self._player.screen(session.texts, hints, session.preferences.language)

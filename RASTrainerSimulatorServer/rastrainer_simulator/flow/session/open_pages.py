@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, TypeVar
+from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
@@ -59,26 +59,48 @@ class PageContent:
     first: str = ""
 
 
-class Page:
-    """A page of text, facts and rows.
+class PageOwner(Protocol):
+    """What pages read and change: a trainee's session, or a rater's work."""
+
+    pages: OpenPages
+
+    def say(self, key: str, **values: object) -> str:
+        """Return a sentence in the reader's language."""
+
+
+S = TypeVar("S", bound=PageOwner)
+
+
+class Page(Generic[S]):
+    """A page of text, facts and rows, which stores only its own state.
 
     Attributes:
+        arguments, values: what the functions of a `page_kind` are given; they may change values.
         is_private: whether its rows are only for the views of who operates.
         pause_goes_back: whether the control that pauses, which opened the page, also closes it.
     """
 
     name: str = ""
     is_private: ClassVar[bool] = False
-    pause_goes_back: bool = False
+    pause_goes_back: ClassVar[bool] = False
+
+    def __init__(self, session: S, *arguments: Any, **values: Any) -> None:
+        self.session, self.arguments, self.values = session, arguments, values
 
     def content(self) -> PageContent:
         raise NotImplementedError
 
     def say(self, key: str, **values: object) -> str:
-        raise NotImplementedError
+        return self.session.say(key, **values)
 
     def back(self) -> None:
-        raise NotImplementedError
+        self.session.pages.close()
+
+    def set_value(self, name: str, value: Any) -> None:
+        self.values[name] = value
+
+    def open_page(self, page: Callable[..., Page[Any]], *arguments: object) -> Callable[[], None]:
+        return lambda: self.session.pages.open(page(self.session, *arguments))
 
     def button(
         self, name: str, accept: Callable[[], object] | None = None, label: str = "", **others: Any
@@ -124,6 +146,24 @@ class Page:
         """Clean up: the page is no longer open."""
 
 
+def page_kind(name: str, **others: Any) -> Callable[[Callable[..., PageContent]], type[Page[Any]]]:
+    """Return a decorator that makes a kind of page of the function that returns its content.
+
+    `others` are members of `Page` that differ. Each function is given the page, what the method is
+    given, the page's arguments, and its values by their names.
+    """
+
+    def method(function: Callable[..., Any]) -> Callable[..., Any]:
+        return lambda page, *given: function(page, *given, *page.arguments, **page.values)
+
+    def kind(show: Callable[..., PageContent]) -> type[Page[Any]]:
+        members = {"content": show, **others}
+        methods = {key: method(each) if callable(each) else each for key, each in members.items()}
+        return type(name, (Page,), {"name": name, **methods})
+
+    return kind
+
+
 GRACE_S = 0.7
 """How long a page that opens automatically has no focus: presses meant for the arm do nothing."""
 
@@ -138,19 +178,19 @@ class OpenPages:
         home: makes the page that all others lie over.
     """
 
-    home: Callable[[], Page]
+    home: Callable[[], Page[Any]]
 
     def __init__(self, happened: Callable[[FeedbackEvent], None]) -> None:
         self._happened = happened
-        self._open: list[Page] = []
+        self._open: list[Page[Any]] = []
         self._focus: list[str] = []
         self._grace_s = 0.0
 
     @property
-    def top(self) -> Page | None:
+    def top(self) -> Page[Any] | None:
         return self._open[-1] if self._open else None
 
-    def show(self, page: Page | None, ignore_input_briefly: bool = False) -> None:
+    def show(self, page: Page[Any] | None, ignore_input_briefly: bool = False) -> None:
         while self._open:
             self.close()
         if page is not None:
@@ -164,7 +204,7 @@ class OpenPages:
     def show_start(self) -> None:
         self.show(self.home())
 
-    def open(self, page: Page, ignore_input_briefly: bool = False) -> None:
+    def open(self, page: Page[Any], ignore_input_briefly: bool = False) -> None:
         """Open a page over the others; with a grace time where it opens automatically."""
         first = page.content().first
         self._grace_s = GRACE_S if ignore_input_briefly else 0.0
@@ -176,7 +216,7 @@ class OpenPages:
             self._focus.pop()
             self._open.pop().closed()
 
-    def replace(self, page: Page) -> None:
+    def replace(self, page: Page[Any]) -> None:
         self.close()
         self.open(page)
 

@@ -12,7 +12,7 @@ from rastrainer.protocol import Mode
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.controls import Controls
 from rastrainer_simulator.input.inputs import ControlName, InputDevice, SourceKind
-from rastrainer_simulator.presentation.screen import ControlsPicture
+from rastrainer_simulator.presentation.screen import PRESS, ControlsPicture, Hint
 from rastrainer_simulator.state import OperatorInput
 from rastrainer_simulator.texts.texts import NO_NAMES, Texts, input_label, pair_label
 
@@ -74,6 +74,10 @@ class OperatorDevice:
             # The sticks of a gamepad with its default bindings.
             return self.input_label(InputDevice.GAMEPAD, DEFAULT_BINDINGS.gamepad[control][0])
         return self.input_label(self.kind, self.controls.bindings.table(self.kind)[control][0])
+
+    def hint(self, control: ControlName, key: str) -> Hint:
+        """Return a hint that presses a control when it is clicked."""
+        return Hint(self.label(control), self.texts.say(key), PRESS + control.value)
 
     def pair_label(self, first: ControlName, second: ControlName) -> str:
         """Return the first inputs of two controls that belong together."""

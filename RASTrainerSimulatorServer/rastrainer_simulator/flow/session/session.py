@@ -21,7 +21,7 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
 from rastrainer.study_messages import CurriculumMessage, StudyStep
 from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
-from rastrainer_simulator.flow.session.open_pages import OpenPages
+from rastrainer_simulator.flow.session.open_pages import OpenPages, Page
 from rastrainer_simulator.flow.session.operator_device import OperatorDevice
 from rastrainer_simulator.flow.session.preferences import (
     PREFERENCES_FILE,
@@ -109,6 +109,10 @@ class TrainingSession:
         self._noted: CurriculumMessage | None = None
         self.state: SimulationState = control_loop.latest
 
+    def say(self, key: str, **values: object) -> str:
+        """Return a sentence in the trainee's language."""
+        return self.texts.say(key, **values)
+
     @property
     def training(self) -> TrainingState:
         return self.state.training
@@ -185,7 +189,7 @@ class TrainingSession:
             return check_arguments(command, arguments)
         except InputError as error:
             _log.warning("%s", error)
-            self.complain(self.texts.say("warning.impossible"))
+            self.complain(self.say("warning.impossible"))
             return None
 
     def begin_tutorial(self, task: str = TRIAL_RUN, point: str = "") -> None:
@@ -194,7 +198,7 @@ class TrainingSession:
         It is recorded nowhere, and refused while its head is about to go.
         """
         if self.reload.is_under_way:
-            self.complain(self.texts.say("being set up"))
+            self.complain(self.say("being set up"))
             return
         wanted = {"task": task, "trainee": self.trainee_id, "mode": self.mode}
         arguments, setup = self._checked(CommandName.START_TASK, wanted), self.control_loop.setup
@@ -240,7 +244,7 @@ class TrainingSession:
     def load_trial(self, trial_id: str) -> TrialLoading:
         found = journals_of(self.services.records, trial_id)
         if not found:
-            raise InputError(self.texts.say("replay.no journal"))
+            raise InputError(self.say("replay.no journal"))
         return load_trial(found[0], self.control_loop.setup)
 
     def note_done(self) -> None:
@@ -286,34 +290,34 @@ class TrainingSession:
     def task_title(self, name: str) -> str:
         key = f"task.{name}"
         if key in self.texts:
-            return self.texts.say(key)
+            return self.say(key)
         titles = {task.name: task.title for task in self.scenario.tasks}
         return titles.get(name, name)
 
     def procedure_title(self, name: str) -> str:
         titles = {each.name: each.title for each in self.scenario.procedures}
-        return titles.get(name, name) if name else self.texts.say("experiment.touches alone")
+        return titles.get(name, name) if name else self.say("experiment.touches alone")
 
     @property
     def practice_title(self) -> str:
         task, point = self.practiced
         key = "tutorial.practice" if point else "tutorial.title"
-        return self.texts.say(key, task=self.task_title(task), point=point)
+        return self.say(key, task=self.task_title(task), point=point)
 
     def preparing(self) -> str:
         share = self.picture_share
         key = "preparing.loaded" if share else "preparing.built"
-        return "" if share is None else self.texts.say(key, share=100.0 * share)
+        return "" if share is None else self.say(key, share=100.0 * share)
 
     def step_sentence(self, step: StudyStep) -> str:
         asked = QUESTIONNAIRES.get(step.questionnaire)
         task, by = self.task_title(step.task), f"study.by {step.method}"
-        return self.texts.say(
+        return self.say(
             f"study.{step.kind}",
             number=step.number,
             count=step.count,
-            task=f"{task} {self.texts.say(by)}" if by in self.texts else task,
-            mode=self.texts.say(f"study.{step.mode}") if step.mode else "",
+            task=f"{task} {self.say(by)}" if by in self.texts else task,
+            mode=self.say(f"study.{step.mode}") if step.mode else "",
             minutes=step.minutes,
             left=clock(self.services.assigned.break_left_s(step.trainee)),
             questionnaire=step.questionnaire if asked is None else asked.title,
@@ -330,5 +334,9 @@ class TrainingSession:
             is_new = earlier is not None and earlier.state is not AssignmentState.REACHED
             if each.state is AssignmentState.REACHED and is_new:
                 title = self.assignment_texts.title(each)
-                said = self.texts.say("assignments.just reached", assignment=title)
+                said = self.say("assignments.just reached", assignment=title)
                 self.notices.add(said, Tone.GOOD, REACHED_S)
+
+
+SessionPage = Page[TrainingSession]
+"""A page of a trainee's session."""
