@@ -28,10 +28,7 @@ from rastrainer_simulator.input.inputs import (
     SourceKind,
 )
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.presentation.feedback_event import (
-    FeedbackEvent,
-    feedback_of,
-)
+from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 from rastrainer_simulator.presentation.messages import Hello, InstructorOrder, Seat
 from rastrainer_simulator.presentation.presenter import Control, Presenter, TraceGuidance
 from rastrainer_simulator.presentation.screen import PRESS, Tone
@@ -83,7 +80,7 @@ class FlowPresenter(Presenter):
         listener = ControlsListener(self.pressed, self.input_pressed, self.taken_over, self.refused)
         self.controls = Controls(bindings, listener, lambda: not self._session.lock.is_locked)
         self._session = TrainingSession(
-            control_loop, self.controls, services, preferences, self.happened
+            control_loop, self.controls, services, preferences, self._feel
         )
         self._flow = Flow(self._session)
         self.rumble: Callable[[float, float], None] = lambda _strength, _seconds: None
@@ -94,7 +91,6 @@ class FlowPresenter(Presenter):
         self._noted_view: tuple[str, ViewReport] | None = None
         self._since_noted_s = 0.0
         self._without_picture_s = 0.0
-        self._number = 0
         self._sent_sticks = NEUTRAL_STICKS
         self._is_changed = True
         self._since_refresh = 0.0
@@ -127,10 +123,7 @@ class FlowPresenter(Presenter):
         if self._is_changed or self._since_refresh >= REFRESH_S:
             self._is_changed = False
             self._since_refresh = 0.0
-            screen = self._flow.screen()
-            if screen != self.screen:
-                self.screen = screen
-                self.updates.publish(screen)
+            self.show(self._flow.screen())
 
     def pictures(self, now: SimulationState) -> Pictures:
         return self._session.view.pictures(now, self.shown.setup.scenario.cameras)
@@ -332,14 +325,11 @@ class FlowPresenter(Presenter):
         self._session.notices.warn(about, key, **values)
         self._is_changed = True
 
-    def happened(self, what: FeedbackEvent) -> None:
+    def _feel(self, what: FeedbackEvent) -> None:
         preferences = self._session.preferences
-        volume = 0.0 if preferences.muted else preferences.volume / 100.0
-        self._number += 1
-        feedback = feedback_of(what, self._number, volume)
-        if feedback.rumble > 0.0:
-            self.rumble(feedback.rumble, what.seconds)
-        self.updates.publish(feedback)
+        self.happened(what, 0.0 if preferences.muted else preferences.volume / 100.0)
+        if what.rumble > 0.0:
+            self.rumble(what.rumble, what.seconds)
 
     def _lose_sight(self, view: int, why: str) -> None:
         """Pause and release control if no one can see the trial; `why` is the key of a sentence."""

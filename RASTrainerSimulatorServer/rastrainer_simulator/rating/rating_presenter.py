@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import Future
 from functools import partial
 
@@ -17,9 +17,8 @@ from rastrainer_simulator.flow.session.open_pages import (
     page_kind,
 )
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.input.gamepads import w3c_gamepad_inputs
 from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice
-from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_of
+from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 from rastrainer_simulator.presentation.screen import Fact, Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.rating.rating_work import RatingWork
 from rastrainer_simulator.replay.playback import Playback, PlaybackSwitch
@@ -27,7 +26,6 @@ from rastrainer_simulator.replay.replay_presenter import RATE, ReplayPresenter
 from rastrainer_simulator.state import StepResult
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label, pair_label
 
-_DOWN = 0.5
 _REPEATED = ("ArrowLeft", "ArrowRight")
 _IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlName.BACK}
 
@@ -45,13 +43,12 @@ class RatingPresenter(ReplayPresenter):
     ) -> None:
         """Begin with a replay; `load` begins to load another, by its trial's UUID."""
         self.work = work
-        self.pages = OpenPages(self._happened)
+        self.pages = OpenPages(self.happened)
         self.shown = PlaybackSwitch(first)
         self.shown.show(first)
         self.leave = end
         self._load = load
         self._loading: Future[Playback] | None = None
-        self._inputs: dict[int, tuple[frozenset[int], frozenset[int]]] = {}
         self._keys: dict[int, set[str]] = {}
         self._problem = ""
         blinded = Texts(LANGUAGES[language]).say("rating.replay", **work.numbers)
@@ -99,7 +96,6 @@ class RatingPresenter(ReplayPresenter):
 
     def view_left(self, view: int) -> None:
         super().view_left(view)
-        self._inputs.pop(view, None)
         self._keys.pop(view, None)
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
@@ -115,30 +111,7 @@ class RatingPresenter(ReplayPresenter):
             if not is_again or code in _REPEATED:
                 super().on_key(view, code, is_down, text)
         elif is_down and not is_again:
-            self._try(lambda: self._page_pressed(InputDevice.KEYBOARD, code))
-
-    def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
-        """Process a gamepad: newly pressed buttons are for the open page, else for the replay."""
-        now = _pressed(axes), _pressed(buttons)
-        before = self._inputs.get(view, (frozenset(), frozenset()))
-        self._inputs[view] = now
-        moved, tapped = (
-            [value * (number in new - old) for number, value in enumerate(values)]
-            for values, new, old in zip((axes, buttons), now, before, strict=True)
-        )
-        if self.pages.top is not None:
-            inputs = w3c_gamepad_inputs(moved, tapped)
-            names = [name for name, value in inputs.items() if value > _DOWN]
-
-            def press() -> None:
-                for name in names:
-                    self._page_pressed(InputDevice.GAMEPAD, name)
-
-            self._try(press)
-            return
-        # Released at once: a button that has led from the form back here is not pressed again.
-        super().on_pad(view, axes, tapped)
-        super().on_pad(view, axes, ())
+            self._press(InputDevice.KEYBOARD, code)
 
     def on_press(self, view: int, control: str) -> None:
         """Process a button of an XR controller, or of a touch screen."""
@@ -160,7 +133,13 @@ class RatingPresenter(ReplayPresenter):
         self.pages.show(None)
         self._play(playback, self.say("rating.replay"))
 
-    def _page_pressed(self, device: InputDevice, name: str) -> None:
+    def _press(self, device: InputDevice, name: str) -> None:
+        if self.pages.top is None:
+            super()._press(device, name)
+        else:
+            self._try(lambda: self._press_on_page(device, name))
+
+    def _press_on_page(self, device: InputDevice, name: str) -> None:
         page = self.pages.top
         if page is None or page.input_pressed(device, name):
             return
@@ -174,7 +153,7 @@ class RatingPresenter(ReplayPresenter):
             act()
         except InputError as error:
             self._problem = str(error)
-            self._happened(FeedbackEvent.ERROR)
+            self.happened(FeedbackEvent.ERROR)
         self._refresh()
 
     def _follow(self, result: StepResult) -> None:
@@ -194,14 +173,6 @@ class RatingPresenter(ReplayPresenter):
             screen = Screen(menu=menu, hints=hints, language=self._language)
         problem = (ScreenMessage(self._problem, Tone.ERROR),) if self._problem else ()
         return dataclasses.replace(screen, warnings=(*screen.warnings, *problem))
-
-    def _happened(self, what: FeedbackEvent) -> None:
-        self._count += 1
-        self.updates.publish(feedback_of(what, self._count))
-
-
-def _pressed(values: Sequence[float]) -> frozenset[int]:
-    return frozenset(number for number, value in enumerate(values) if abs(value) > _DOWN)
 
 
 _KEYS = {f"{key}{mark}": mark for key in ("Digit", "Numpad") for mark in MARKS}

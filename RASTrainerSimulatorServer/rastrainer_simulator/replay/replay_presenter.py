@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
+from dataclasses import dataclass
 from enum import Enum
 from functools import reduce
 
 from rastrainer.number_text import clock
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.input.inputs import ControlName
-from rastrainer_simulator.presentation.feedback_event import feedback_event, feedback_of
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.input.gamepads import w3c_gamepad_inputs
+from rastrainer_simulator.input.inputs import ControlName, InputDevice
+from rastrainer_simulator.presentation.feedback_event import feedback_event
 from rastrainer_simulator.presentation.messages import InstructorOrder
 from rastrainer_simulator.presentation.presenter import Presenter
 from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage
@@ -53,16 +56,21 @@ ACTIONS: Mapping[ControlName, PlayerAction] = {
     ControlName.MENU: PlayerAction.END,
 }
 """The actions of the controls during a replay."""
+WORST_TOO = {InputDevice.KEYBOARD: "KeyT", InputDevice.GAMEPAD: "x"}
+"""Additional inputs for the worst touch, which no control of the menus uses."""
+PRESSED = 0.5
 
 
+@dataclass(frozen=True)
 class Player:
-    """Carries out the viewer's actions."""
+    """Carries out the viewer's actions.
 
-    def __init__(self, playback: Playback, end: Callable[[], None], blinded: str = "") -> None:
-        """`end` is called when the viewer ends it; `blinded` as of `ReplayPresenter`."""
-        self.playback = playback
-        self._blinded = blinded
-        self._end = end
+    `end` is called when the viewer ends it; `blinded` is as of `ReplayPresenter`.
+    """
+
+    playback: Playback
+    end: Callable[[], None]
+    blinded: str = ""
 
     def do(self, action: PlayerAction) -> None:
         playback = self.playback
@@ -77,8 +85,8 @@ class Player:
             place = names.index(playback.latest.camera) if playback.latest.camera in names else -1
             playback.use_camera(names[(place + 1) % len(names)])
         elif action is PlayerAction.END:
-            self._end()
-        elif playback.trial.worst is not None and not self._blinded:
+            self.end()
+        elif playback.trial.worst is not None and not self.blinded:
             _label, begin, end = playback.trial.worst
             playback.play_from(begin, end, SLOWLY)
 
@@ -88,8 +96,8 @@ class Player:
         trial = playback.trial
         task = playback.setup.scenario.task(trial.task)
         instruction: str = say("replay.title", task=task.title, trainee=trial.trainee)
-        if self._blinded:
-            instruction = self._blinded
+        if self.blinded:
+            instruction = self.blinded
         elif trial.worst is not None and playback.speed != 1.0:
             instruction = say("replay.worst", point=trial.worst[0])
         kept = len(playback.latest.training.touches)
@@ -108,29 +116,17 @@ class Player:
         )
 
 
-_KEYS = {
-    "Space": PlayerAction.PLAY,
-    "Enter": PlayerAction.PLAY,
-    "ArrowLeft": PlayerAction.BACK,
-    "ArrowRight": PlayerAction.FORWARD,
-    "ArrowUp": PlayerAction.WORST,
-    "KeyT": PlayerAction.WORST,
-    "KeyC": PlayerAction.CAMERA,
-    "KeyM": PlayerAction.END,
-    "Escape": PlayerAction.END,
+_INPUTS: Mapping[InputDevice, Mapping[str, PlayerAction]] = {
+    device: {
+        **{
+            name: action
+            for control, action in ACTIONS.items()
+            for name in DEFAULT_BINDINGS.table(device)[control]
+        },
+        WORST_TOO[device]: PlayerAction.WORST,
+    }
+    for device in InputDevice
 }
-"""W3C `KeyboardEvent.code` → action."""
-_PAD = {
-    0: PlayerAction.PLAY,
-    1: PlayerAction.END,
-    2: PlayerAction.WORST,
-    3: PlayerAction.CAMERA,
-    9: PlayerAction.END,
-    12: PlayerAction.WORST,
-    14: PlayerAction.BACK,
-    15: PlayerAction.FORWARD,
-}
-"""Buttons of the W3C standard gamepad."""
 _PRESSES = {
     **{control.value: action for control, action in ACTIONS.items()},
     ControlName.TOUCH.value: PlayerAction.PLAY,
@@ -161,11 +157,9 @@ class ReplayPresenter(Presenter):
         super().__init__()
         self._language = language
         self._texts = Texts(LANGUAGES[language])
-        self._count = 0
-        self._held: dict[int, frozenset[int]] = {}
+        self._held: dict[int, set[str]] = {}
         self._key_names: Mapping[str, str] = {}
         self._end = end
-        self.screen = Screen()
         self._play(playback, blinded)
 
     def _play(self, playback: Playback, blinded: str) -> None:
@@ -199,17 +193,19 @@ class ReplayPresenter(Presenter):
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:  # noqa: ARG002
         if is_down:
-            self._do(_KEYS.get(code))
+            self._press(InputDevice.KEYBOARD, code)
 
     def on_layout(self, view: int, keys: Mapping[str, str]) -> None:  # noqa: ARG002
         self._key_names = keys
         self._refresh()
 
-    def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:  # noqa: ARG002
-        held = frozenset(number for number, value in enumerate(buttons) if value > 0.5)
-        for number in held - self._held.get(view, frozenset()):
-            self._do(_PAD.get(number))
-        self._held[view] = held
+    def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
+        """Process the inputs of a gamepad that have just been pressed."""
+        inputs = w3c_gamepad_inputs(axes, buttons)
+        down = {name for name, value in inputs.items() if value > PRESSED}
+        held, self._held[view] = self._held.get(view, set()), down
+        for name in filter((down - held).__contains__, inputs):
+            self._press(InputDevice.GAMEPAD, name)
 
     def on_press(self, view: int, control: str) -> None:  # noqa: ARG002
         self._do(_PRESSES.get(control))
@@ -220,6 +216,9 @@ class ReplayPresenter(Presenter):
 
     def on_silence(self, view: int) -> None:  # noqa: ARG002
         self._playback.pause(True)
+
+    def _press(self, device: InputDevice, name: str) -> None:
+        self._do(_INPUTS[device].get(name))
 
     def _do(self, action: PlayerAction | None) -> None:
         if action is None:
@@ -245,8 +244,7 @@ class ReplayPresenter(Presenter):
         for event in result.events:
             kind = feedback_event(event, result.state.touch)
             if kind is not None:
-                self._count += 1
-                self.updates.publish(feedback_of(kind, self._count))
+                self.happened(kind)
         is_found = self._wants_worst and self._search is not None and self._search.done()
         view = self._search.result() if self._search is not None and is_found else None
         camera = self._playback.setup.scenario.cameras[result.state.camera]
@@ -257,10 +255,7 @@ class ReplayPresenter(Presenter):
         self._view.advance(PERIOD_S, camera, STILL, is_arm_still=True)
 
     def _refresh(self) -> None:
-        screen = self._make_screen()
-        if screen != self.screen:
-            self.screen = screen
-            self.updates.publish(screen)
+        self.show(self._make_screen())
 
     def _make_screen(self) -> Screen:
         hints = []
