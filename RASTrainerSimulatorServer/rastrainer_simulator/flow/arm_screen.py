@@ -106,23 +106,26 @@ class ArmScreen:
             **others,
         )
 
+    def _message(self, key: str, tone: Tone = Tone.PLAIN, **values: object) -> ScreenMessage:
+        return ScreenMessage(self._session.say(key, **values), tone)
+
+    def _instructed(self, tone: Tone) -> ScreenMessage:
+        """Return the instruction of the trial or the practice itself."""
+        return ScreenMessage(self._session.texts.again(self._state.training.instruction), tone)
+
     def warnings(self) -> tuple[ScreenMessage, ...]:
-        say = self._session.say
         warnings = []
         state = self._state
         if state.touch in (TouchStage.PRESSED, TouchStage.TOO_DEEP):
             depth_mm = DEPTH_STEP_MM * round(MM_PER_M * state.depth / DEPTH_STEP_MM)
             tone = Tone.ERROR if state.touch is TouchStage.TOO_DEEP else Tone.WARNING
-            warnings.append(ScreenMessage(say("warning.pressing", depth=depth_mm), tone))
-        elif state.touch is TouchStage.SHAFT:
-            warnings.append(ScreenMessage(say("warning.shaft"), Tone.ERROR))
-        elif state.touch is TouchStage.ELSEWHERE:
-            warnings.append(ScreenMessage(say("warning.elsewhere"), Tone.ERROR))
+            warnings.append(self._message("warning.pressing", tone, depth=depth_mm))
+        elif state.touch in (TouchStage.SHAFT, TouchStage.ELSEWHERE):
+            warnings.append(self._message(f"warning.{state.touch.value}", Tone.ERROR))
         if self._arm.obstacle:
-            obstacle = say(f"warning.obstacle.{self._arm.obstacle}")
-            warnings.append(ScreenMessage(obstacle, Tone.ERROR))
+            warnings.append(self._message(f"warning.obstacle.{self._arm.obstacle}", Tone.ERROR))
         elif not self._arm.is_within_reach:
-            warnings.append(ScreenMessage(say("warning.reach"), Tone.WARNING))
+            warnings.append(self._message("warning.reach", Tone.WARNING))
         return tuple(warnings)
 
     def _change_camera(self) -> None:
@@ -184,10 +187,16 @@ class ArmScreen:
             direction=session.texts.listed(session.say(f"way.{word}") for word in words),
         )
 
-    def _slipped(self, label: str, error_mm: float, key: str = "tutorial.slipped") -> str:
-        undo = self._session.operator.label(ControlName.UNDO)
-        point, say = self._state.training.next_point, self._session.say
-        return say(key, label=label, error=error_mm, point=point, undo=undo)
+    def _on_skin(self) -> ScreenMessage:
+        touch = self._session.operator.label(ControlName.TOUCH)
+        return self._message("work.on skin", Tone.GOOD, touch=touch)
+
+    def _touched(self, key: str, tone: Tone, label: str, error_mm: float) -> ScreenMessage:
+        undo, point = (
+            self._session.operator.label(ControlName.UNDO),
+            self._state.training.next_point,
+        )
+        return self._message(key, tone, label=label, error=error_mm, point=point, undo=undo)
 
     def _axes(self) -> Axes:
         session = self._session

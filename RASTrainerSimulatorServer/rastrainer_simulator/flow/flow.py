@@ -276,7 +276,8 @@ class Flow:
             learned = session.history.learned.get(training.trainee)
             if training.task == TRIAL_RUN and learned is not None:
                 self._control_loop.note_display(learned)
-            session.view.begin(session.control_loop.setup, truth, session.state)
+            session.view.begin(session.control_loop.setup, session.state)
+            session.view.control.reset()
             is_led = training.trace is not None and guidance is not Guidance.NONE
             traced = training.trial_id, session.control_loop.setup, truth
             session.places.begin(traced if is_led else None)

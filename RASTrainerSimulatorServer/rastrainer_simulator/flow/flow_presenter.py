@@ -26,6 +26,7 @@ from rastrainer_simulator.input.inputs import (
     InputDevice,
     Source,
     SourceKind,
+    button_in_menu,
 )
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
@@ -51,9 +52,6 @@ SENTENCE_S = 20.0
 """How long the trainee sees a teacher's message: longer than a notice, as it is unexpected."""
 NOTED_S = 0.2
 """How often a moving view is noted in the journal."""
-
-_IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlName.BACK}
-"""Meanings of a view's own buttons while a menu is open: a headset's buttons have no bindings."""
 
 
 class FlowPresenter(Presenter):
@@ -195,12 +193,15 @@ class FlowPresenter(Presenter):
             self._flow.pause("unseen.left")
         self._settle()
 
+    def receive(self, view: int, kind: str, *values: object) -> None:
+        super().receive(view, kind, *values)
+        self._settle()
+
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
         source = self._views.source(SourceKind.KEYBOARD, view)
         typed = self._session.pages.typed(code, text) if is_down else None
         if typed is None:
             self.controls.set_key(source, code, is_down)
-            self._settle()
             return
         if self.controls.allows(source):
             self._session.pages.write(*typed)
@@ -213,7 +214,6 @@ class FlowPresenter(Presenter):
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
         source = self._views.source(SourceKind.BROWSER_GAMEPAD, view)
         self.controls.set_inputs(source, w3c_gamepad_inputs(axes, buttons))
-        self._settle()
 
     def on_sticks(
         self,
@@ -230,7 +230,6 @@ class FlowPresenter(Presenter):
         if source.kind is SourceKind.MOUSE:
             sticks = self._session.screen_sticks.moved(translation, rotation)
         self.controls.set_sticks(source, sticks)
-        self._settle()
 
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
         if self.controls.is_operator(self._views.source(SourceKind.MOUSE, view)):
@@ -238,15 +237,14 @@ class FlowPresenter(Presenter):
             self._session.view.control.turn(camera, around_deg, higher_deg, zoom)
 
     def on_press(self, view: int, control: str) -> None:
-        if control not in ControlName._value2member_map_:
+        name = button_in_menu(control)
+        if name is None:
             return
-        name = ControlName(control)
-        if self._session.pages.top is not None:
-            name = _IN_MENUS.get(name, name)
+        if self._session.pages.top is None:
+            name = ControlName(control)
         self.controls.press(
             self._views.sticks_source(view, self._session.screen_sticks.is_shown), name
         )
-        self._settle()
 
     def on_item(self, view: int, name: str) -> None:
         pressed = name.removeprefix(PRESS) if name.startswith(PRESS) else ""
@@ -258,7 +256,7 @@ class FlowPresenter(Presenter):
             self._session.pages.choose(name)
         elif not self._session.screen_sticks.pressed(pressed) and control is not None:
             self._flow.pressed(ControlName(pressed))
-        self._settle(is_changed=True)
+        self._is_changed = True
 
     def on_text(self, view: int, name: str, value: str) -> None:
         if self.controls.allows(self._views.hand_source(SourceKind.KEYBOARD, view)):
@@ -283,13 +281,11 @@ class FlowPresenter(Presenter):
     def on_visibility(self, view: int, is_visible: bool) -> None:
         if not is_visible:
             self._lose_sight(view, "unseen.hidden")
-            self._settle()
 
     def on_silence(self, view: int) -> None:
         self._lose_sight(view, "unseen.still")
         if view in self._views.joined:
             self._views.joined[view].is_silent = True
-        self._settle()
 
     def pressed(self, control: ControlName) -> None:
         self._flow.pressed(control)

@@ -71,26 +71,24 @@ class ProcedureScreen(ArmScreen):
         self._trial_screen.open_menu()
 
     def warnings(self) -> tuple[ScreenMessage, ...]:
-        session, say = self._session, self._session.say
-        training = session.training
+        session, training = self._session, self._session.training
         if training.phase is Phase.VERIFYING and self._procedure.registration is None:
             # Why the touches are not registered yet, if that will not change by itself.
             scorer = session.local_scorer
             if scorer is not None and scorer.problem:
-                reason = say("waiting.problem", reason=scorer.problem)
-                return (ScreenMessage(reason, Tone.ERROR),)
+                return (self._message("waiting.problem", Tone.ERROR, reason=scorer.problem),)
             if scorer is None and not session.services.is_slicer_connected():
-                return (ScreenMessage(say("warning.nobody registers"), Tone.WARNING),)
+                return (self._message("warning.nobody registers", Tone.WARNING),)
             return ()
         if training.phase not in FED:
             return super().warnings()
         ruler = self._ruler()
         past = 0.0 if ruler is None else MM_PER_M * session.state.feed - ruler.target_mm
         if past > PAST_TARGET_MM:
-            return (ScreenMessage(say("warning.past target", past=past), Tone.ERROR),)
+            return (self._message("warning.past target", Tone.ERROR, past=past),)
         if self._arm.layer not in _FELT:
             return ()
-        return (ScreenMessage(say(f"felt.{self._arm.layer}"), _FELT[self._arm.layer]),)
+        return (self._message(f"felt.{self._arm.layer}", _FELT[self._arm.layer]),)
 
     def _status(self) -> tuple[str, ...]:
         session, say = self._session, self._session.say
@@ -109,7 +107,7 @@ class ProcedureScreen(ArmScreen):
 
     def screen(self) -> Screen:
         """The trainee looks into the head as soon as the guide is being aligned."""
-        session, phase = self._session, self._session.training.phase
+        phase = self._session.training.phase
         names = {
             ControlName.TOUCH: "hint.checkpoint" if phase is Phase.VERIFYING else "hint.next step",
             ControlName.UNDO: "hint.judge",
@@ -119,9 +117,8 @@ class ProcedureScreen(ArmScreen):
         }
         if phase is not Phase.VERIFYING:
             del names[ControlName.UNDO]
-        text = session.texts.again(session.training.instruction)
         return self._shown(
-            ScreenMessage(text, Tone.WARNING if self._is_refused else Tone.GOOD),
+            self._instructed(Tone.WARNING if self._is_refused else Tone.GOOD),
             self._status(),
             self._hints(self._moving_hints(phase), names, can_tilt=phase is Phase.ALIGNING),
             errors=self._marks(),

@@ -177,34 +177,27 @@ class TrialScreen(ArmScreen):
         session = self._session
         training = session.training
         if training.is_tracing and not self._is_refused:
-            tone = Tone.GOOD if training.phase is Phase.COMPLETE else Tone.PLAIN
-            return ScreenMessage(session.texts.again(training.instruction), tone)
+            return self._instructed(Tone.GOOD if training.phase is Phase.COMPLETE else Tone.PLAIN)
         if training.phase is Phase.COMPLETE:
-            key = session.operator.label(ControlName.TOUCH)
-            text = session.say(
-                "work.complete", trainee=training.trainee, count=len(training.touches), touch=key
-            )
-            return ScreenMessage(text, Tone.GOOD)
+            key, count = session.operator.label(ControlName.TOUCH), len(training.touches)
+            who = training.trainee
+            return self._message("work.complete", Tone.GOOD, trainee=who, count=count, touch=key)
         is_on_skin = session.state.touch is TouchStage.ON_SKIN
         has_gone_on = is_on_skin and distance(session.tip, self._arm.refused_at) > ELSEWHERE_M
         if self._is_refused and not has_gone_on:
-            return ScreenMessage(session.texts.again(training.instruction), Tone.WARNING)
+            return self._instructed(Tone.WARNING)
         if is_on_skin:
-            key = session.operator.label(ControlName.TOUCH)
-            return ScreenMessage(session.say("work.on skin", touch=key), Tone.GOOD)
+            return self._on_skin()
         if self._is_off_the_path():
-            text = session.say(
-                "work.off the way", trainee=training.trainee, point=training.next_point
-            )
-            return ScreenMessage(text, Tone.WARNING)
+            who, point = training.trainee, training.next_point
+            return self._message("work.off the way", Tone.WARNING, trainee=who, point=point)
         last = training.touches[-1] if training.touches else None
         if training.task == TRIAL_RUN and last is not None and last.label in self._points:
             # Where touches are scored, nothing says how exact they are before the registration.
             error_mm = MM_PER_M * distance(last.position, self._points[last.label])
             if error_mm >= POOR_MM:
-                return ScreenMessage(self._slipped(last.label, error_mm), Tone.WARNING)
-        tone = Tone.GOOD if training.touches else Tone.PLAIN
-        return ScreenMessage(session.texts.again(training.instruction), tone)
+                return self._touched("tutorial.slipped", Tone.WARNING, last.label, error_mm)
+        return self._instructed(Tone.GOOD if training.touches else Tone.PLAIN)
 
     def _status(self) -> list[str]:
         session = self._session

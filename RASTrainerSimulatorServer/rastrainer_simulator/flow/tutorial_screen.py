@@ -15,7 +15,6 @@ from rastrainer_simulator.flow.session.tutorial import (
     DONE_DEG,
     DONE_MM,
     STEPS,
-    WAYS,
     Tutorial,
     TutorialObservation,
     TutorialStep,
@@ -133,7 +132,7 @@ class TutorialScreen(ArmScreen):
             session.view.is_best_wanted = True
         elif control is ControlName.TOUCH and tutorial.may_touch:
             self._play_reply(tutorial.touch(session.state))
-        elif control is ControlName.UNDO and tutorial.may_undo:
+        elif control is ControlName.UNDO and tutorial.asks_for(ControlName.UNDO):
             self._play_reply(tutorial.practice.handle(CommandName.UNDO, session.state))
         elif control in (ControlName.MENU, ControlName.PAUSE):
             self.open_menu()
@@ -143,32 +142,27 @@ class TutorialScreen(ArmScreen):
         self._session.pages.show(tutorial_page(self._session))
 
     def _instruction(self) -> ScreenMessage:
-        session, tutorial = self._session, self._tutorial
-        say = session.say
-        if self._way:
-            return ScreenMessage(say("tutorial.homing"))
-        if self._is_refused:
-            sentence = session.texts.again(tutorial.practice.training.state.instruction)
-            return ScreenMessage(sentence, Tone.WARNING)
-        if tutorial.praised is not None:
-            errors = tutorial.practice.errors_mm()
-            if ControlName.TOUCH in STEPS[tutorial.praised].controls and errors:
-                recorded = say("tutorial.recorded", error=errors[-1])
-                return ScreenMessage(recorded, _banner(errors[-1]))
-            return ScreenMessage(say("tutorial.praise"), Tone.GOOD)
-        if tutorial.may_touch and self._state.touch is TouchStage.ON_SKIN:
-            key = session.operator.label(ControlName.TOUCH)
-            return ScreenMessage(say("work.on skin", touch=key), Tone.GOOD)
-        off_mm = tutorial.practice.off_center_mm(session.state)
-        if tutorial.may_touch and off_mm is not None:
-            point = tutorial.practice.training.state.next_point
-            text = say("tutorial.center", point=point, distance=f"{off_mm:.0f}")
-            return ScreenMessage(text, Tone.WARNING)
+        tutorial = self._tutorial
         practice, errors = tutorial.practice.training.state, tutorial.practice.errors_mm()
+        if self._way:
+            return self._message("tutorial.homing")
+        if self._is_refused:
+            return self._instructed(Tone.WARNING)
+        if tutorial.praised is not None:
+            if ControlName.TOUCH in STEPS[tutorial.praised].controls and errors:
+                error = errors[-1]
+                return self._message("tutorial.recorded", _banner(error), error=error)
+            return self._message("tutorial.praise", Tone.GOOD)
+        if tutorial.may_touch and self._state.touch is TouchStage.ON_SKIN:
+            return self._on_skin()
+        off_mm = tutorial.practice.off_center_mm(self._session.state)
+        if tutorial.may_touch and off_mm is not None:
+            off, point = f"{off_mm:.0f}", practice.next_point
+            return self._message("tutorial.center", Tone.WARNING, point=point, distance=off)
         if tutorial.step is TutorialStep.GUIDED and errors:
             key = "tutorial.slipped" if errors[-1] >= POOR_MM else "tutorial.touched"
-            slip = self._slipped(practice.touches[-1].label, errors[-1], key)
-            return ScreenMessage(slip, _banner(errors[-1]))
+            label = practice.touches[-1].label
+            return self._touched(key, _banner(errors[-1]), label, errors[-1])
         is_on_point = self._state.touch in (TouchStage.ON_SKIN, TouchStage.PRESSED)
         is_lifted = tutorial.step is TutorialStep.TOUCH and not is_on_point
         return ScreenMessage(self._sentence(TutorialStep.LOWER if is_lifted else tutorial.step))
@@ -198,7 +192,7 @@ class TutorialScreen(ArmScreen):
         names: dict[ControlName, str] = {}
         if step is TutorialStep.TURN_VIEW:
             moving.append(Hint(operator.pair_label(*controls), say("hint.turn_view")))
-        elif step in WAYS or step is TutorialStep.LOOK_AROUND:
+        elif STEPS[step].way is not None or step is TutorialStep.LOOK_AROUND:
             (control,) = controls
             moving.append(Hint(operator.label(control), say(f"control.{control.value}")))
         else:
@@ -221,13 +215,9 @@ class TutorialScreen(ArmScreen):
         if step is None:
             return ""
         session = self._session
-        controls = STEPS[step].controls
+        controls, operator = STEPS[step].controls, session.operator
         is_pair = step is TutorialStep.TURN_VIEW
-        name = (
-            session.operator.pair_label(*controls)
-            if is_pair
-            else session.operator.label(controls[0])
-        )
+        name = operator.pair_label(*controls) if is_pair else operator.label(controls[0])
         key = f"tutorial.{step.value}"
         for variant in (session.operator.learned(session.mode).value, session.preferences.axes):
             if f"{key}.{variant}" in session.texts:

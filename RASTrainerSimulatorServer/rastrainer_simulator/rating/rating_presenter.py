@@ -17,7 +17,7 @@ from rastrainer_simulator.flow.session.open_pages import (
     page_kind,
 )
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice
+from rastrainer_simulator.input.inputs import ControlContext, InputDevice, button_in_menu
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 from rastrainer_simulator.presentation.screen import Fact, Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.rating.rating_work import RatingWork
@@ -27,7 +27,6 @@ from rastrainer_simulator.state import StepResult
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label, pair_label
 
 _REPEATED = ("ArrowLeft", "ArrowRight")
-_IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlName.BACK}
 
 
 class RatingPresenter(ReplayPresenter):
@@ -117,9 +116,8 @@ class RatingPresenter(ReplayPresenter):
         """Process a button of an XR controller, or of a touch screen."""
         if self.pages.top is None:
             super().on_press(view, control)
-        elif control in ControlName._value2member_map_:
-            name = ControlName(control)
-            self._try(lambda: self.pages.pressed(_IN_MENUS.get(name, name)))
+        elif (name := button_in_menu(control)) is not None:
+            self._try(partial(self.pages.pressed, name))
 
     def on_item(self, view: int, name: str) -> None:  # noqa: ARG002
         """Process a click on an item of the page, or on the hint that leads to the form."""

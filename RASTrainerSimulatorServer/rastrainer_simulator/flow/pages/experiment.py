@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from concurrent.futures import Future
 from functools import partial
+from typing import Any
 
 from rastrainer.protocol import TRIAL_RUN, Mode, StepKind, TutorialRule
 from rastrainer.scenario.library import ListedScenario
@@ -20,18 +21,7 @@ from rastrainer_simulator.flow.pages.trainee_id import (
     questionnaire_page,
 )
 from rastrainer_simulator.flow.pages.trial_review import own_trials_page
-from rastrainer_simulator.flow.session.chosen_trial import (
-    assignment_obstacle,
-    has_learned,
-    needs_tutorial,
-    obstacle,
-    offered_method,
-    skippable,
-    start_task,
-    tutorial_obstacle,
-    tutorial_rule,
-    usual_id,
-)
+from rastrainer_simulator.flow.session import chosen_trial
 from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow, page_kind
 from rastrainer_simulator.flow.session.session import SessionPage, TrainingSession
 from rastrainer_simulator.input.inputs import SourceKind
@@ -52,7 +42,7 @@ class ExperimentPage(SessionPage):
 
     def __init__(self, session: TrainingSession, first: str = "") -> None:
         super().__init__(session)
-        self._usual_id = "" if session.trainee_id else usual_id(session)
+        self._usual_id = "" if session.trainee_id else chosen_trial.usual_id(session)
         session.trainee = self._usual_id or session.trainee
         self._first = first or self._next_task()
 
@@ -76,26 +66,21 @@ class ExperimentPage(SessionPage):
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
             yield self.button("answer", partial(self._open_questionnaire, step))
         yield from self._trainee()
-        modes, shown = [mode.value for mode in Mode], say(f"mode.{session.mode}")
-        yield self.choice("mode", modes, session.mode, partial(setattr, session, "mode"), shown)
+        modes, choose = [mode.value for mode in Mode], partial(partial, setattr, session)
+        yield self.choice("mode", modes, session.mode, choose("mode"), say(f"mode.{session.mode}"))
         yield self.button("scenario", self._open_heads, value=session.scenario.title)
-        methods, offered = playable_methods(session.scenario), offered_method(session)
-        is_free = step is None
+        methods, offered = playable_methods(session.scenario), chosen_trial.offered_method(session)
+        others: dict[str, Any] = {"is_enabled": step is None}
         if len(methods) > 1:
             method = offered if step is None else method_of(step.method)
-            shown, help_ = say(f"method.{method.value}"), say("experiment.method help")
-            choose = partial(setattr, session, "method")
-            yield self.choice(
-                "method", methods, offered, choose, shown, is_enabled=is_free, help=help_
-            )
+            others["help"], shown = say("experiment.method help"), say(f"method.{method.value}")
+            yield self.choice("method", methods, offered, choose("method"), shown, **others)
         names = ["", *(each.name for each in session.scenario.procedures)]
         chosen = session.procedure if session.procedure in names else ""
         if len(names) > 1:
+            others["help"] = say("experiment.procedure help")
             shown = session.procedure_title(chosen if step is None else step.procedure)
-            choose, help_ = partial(setattr, session, "procedure"), say("experiment.procedure help")
-            yield self.choice(
-                "procedure", names, chosen, choose, shown, is_enabled=is_free, help=help_
-            )
+            yield self.choice("procedure", names, chosen, choose("procedure"), shown, **others)
 
     def _open_heads(self) -> None:
         session = self.session
@@ -129,9 +114,9 @@ class ExperimentPage(SessionPage):
             summary, advice = words.summary(curriculum), words.advice(curriculum)
             opening = self.open_page(assignments_page)
             yield self.button("assignments", opening, value=summary, help=advice)
-        if tutorial_rule(session) is not TutorialRule.SKIPPED:
-            reason = tutorial_obstacle(session)
-            is_done = has_learned(session)
+        if chosen_trial.tutorial_rule(session) is not TutorialRule.SKIPPED:
+            reason = chosen_trial.tutorial_obstacle(session)
+            is_done = chosen_trial.has_learned(session)
             yield self.button(
                 "tutorial",
                 session.begin_tutorial,
@@ -139,7 +124,7 @@ class ExperimentPage(SessionPage):
                 is_enabled=not reason,
                 help=reason or self.say("experiment.tutorial help"),
             )
-        what = skippable(session)
+        what = chosen_trial.skippable(session)
         if what:
             label = self.say(f"experiment.skip {what}")
             yield self.button("skip", partial(self._skip, what), label)
@@ -158,11 +143,11 @@ class ExperimentPage(SessionPage):
 
     def _task(self, name: str) -> PageRow:
         session = self.session
-        reason = obstacle(session, name)
+        reason = chosen_trial.obstacle(session, name)
         outcome = session.outcome_of(name)
         return self.button(
             name,
-            partial(start_task, session, name),
+            partial(chosen_trial.start_task, session, name),
             session.task_title(name),
             value=self.say(f"experiment.{outcome}") if outcome else "",
             is_enabled=not reason,
@@ -174,18 +159,18 @@ class ExperimentPage(SessionPage):
         session, step = self.session, self.session.step
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
             return "answer"
-        if needs_tutorial(session) and not tutorial_obstacle(session):
+        if chosen_trial.needs_tutorial(session) and not chosen_trial.tutorial_obstacle(session):
             return "tutorial"
         curriculum = session.curriculum
         best = None if curriculum is None else curriculum.find(curriculum.next)
-        if best is not None and not assignment_obstacle(session, best):
+        if best is not None and not chosen_trial.assignment_obstacle(session, best):
             return "assignments"
         outcomes = ("", "failed") if step is None else ("",)
         trainee, head = session.trainee_id, session.scenario.name
         for name in (task.name for task in session.scenario.tasks):
             is_left_out = name == TRIAL_RUN and session.history.needs_no_trial_run(trainee, head)
             is_to_do = session.outcome_of(name) in outcomes and not is_left_out
-            if is_to_do and not obstacle(session, name):
+            if is_to_do and not chosen_trial.obstacle(session, name):
                 return name
         return "mode" if trainee else ""
 
@@ -256,7 +241,7 @@ def assignments_page(page: SessionPage) -> PageContent:
         return PageContent(rows=(back,))
 
     def row(each: AssignmentStanding) -> PageRow:
-        reason = assignment_obstacle(session, each)
+        reason = chosen_trial.assignment_obstacle(session, each)
         return page.button(
             _ASSIGNMENT + each.name,
             partial(begin, each),
@@ -269,7 +254,7 @@ def assignments_page(page: SessionPage) -> PageContent:
     def begin(each: AssignmentStanding) -> None:
         session.mode = each.mode or session.mode
         session.method, session.procedure = method_of(each.method), each.procedure
-        start_task(session, each.task)
+        chosen_trial.start_task(session, each.task)
 
     said = (curriculum.title, words.advice(curriculum))
     rows = (*map(row, curriculum.assignments), back)

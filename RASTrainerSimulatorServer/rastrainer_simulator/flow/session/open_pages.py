@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 from rastrainer_simulator.input.inputs import ControlName, InputDevice
@@ -76,11 +77,13 @@ class Page(Generic[S]):
 
     Attributes:
         arguments, values: what the functions of a `page_kind` are given; they may change values.
+        focus: name of the row that has the focus.
         is_private: whether its rows are only for the views of who operates.
         pause_goes_back: whether the control that pauses, which opened the page, also closes it.
     """
 
     name: str = ""
+    focus: str = ""
     is_private: ClassVar[bool] = False
     pause_goes_back: ClassVar[bool] = False
 
@@ -183,7 +186,6 @@ class OpenPages:
     def __init__(self, happened: Callable[[FeedbackEvent], None]) -> None:
         self._happened = happened
         self._open: list[Page[Any]] = []
-        self._focus: list[str] = []
         self._grace_s = 0.0
 
     @property
@@ -206,14 +208,12 @@ class OpenPages:
 
     def open(self, page: Page[Any], ignore_input_briefly: bool = False) -> None:
         """Open a page over the others; with a grace time where it opens automatically."""
-        first = page.content().first
+        page.focus = page.content().first
         self._grace_s = GRACE_S if ignore_input_briefly else 0.0
         self._open.append(page)
-        self._focus.append(first)
 
     def close(self) -> None:
         if self._open:
-            self._focus.pop()
             self._open.pop().closed()
 
     def replace(self, page: Page[Any]) -> None:
@@ -244,9 +244,7 @@ class OpenPages:
         elif control in _STEPS:
             row = self._row()
             if row is not None and row.item.kind is ItemKind.CHOICE:
-                self._happened(FeedbackEvent.FOCUS if row.item.is_enabled else FeedbackEvent.ERROR)
-                if row.item.is_enabled:
-                    row.step(_STEPS[control])
+                self._act(row, FeedbackEvent.FOCUS, partial(row.step, _STEPS[control]))
         elif control is ControlName.ACCEPT:
             self.choose(self._focused(page.content().rows))
         elif control is ControlName.PAUSE and page.pause_goes_back:
@@ -266,16 +264,14 @@ class OpenPages:
             self._happened(FeedbackEvent.FOCUS)
 
     def focus(self, name: str) -> None:
-        if self._focus:
-            self._focus[-1] = name
+        if self.top is not None:
+            self.top.focus = name
 
     def choose(self, name: str) -> None:
         row = self._row(name)
         if row is not None:
             self.focus(name)
-            self._happened(FeedbackEvent.ACCEPT if row.item.is_enabled else FeedbackEvent.ERROR)
-            if row.item.is_enabled:
-                row.accept()
+            self._act(row, FeedbackEvent.ACCEPT, row.accept)
 
     def write(self, name: str, value: str) -> None:
         row = self._row(name)
@@ -293,11 +289,15 @@ class OpenPages:
         value = row.item.value
         return row.item.name, value[:-1] if is_deleting else value + text
 
+    def _act(self, row: PageRow, felt: FeedbackEvent, act: Callable[[], object]) -> None:
+        self._happened(felt if row.item.is_enabled else FeedbackEvent.ERROR)
+        if row.item.is_enabled:
+            act()
+
     def _row(self, name: str | None = None) -> PageRow | None:
         """Return a row by its name; without a name, the row that has the focus."""
         rows = () if self.top is None else self.top.content().rows
-        if rows and name is None:
-            name = self._focused(rows)
+        name = self._focused(rows) if name is None else name
         return next((row for row in rows if row.item.name == name), None)
 
     def _focused(self, rows: Sequence[PageRow]) -> str:
@@ -306,7 +306,7 @@ class OpenPages:
             return ""
         items = [row.item for row in rows if row.item.kind is not ItemKind.AXIS]
         names = [item.name for item in items]
-        if self._focus[-1] in names:
-            return self._focus[-1]
+        if self.top is not None and self.top.focus in names:
+            return self.top.focus
         chosen = next((item.name for item in items if item.is_enabled), "")
         return chosen or (names[0] if names else "")

@@ -32,7 +32,6 @@ from rastrainer_simulator.flow.session.preferences import (
 from rastrainer_simulator.flow.session.services import FlowServices, SimulationReload
 from rastrainer_simulator.flow.session.trace_places import TracePlaces
 from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
-from rastrainer_simulator.flow.session.trial_view import TrialView
 from rastrainer_simulator.flow.session.tutorial import Tutorial
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, Bindings, write_bindings
 from rastrainer_simulator.input.controls import Controls
@@ -47,6 +46,7 @@ from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from rastrainer_simulator.training.local_scorer import LocalScorer
 from rastrainer_simulator.trial_state import ProcedureState
 from rastrainer_simulator.vectors import Vector, in_meters
+from rastrainer_simulator.viewpoint.trial_view import TrialView
 from rastrainer_simulator.viewpoint.view_control import Orbit
 
 _log = logging.getLogger(__name__)
@@ -205,8 +205,8 @@ class TrainingSession:
         if arguments is not None:
             self.tutorial = Tutorial(setup, self.state, arguments, point)
             self.practiced = task, point
-            practice = self.tutorial.practice
-            self.view.begin(setup, practice.training.truth, practice.shown(self.state))
+            self.view.begin(setup, self.tutorial.practice.shown(self.state))
+            self.view.control.reset()
             self.view.control.go(TUTORIAL_VIEW)
             self.pages.show(None)
 

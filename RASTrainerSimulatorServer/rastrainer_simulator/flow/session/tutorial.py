@@ -63,15 +63,6 @@ class TutorialStep(str, Enum):
 
 
 _OF_VIEW = (TutorialStep.TURN_VIEW, TutorialStep.LOOK_AROUND, TutorialStep.BEST_VIEW)
-WITH_POINTS = (
-    TutorialStep.BEST_VIEW,
-    TutorialStep.LOWER,
-    TutorialStep.TOUCH,
-    TutorialStep.UNDO,
-    TutorialStep.PAUSE,
-    TutorialStep.GUIDED,
-)
-"""Steps in which the next point is marked."""
 OF_PRACTICE = (TutorialStep.AGAIN,)
 """The only step where one point of a trial is practiced."""
 
@@ -118,12 +109,14 @@ class StepRule:
     """The controls that do a step, how much there is to do, and the key of what says how far it is.
 
     The step's sentence names the first control, or the first two as a pair. Where slow motion is
-    among them, the tip may go anywhere.
+    among them, the tip may go anywhere. `way` is right, forward and up of a step that moves the
+    tip in one direction.
     """
 
     controls: tuple[ControlName, ...]
     goal: float = 1.0
     shown: str = ""
+    way: Vector | None = None
 
 
 _CAREFULLY = (ControlName.FINE, ControlName.BEST_VIEW)
@@ -131,12 +124,12 @@ _TURNING = (ControlName.VIEW_LEFT, ControlName.VIEW_RIGHT)
 _TOUCHING = (ControlName.TOUCH, *_CAREFULLY)
 _REPEATING = (ControlName.TOUCH, ControlName.UNDO, *_CAREFULLY)
 STEPS: Mapping[TutorialStep, StepRule] = {
-    TutorialStep.RIGHT: StepRule((ControlName.MOVE_RIGHT,), MOVE_MM, DONE_MM),
-    TutorialStep.LEFT: StepRule((ControlName.MOVE_LEFT,), MOVE_MM, DONE_MM),
-    TutorialStep.FORWARD: StepRule((ControlName.MOVE_FORWARD,), MOVE_MM, DONE_MM),
-    TutorialStep.BACK: StepRule((ControlName.MOVE_BACK,), MOVE_MM, DONE_MM),
-    TutorialStep.UP: StepRule((ControlName.MOVE_UP,), MOVE_MM, DONE_MM),
-    TutorialStep.DOWN: StepRule((ControlName.MOVE_DOWN,), MOVE_MM, DONE_MM),
+    TutorialStep.RIGHT: StepRule((ControlName.MOVE_RIGHT,), MOVE_MM, DONE_MM, (1.0, 0.0, 0.0)),
+    TutorialStep.LEFT: StepRule((ControlName.MOVE_LEFT,), MOVE_MM, DONE_MM, (-1.0, 0.0, 0.0)),
+    TutorialStep.FORWARD: StepRule((ControlName.MOVE_FORWARD,), MOVE_MM, DONE_MM, (0.0, 1.0, 0.0)),
+    TutorialStep.BACK: StepRule((ControlName.MOVE_BACK,), MOVE_MM, DONE_MM, (0.0, -1.0, 0.0)),
+    TutorialStep.UP: StepRule((ControlName.MOVE_UP,), MOVE_MM, DONE_MM, (0.0, 0.0, 1.0)),
+    TutorialStep.DOWN: StepRule((ControlName.MOVE_DOWN,), MOVE_MM, DONE_MM, (0.0, 0.0, -1.0)),
     TutorialStep.SLOW: StepRule((ControlName.FINE,), SLOW_MM, DONE_MM),
     TutorialStep.TURN_VIEW: StepRule(_TURNING, TURN_DEG, DONE_DEG),
     TutorialStep.LOOK_AROUND: StepRule((ControlName.MOVE_FORWARD,), LOOK_DEG, DONE_DEG),
@@ -148,15 +141,6 @@ STEPS: Mapping[TutorialStep, StepRule] = {
     TutorialStep.GUIDED: StepRule(_REPEATING, GUIDED_TOUCHES, "tutorial.done points"),
     TutorialStep.AGAIN: StepRule(_TOUCHING),
 }
-WAYS: Mapping[TutorialStep, Vector] = {
-    TutorialStep.RIGHT: (1.0, 0.0, 0.0),
-    TutorialStep.LEFT: (-1.0, 0.0, 0.0),
-    TutorialStep.FORWARD: (0.0, 1.0, 0.0),
-    TutorialStep.BACK: (0.0, -1.0, 0.0),
-    TutorialStep.UP: (0.0, 0.0, 1.0),
-    TutorialStep.DOWN: (0.0, 0.0, -1.0),
-}
-"""Right, forward and up of the steps that move the tip in one direction."""
 
 
 def amount_done(
@@ -189,9 +173,11 @@ def amount_done(
             return float(now.has_paused)
         case TutorialStep.TOUCH | TutorialStep.GUIDED | TutorialStep.AGAIN:
             return now.touched
+    way = STEPS[step].way
+    assert way is not None, "all other steps move the tip"
     # Since the tip last moved the other way.
-    way = now.axes.to_world(WAYS[step])
-    return max(0.0, done + MM_PER_M * dot(subtract(now.tip, before.tip), way))
+    moved = subtract(now.tip, before.tip)
+    return max(0.0, done + MM_PER_M * dot(moved, now.axes.to_world(way)))
 
 
 _NOT_MOVED = Perturbation(0.0, 0.0, 0.0)
@@ -356,13 +342,9 @@ class Tutorial:
 
     @property
     def may_touch(self) -> bool:
-        return self.step is TutorialStep.LOWER or self._asks_for(ControlName.TOUCH)
+        return self.step is TutorialStep.LOWER or self.asks_for(ControlName.TOUCH)
 
-    @property
-    def may_undo(self) -> bool:
-        return self._asks_for(ControlName.UNDO)
-
-    def _asks_for(self, control: ControlName) -> bool:
+    def asks_for(self, control: ControlName) -> bool:
         return self.step is not None and control in STEPS[self.step].controls
 
     def use(self, device: SourceKind) -> None:
@@ -378,7 +360,8 @@ class Tutorial:
         step = self.step
         if step is None:
             return None
-        if step in WITH_POINTS and not self._first.has_points:
+        if step in (TutorialStep.BEST_VIEW, TutorialStep.LOWER):
+            # From here on, the next point is marked.
             self._first.has_points = True
         first = self._first_seen or before
         if first.yaw_deg is None and before.yaw_deg is not None:
