@@ -139,10 +139,9 @@ class ArmScreen:
 
     def _movement_hints(self) -> tuple[Hint, ...]:
         session = self._session
-        up_and_down = session.operator.pair_label(ControlName.MOVE_UP, ControlName.MOVE_DOWN)
         return (
             Hint(session.operator.stick_label(_LEVEL), session.say("hint.move")),
-            Hint(up_and_down, session.say("hint.up_and_down")),
+            session.operator.hint("hint.up_and_down", ControlName.MOVE_UP, ControlName.MOVE_DOWN),
         )
 
     def _hints(
@@ -152,14 +151,13 @@ class ArmScreen:
         say, sticks = session.say, session.screen_sticks
         hints = list(moving)
         for control, key in names.items():
-            if control is not ControlName.FINE:
-                hints.append(session.operator.hint(control, key))
-            elif operator.steers_by_mouse:
+            item = None
+            if control is ControlName.FINE and operator.steers_by_mouse:
                 # A mouse switches on and off the control that other devices hold.
                 key = "hint.on" if sticks.is_slow else "hint.off"
-                hints.append(session.operator.hint(control, key))
-            else:
-                hints.append(Hint(operator.label(control), say("hint.fine")))
+            elif control is ControlName.FINE:
+                key, item = "hint.fine", ""
+            hints.append(operator.hint(key, control, item=item))
         if operator.is_one_of(SourceKind.MOUSE):
             action = say("hint.hide sticks" if sticks.is_shown else "hint.sticks")
             hints.append(Hint(say("hint.mouse"), action, PRESS + SHOW))

@@ -27,7 +27,7 @@ from rastrainer_simulator.flow.trial_screen import (
 from rastrainer_simulator.flow.tutorial_screen import TutorialScreen
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.feedback_event import touch_feedback
-from rastrainer_simulator.presentation.screen import Hint, Menu, Screen, ScreenMessage, Tone
+from rastrainer_simulator.presentation.screen import Menu, Screen, ScreenMessage, Tone
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.state import Answer, SimulationState, StepResult, TouchStage, TrialResult
 from rastrainer_simulator.texts.texts import key_of
@@ -170,15 +170,15 @@ class Flow:
         elif key_of(said) in tones:
             why = (ScreenMessage(session.texts.again(said), tones[key_of(said)]),)
         in_head = shown if self._procedure_screen.is_open else Screen()
-        choose = session.operator.pair_label(ControlName.UP, ControlName.DOWN)
+        hint = session.operator.hint
         return Screen(
             menu=menu,
             warnings=why,
             status=shown.status,
             hints=(
-                Hint(choose, say("hint.choose")),
-                session.operator.hint(ControlName.ACCEPT, "hint.accept"),
-                session.operator.hint(ControlName.BACK, "hint.back"),
+                hint("hint.choose", ControlName.UP, ControlName.DOWN),
+                hint("hint.accept", ControlName.ACCEPT),
+                hint("hint.back", ControlName.BACK),
             ),
             errors=in_head.errors,
             is_head_clear=in_head.is_head_clear,

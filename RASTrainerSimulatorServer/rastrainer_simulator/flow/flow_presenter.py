@@ -138,7 +138,7 @@ class FlowPresenter(Presenter):
         training, curriculum = session.training, session.curriculum
         is_open = session.has_open_trial
         trainee = training.trainee if is_open else session.trainee_id
-        scores = [trial.score for trial in session.history.of(trainee) if not trial.is_aborted]
+        scores = [trial.score for trial in session.history.own(trainee) if not trial.is_aborted]
         wrong = (each for each in screen.warnings if each.tone in (Tone.WARNING, Tone.ERROR))
         return Seat(
             trainee=trainee,

@@ -188,19 +188,17 @@ class ProcedureScreen(ArmScreen):
 
     def _moving_hints(self, phase: Phase) -> tuple[Hint, ...]:
         """Return the functions of the sticks; in a headset only those not drawn in the hands."""
-        session, say = self._session, self._session.say
-        up_and_down = session.operator.pair_label(ControlName.MOVE_DOWN, ControlName.MOVE_UP)
+        operator, say = self._session.operator, self._session.say
         if phase in FED:
-            return (Hint(up_and_down, say("hint.feed")),)
-        if session.operator.is_one_of(SourceKind.XR):
-            is_aligning = phase is Phase.ALIGNING
+            return (operator.hint("hint.feed", ControlName.MOVE_DOWN, ControlName.MOVE_UP),)
+        is_aligning = phase is Phase.ALIGNING
+        if operator.is_one_of(SourceKind.XR):
             return (Hint(say("headset.tilt"), say("hint.tilt")),) if is_aligning else ()
-        if phase is not Phase.ALIGNING:
-            return self._movement_hints()
-        turn = session.operator.pair_label(ControlName.TURN_LEFT, ControlName.TURN_RIGHT)
-        tilt = session.operator.pair_label(ControlName.TURN_DOWN, ControlName.TURN_UP)
-        turning = (Hint(turn, say("hint.turn")), Hint(tilt, say("hint.tilt")))
-        return (*self._movement_hints(), *turning)
+        turning = (
+            operator.hint("hint.turn", ControlName.TURN_LEFT, ControlName.TURN_RIGHT),
+            operator.hint("hint.tilt", ControlName.TURN_DOWN, ControlName.TURN_UP),
+        )
+        return (*self._movement_hints(), *(turning if is_aligning else ()))
 
 
 STAND_OFF_MM = 30.0

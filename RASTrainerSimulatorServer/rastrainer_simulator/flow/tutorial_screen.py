@@ -14,7 +14,6 @@ from rastrainer_simulator.flow.session.tutorial import (
     CENTERED_M,
     DONE_DEG,
     DONE_MM,
-    STEPS,
     Tutorial,
     TutorialObservation,
     TutorialStep,
@@ -105,7 +104,7 @@ class TutorialScreen(ArmScreen):
         done = tutorial.advance(dt, seen)
         if done is not None:
             self._has_paused = False
-            is_heard_anyway = {ControlName.TOUCH, ControlName.UNDO} & {*STEPS[done].controls}
+            is_heard_anyway = {ControlName.TOUCH, ControlName.UNDO} & {*done.controls}
             if not is_heard_anyway:
                 session.happened(FeedbackEvent.STEP)
 
@@ -149,7 +148,7 @@ class TutorialScreen(ArmScreen):
         if self._is_refused:
             return self._instructed(Tone.WARNING)
         if tutorial.praised is not None:
-            if ControlName.TOUCH in STEPS[tutorial.praised].controls and errors:
+            if ControlName.TOUCH in tutorial.praised.controls and errors:
                 error = errors[-1]
                 return self._message("tutorial.recorded", _banner(error), error=error)
             return self._message("tutorial.praise", Tone.GOOD)
@@ -172,7 +171,7 @@ class TutorialScreen(ArmScreen):
         step, steps = tutorial.place
         place = () if tutorial.practiced else (say("tutorial.place", step=step, steps=steps),)
         facts: list[str] = [self._session.practice_title, *place]
-        key = STEPS[tutorial.step].shown if tutorial.step is not None else ""
+        key = tutorial.step.shown if tutorial.step is not None else ""
         if key and tutorial.praised is None:
             done, goal = tutorial.amount
             coarse = {DONE_MM: STEP_MM, DONE_DEG: STEP_DEG}.get(key, 1)
@@ -184,17 +183,17 @@ class TutorialScreen(ArmScreen):
 
     def _all_hints(self) -> tuple[Hint, ...]:
         session, step = self._session, self._tutorial.step
-        say, operator = session.say, session.operator
+        operator = session.operator
         if step is None:
             return ()
-        controls = STEPS[step].controls
+        controls = step.controls
         moving: list[Hint] = []
         names: dict[ControlName, str] = {}
         if step is TutorialStep.TURN_VIEW:
-            moving.append(Hint(operator.pair_label(*controls), say("hint.turn_view")))
-        elif STEPS[step].way is not None or step is TutorialStep.LOOK_AROUND:
+            moving.append(operator.hint("hint.turn_view", *controls))
+        elif step.way is not None or step is TutorialStep.LOOK_AROUND:
             (control,) = controls
-            moving.append(Hint(operator.label(control), say(f"control.{control.value}")))
+            moving.append(operator.hint(f"control.{control.value}", control, item=""))
         else:
             has_view = TutorialStep.BEST_VIEW in self._tutorial.steps
             there = [each for each in controls if has_view or each is not ControlName.BEST_VIEW]
@@ -215,9 +214,9 @@ class TutorialScreen(ArmScreen):
         if step is None:
             return ""
         session = self._session
-        controls, operator = STEPS[step].controls, session.operator
+        controls = step.controls
         is_pair = step is TutorialStep.TURN_VIEW
-        name = operator.pair_label(*controls) if is_pair else operator.label(controls[0])
+        name = session.operator.label(*(controls if is_pair else controls[:1]))
         key = f"tutorial.{step.value}"
         for variant in (session.operator.learned(session.mode).value, session.preferences.axes):
             if f"{key}.{variant}" in session.texts:

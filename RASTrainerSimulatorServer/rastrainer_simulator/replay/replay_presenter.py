@@ -124,7 +124,7 @@ class ReplayPresenter(Presenter):
         super().__init__()
         self._language = language
         self._texts = Texts(LANGUAGES[language])
-        self._held: dict[int, set[str]] = {}
+        self._held: dict[int, Sequence[str]] = {}
         self._key_names: Mapping[str, str] = {}
         self._end = end
         self._play(playback, blinded)
@@ -167,10 +167,11 @@ class ReplayPresenter(Presenter):
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
         """Process the inputs of a gamepad that have just been pressed."""
         inputs = w3c_gamepad_inputs(axes, buttons)
-        down = {name for name, value in inputs.items() if value > PRESSED}
-        held, self._held[view] = self._held.get(view, set()), down
-        for name in filter((down - held).__contains__, inputs):
-            self._press(InputDevice.GAMEPAD, name)
+        down = [name for name, value in inputs.items() if value > PRESSED]
+        held, self._held[view] = self._held.get(view, ()), down
+        for name in down:
+            if name not in held:
+                self._press(InputDevice.GAMEPAD, name)
 
     def on_press(self, view: int, control: str) -> None:  # noqa: ARG002
         self._do(button_in_menu(control))

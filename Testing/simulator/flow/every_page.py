@@ -18,7 +18,6 @@ from rastrainer.protocol import MAX_ASSIGNMENTS, AssignmentState, GoalKind, Phas
 from rastrainer.registration.fits import RIGID
 from rastrainer.study.ratings import FORMS
 from rastrainer.study_messages import AssignmentStanding, CurriculumMessage, StudyStep
-from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.flow import pages, procedure_screen, trial_screen
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.pages import (
@@ -136,14 +135,12 @@ PROCEDURE_SCORED = replace(
 
 OWN_TRIALS = tuple(
     OwnTrial(
-        TrialRow(
-            *("T-001", "desktop", "task-1"),
-            values={"score": 61.0 + number},
-            trial_id=f"trial-{number}",
-            acceptable=True,
-        ),
-        "test-head",
-        f"2026-11-{number + 1:02d}T15:04:05Z",
+        *("T-001", "desktop", "task-1"),
+        values={"score": 61.0 + number},
+        trial_id=f"trial-{number}",
+        acceptable=True,
+        scenario="test-head",
+        started_utc=f"2026-11-{number + 1:02d}T15:04:05Z",
         is_passed=number % 2 == 0,
     )
     for number in range(MOST_TRIALS)

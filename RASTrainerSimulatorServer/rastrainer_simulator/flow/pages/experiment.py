@@ -5,7 +5,7 @@ It opens the lists of heads, and of the assignments of a trainee's curriculum.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from functools import partial
 from typing import Any
@@ -66,7 +66,11 @@ class ExperimentPage(SessionPage):
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
             yield self.button("answer", partial(self._open_questionnaire, step))
         yield from self._trainee()
-        modes, choose = [mode.value for mode in Mode], partial(partial, setattr, session)
+
+        def choose(name: str) -> Callable[[object], None]:
+            return partial(setattr, session, name)
+
+        modes = [mode.value for mode in Mode]
         yield self.choice("mode", modes, session.mode, choose("mode"), say(f"mode.{session.mode}"))
         yield self.button("scenario", self._open_heads, value=session.scenario.title)
         methods, offered = playable_methods(session.scenario), chosen_trial.offered_method(session)

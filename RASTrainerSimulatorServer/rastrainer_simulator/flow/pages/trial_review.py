@@ -13,7 +13,7 @@ from rastrainer_simulator.flow.session.plan_marks import plan_marks, scored_line
 from rastrainer_simulator.flow.session.session import SessionPage, TrainingSession
 from rastrainer_simulator.flow.session.trainee_history import OwnTrial
 from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice, SourceKind
-from rastrainer_simulator.presentation.screen import ErrorArrow, Hint, Screen, ScreenMessage, Tone
+from rastrainer_simulator.presentation.screen import ErrorArrow, Screen, ScreenMessage, Tone
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
 from rastrainer_simulator.replay.replay_presenter import Player, viewer_control
@@ -64,16 +64,15 @@ class ErrorsPage(SessionPage):
                 error_arrow(session.truly_in_world(fiducials[t.label]), t.position)
                 for t in training.touches
             )
-        back = Hint(session.operator.label(ControlName.BACK), self.say("hint.result"), "back")
-        hints: tuple[Hint, ...] = (back,)
+        hint = session.operator.hint
+        hints = [hint("hint.result", ControlName.BACK, item="back")]
         if not session.operator.is_one_of(SourceKind.XR):
             # In a headset the trainee looks around by turning the head.
             pairs = (ControlName.LEFT, ControlName.RIGHT), (ControlName.UP, ControlName.DOWN)
-            turn = self.say("hint.turn_view")
-            hints = (*(Hint(session.operator.pair_label(*pair), turn) for pair in pairs), back)
+            hints = [*(hint("hint.turn_view", *pair) for pair in pairs), *hints]
         return Screen(
             instruction=ScreenMessage(self.content().title),
-            hints=hints,
+            hints=tuple(hints),
             language=session.preferences.language,
             errors=tuple(errors),
             is_head_clear=self._has_lines,
@@ -120,14 +119,13 @@ class ReplayPage(SessionPage):
         """Return the screen of the playback, with the plan of a procedure if it was visible."""
         if self._player is None or self.playback is None:
             return None
-        session = self.session
-        label, pair_label = session.operator.label, session.operator.pair_label
+        session, hint = self.session, self.session.operator.hint
         hints = (
-            session.operator.hint(ControlName.ACCEPT, "hint.play"),
-            Hint(pair_label(ControlName.LEFT, ControlName.RIGHT), self.say("hint.seek")),
-            session.operator.hint(ControlName.UP, "hint.worst"),
-            session.operator.hint(ControlName.CAMERA, "hint.camera"),
-            Hint(label(ControlName.BACK), self.say("hint.result"), "back"),
+            hint("hint.play", ControlName.ACCEPT),
+            hint("hint.seek", ControlName.LEFT, ControlName.RIGHT),
+            hint("hint.worst", ControlName.UP),
+            hint("hint.camera", ControlName.CAMERA),
+            hint("hint.result", ControlName.BACK, item="back"),
         )
         shown = self._player.screen(session.texts, hints, session.preferences.language)
         procedure = self.playback.latest.training.procedure
@@ -193,15 +191,14 @@ def own_trials_page(page: SessionPage) -> PageContent:
             session.pages.open(ReplayPage(session, loading, begins_at_worst=False))
 
     def row(each: OwnTrial) -> PageRow:
-        past = each.past
-        is_shown = each.scenario == session.scenario.name and not past.is_aborted
+        is_shown = each.scenario == session.scenario.name and not each.is_aborted
         verdict = say(_VERDICTS[each.is_passed])
         when = each.started_utc[:16].replace("T", " ")
         return page.button(
-            f"trial {past.trial_id}",
-            partial(show, past.trial_id),
-            f"{session.task_title(past.task)} ({when} UTC)",
-            value=verdict if past.is_aborted else f"{past.score:.0f} / 100, {verdict}",
+            f"trial {each.trial_id}",
+            partial(show, each.trial_id),
+            f"{session.task_title(each.task)} ({when} UTC)",
+            value=verdict if each.is_aborted else f"{each.score:.0f} / 100, {verdict}",
             is_enabled=is_shown,
             help=say("own-trials.help" if is_shown else "own-trials.not shown"),
         )

@@ -86,7 +86,7 @@ class TrainingSession:
         self.history = TraineeHistory(services.records)
         scoring = control_loop.submit, services.records, services.is_slicer_connected
         self.local_scorer = (
-            LocalScorer(*scoring, self.history.of) if services.scores_alone else None
+            LocalScorer(*scoring, self.history.own) if services.scores_alone else None
         )
         self.happened = happened
         self.pages = OpenPages(happened)
@@ -253,11 +253,8 @@ class TrainingSession:
     def outcome_of(self, task: str) -> str:
         """Return "passed", "failed" or "done" of the trainee's trials of a task; "" of none."""
         trainee, scenario = self.trainee_id, self.scenario.name
-        trials = [
-            each
-            for each in self.history.own(trainee)
-            if (each.past.task, each.scenario) == (task, scenario)
-        ]
+        own = self.history.own(trainee)
+        trials = [each for each in own if (each.task, each.scenario) == (task, scenario)]
         if any(each.is_passed for each in trials):
             return "passed"
         if trials and trials[-1].is_passed is False:
