@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import threading
+from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
@@ -82,9 +82,9 @@ class FlowPresenter(Presenter):
         )
         self._flow = Flow(self._session)
         self.rumble: Callable[[float, float], None] = lambda _strength, _seconds: None
-        self._arriving = threading.Lock()
         self._newest = control_loop.latest
-        self._results: list[StepResult] = []
+        # The control loop's thread adds a tick at one end, ours takes it from the other.
+        self._ticks: deque[StepResult] = deque()
         self._views = OperatedViews()
         self._noted_view: tuple[str, ViewReport] | None = None
         self._since_noted_s = 0.0
@@ -93,7 +93,7 @@ class FlowPresenter(Presenter):
         self._is_changed = True
         self._since_refresh = 0.0
         self.screen = self._flow.screen()
-        self._unsubscribe = control_loop.subscribe(self._take_tick)
+        self._unsubscribe = control_loop.subscribe(self._ticks.append)
 
     def close(self) -> None:
         self._unsubscribe()
@@ -106,15 +106,15 @@ class FlowPresenter(Presenter):
 
     def advance(self, dt: float) -> None:
         # A state ahead of its events would sound the alarm of a contact twice.
-        with self._arriving:
-            results, self._results = self._results, []
-            newest = self._newest
-        for result in results:
-            self._flow.process_tick(result)
-            self._is_changed = True
+        while self._ticks:
+            tick = self._ticks.popleft()
+            self._newest = tick.state
+            if tick.events:
+                self._flow.process_tick(tick)
+                self._is_changed = True
         self.controls.advance(dt)
-        self._await_picture(dt, newest)
-        self._flow.advance(dt, newest)
+        self._await_picture(dt)
+        self._flow.advance(dt, self._newest)
         self._advance_view(dt)
         self._settle()
         self._since_refresh += dt
@@ -264,12 +264,13 @@ class FlowPresenter(Presenter):
             self._is_changed = True
 
     def on_frames(self, view: int, shown: int, dropped: int, refresh_hz: float) -> None:
-        if view not in self._views.joined:
+        joined = self._views.joined.get(view)
+        if joined is None:
             return
-        self._views.joined[view].is_silent = False
+        joined.is_silent = False
         if view != self._views.watched(self.controls.holder):
             return
-        hello = self._views.joined[view].hello
+        hello = joined.hello
         report = DisplayReport(hello.kind, hello.device, refresh_hz, shown, dropped)
         self._control_loop.note_display(report)
 
@@ -334,12 +335,12 @@ class FlowPresenter(Presenter):
         for kind in SourceKind:
             self.controls.forget(self._views.source(kind, view))
 
-    def _await_picture(self, dt: float, newest: SimulationState) -> None:
+    def _await_picture(self, dt: float) -> None:
         session, watched = self._session, self._views.watched(self.controls.holder)
         view = None if watched is None else self._views.joined.get(watched)
         # The views show the newest state only when it has been processed.
         is_replayed = self._flow.playback is not None
-        training = (self.shown.latest if is_replayed else self._flow.shown(newest)).training
+        training = (self.shown.latest if is_replayed else self._flow.shown(self._newest)).training
         task = training.task if training.is_marked else ""
         is_blind = session.goes_on_blind == session.training.trial_id != ""
         if view is not None or not self._views.joined:
@@ -395,13 +396,6 @@ class FlowPresenter(Presenter):
         if changed.kind == "headset":
             kinds = {view.hello.kind for view in self._views.joined.values()}
             self._session.mode = (Mode.HMD if "headset" in kinds else Mode.DESKTOP).value
-
-    def _take_tick(self, result: StepResult) -> None:
-        """Note a tick, and queue what happened in it; called in the control loop's thread."""
-        with self._arriving:
-            self._newest = result.state
-            if result.events:
-                self._results.append(result)
 
     def _settle(self, is_changed: bool = False) -> None:
         self._is_changed = self._is_changed or is_changed
