@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from functools import partial
-from typing import TypeVar
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
@@ -39,7 +37,6 @@ _LISTED = (
     ("pause", (ControlName.PAUSE,)),
     ("menu", (ControlName.MENU,)),
 )
-T = TypeVar("T")
 REMEMBERED = 4
 """Number of inputs shown on the page to try them."""
 
@@ -135,15 +132,11 @@ def bindings_page(page: SessionPage, device: InputDevice, group: str = "work") -
         label = say(f"control.{control.value}")
         return page.button(control.value, listen, label, value=session.texts.listed(inputs))
 
-    def shown(name: str, options: Sequence[T], chosen: T, key: str) -> PageRow:
-        return page.choice(name, options, chosen, partial(page.set_value, name), say(key))
-
+    shown = say(f"bindings.preset.{preset or 'own'}")
     rows = (
-        shown("device", tuple(InputDevice), device, f"device.{device.value}"),
-        page.choice(
-            "preset", tuple(presets), preset, use_preset, say(f"bindings.preset.{preset or 'own'}")
-        ),
-        shown("group", tuple(GROUPS), group, f"bindings.group.{group}"),
+        page.choice("device", tuple(InputDevice), device, say(f"device.{device.value}")),
+        page.choice("preset", tuple(presets), preset, shown, use_preset),
+        page.choice("group", tuple(GROUPS), group, say(f"bindings.group.{group}")),
         *map(control_row, GROUPS[group]),
         page.button("defaults", restore_defaults),
         page.button("back"),

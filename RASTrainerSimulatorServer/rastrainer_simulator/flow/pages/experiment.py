@@ -5,7 +5,7 @@ It opens the lists of heads, and of the assignments of a trainee's curriculum.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import Future
 from functools import partial
 from typing import Any
@@ -61,30 +61,30 @@ class ExperimentPage(SessionPage):
         rows = (*self._choices(), *self._beginnings(), self.button("back"))
         return PageContent(said, rows=rows, trend=trend, first=self._first)
 
+    def set_value(self, name: str, value: Any) -> None:
+        """Choose for the session, not for this page alone."""
+        setattr(self.session, name, value)
+
     def _choices(self) -> Iterator[PageRow]:
         session, step, say = self.session, self.session.step, self.say
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
             yield self.button("answer", partial(self._open_questionnaire, step))
         yield from self._trainee()
-
-        def choose(name: str) -> Callable[[object], None]:
-            return partial(setattr, session, name)
-
         modes = [mode.value for mode in Mode]
-        yield self.choice("mode", modes, session.mode, choose("mode"), say(f"mode.{session.mode}"))
+        yield self.choice("mode", modes, session.mode, say(f"mode.{session.mode}"))
         yield self.button("scenario", self._open_heads, value=session.scenario.title)
         methods, offered = playable_methods(session.scenario), chosen_trial.offered_method(session)
         others: dict[str, Any] = {"is_enabled": step is None}
         if len(methods) > 1:
             method = offered if step is None else method_of(step.method)
             others["help"], shown = say("experiment.method help"), say(f"method.{method.value}")
-            yield self.choice("method", methods, offered, choose("method"), shown, **others)
+            yield self.choice("method", methods, offered, shown, **others)
         names = ["", *(each.name for each in session.scenario.procedures)]
         chosen = session.procedure if session.procedure in names else ""
         if len(names) > 1:
             others["help"] = say("experiment.procedure help")
             shown = session.procedure_title(chosen if step is None else step.procedure)
-            yield self.choice("procedure", names, chosen, choose("procedure"), shown, **others)
+            yield self.choice("procedure", names, chosen, shown, **others)
 
     def _open_heads(self) -> None:
         session = self.session

@@ -88,12 +88,11 @@ def _trajectories_of(details: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
 
 
 @page_kind("procedure-errors")
-def procedure_errors_page(page: SessionPage, number: int = 0) -> PageContent:
+def procedure_errors_page(page: SessionPage, trajectory: int = 0) -> PageContent:
     each = _trajectories_of(procedure_details(page.session.training.result))
-    details = each[number] if each else {}
+    details = each[trajectory] if each else {}
     name, say = _text(details.get("name")), page.say
-    choose = partial(page.set_value, "number")
-    choice = page.choice("trajectory", range(len(each)), number, choose, name)
+    choice = page.choice("trajectory", range(len(each)), trajectory, name)
     lines = page.button("lines", page.open_page(ErrorsPage, True))
     by_robot = details.get("selfAligned") is True
     text = say("procedure-errors.robot text" if by_robot else "procedure-errors.text")

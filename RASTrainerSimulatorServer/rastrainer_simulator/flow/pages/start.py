@@ -61,8 +61,8 @@ def settings_page(page: SessionPage) -> PageContent:
             name,
             preferences.OPTIONS[name],
             chosen,
-            lambda value: session.prefer(**{name: value}),
             shown(name, chosen),
+            lambda value: session.prefer(**{name: value}),
             is_enabled=is_enabled,
             help=help_,
         )

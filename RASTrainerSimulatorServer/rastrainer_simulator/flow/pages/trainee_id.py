@@ -37,8 +37,7 @@ def keyboard_page(page: SessionPage, write: Write, **chosen: str) -> PageContent
         name = f"row{number}"
         here = chosen.get(name, characters[0])
         shown = " ".join(f"[{each}]" if each == here else each for each in characters)
-        choose, label = partial(page.set_value, name), page.say("keyboard.row")
-        choice = page.choice(name, characters, here, choose, shown, label)
+        choice = page.choice(name, characters, here, shown, label=page.say("keyboard.row"))
         return replace(choice, accept=lambda: write(page.session.trainee + here))
 
     others = _delete(page, write), page.button("done")
@@ -95,9 +94,9 @@ def questionnaire_page(page: SessionPage, step: StudyStep, **answers: int) -> Pa
         line = page.say(item.name)
         if item.anchors:
             line = page.say("questionnaire.ends", topic=line, **ends(item.name))
-        mark, choose = answers.get(item.name), partial(page.set_value, item.name)
+        mark = answers.get(item.name)
         shown = UNANSWERED if mark is None else str(mark)
-        return page.choice(item.name, asked.marks, mark, choose, shown, f"{number}. {line}")
+        return page.choice(item.name, asked.marks, mark, shown, label=f"{number}. {line}")
 
     def keep() -> None:
         given = [answers[item.name] for item in asked.items]

@@ -117,12 +117,16 @@ class Page(Generic[S]):
         name: str,
         options: Sequence[T],
         chosen: T,
-        choose: Callable[[T], object],
         shown: str,
+        choose: Callable[[T], object] | None = None,
         label: str = "",
         **others: Any,
     ) -> PageRow:
-        """Return a choice, around the ends; from a value that is no option it goes to an end."""
+        """Return a choice, around the ends; from a value that is no option it goes to an end.
+
+        Without a function, it is among the page's own values.
+        """
+        choose = choose or partial(self.set_value, name)
 
         def step(direction: int) -> None:
             before = -1 if direction > 0 else 0
