@@ -54,7 +54,7 @@ class Alone:
         self._archive = TrialArchive(folder)
         for trial in self.trials:
             analysis = registered_alone(self.ask, trial, scenario)
-            score_alone(self.ask, analysis, scenario, self.history.of(TRAINEE), folder)
+            score_alone(self.ask, analysis, scenario, self.history.own(TRAINEE), folder)
             self.history.changed(TRAINEE, trial)
 
     def ask(self, command, arguments):

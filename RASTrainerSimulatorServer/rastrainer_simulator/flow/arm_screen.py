@@ -10,7 +10,6 @@ from typing import Any
 from rastrainer.commands import CommandName
 from rastrainer.journal.entries import FeedChange, PhaseChange, Reach, Rejected
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.flow.pages.session_page import clickable_hint
 from rastrainer_simulator.flow.session.operator_device import SHOW, TILT
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
@@ -107,23 +106,26 @@ class ArmScreen:
             **others,
         )
 
+    def _message(self, key: str, tone: Tone = Tone.PLAIN, **values: object) -> ScreenMessage:
+        return ScreenMessage(self._session.say(key, **values), tone)
+
+    def _instructed(self, tone: Tone) -> ScreenMessage:
+        """Return the instruction of the trial or the practice itself."""
+        return ScreenMessage(self._session.texts.again(self._state.training.instruction), tone)
+
     def warnings(self) -> tuple[ScreenMessage, ...]:
-        say = self._session.texts.say
         warnings = []
         state = self._state
         if state.touch in (TouchStage.PRESSED, TouchStage.TOO_DEEP):
             depth_mm = DEPTH_STEP_MM * round(MM_PER_M * state.depth / DEPTH_STEP_MM)
             tone = Tone.ERROR if state.touch is TouchStage.TOO_DEEP else Tone.WARNING
-            warnings.append(ScreenMessage(say("warning.pressing", depth=depth_mm), tone))
-        elif state.touch is TouchStage.SHAFT:
-            warnings.append(ScreenMessage(say("warning.shaft"), Tone.ERROR))
-        elif state.touch is TouchStage.ELSEWHERE:
-            warnings.append(ScreenMessage(say("warning.elsewhere"), Tone.ERROR))
+            warnings.append(self._message("warning.pressing", tone, depth=depth_mm))
+        elif state.touch in (TouchStage.SHAFT, TouchStage.ELSEWHERE):
+            warnings.append(self._message(f"warning.{state.touch.value}", Tone.ERROR))
         if self._arm.obstacle:
-            obstacle = say(f"warning.obstacle.{self._arm.obstacle}")
-            warnings.append(ScreenMessage(obstacle, Tone.ERROR))
+            warnings.append(self._message(f"warning.obstacle.{self._arm.obstacle}", Tone.ERROR))
         elif not self._arm.is_within_reach:
-            warnings.append(ScreenMessage(say("warning.reach"), Tone.WARNING))
+            warnings.append(self._message("warning.reach", Tone.WARNING))
         return tuple(warnings)
 
     def _change_camera(self) -> None:
@@ -137,27 +139,25 @@ class ArmScreen:
 
     def _movement_hints(self) -> tuple[Hint, ...]:
         session = self._session
-        up_and_down = session.operator.pair_label(ControlName.MOVE_UP, ControlName.MOVE_DOWN)
         return (
-            Hint(session.operator.stick_label(_LEVEL), session.texts.say("hint.move")),
-            Hint(up_and_down, session.texts.say("hint.up_and_down")),
+            Hint(session.operator.stick_label(_LEVEL), session.say("hint.move")),
+            session.operator.hint("hint.up_and_down", ControlName.MOVE_UP, ControlName.MOVE_DOWN),
         )
 
     def _hints(
         self, moving: Iterable[Hint], names: Mapping[ControlName, str], can_tilt: bool = False
     ) -> tuple[Hint, ...]:
         session, operator = self._session, self._session.operator
-        say, sticks = session.texts.say, session.screen_sticks
+        say, sticks = session.say, session.screen_sticks
         hints = list(moving)
         for control, key in names.items():
-            if control is not ControlName.FINE:
-                hints.append(clickable_hint(session, control, key))
-            elif operator.steers_by_mouse:
+            item = None
+            if control is ControlName.FINE and operator.steers_by_mouse:
                 # A mouse switches on and off the control that other devices hold.
                 key = "hint.on" if sticks.is_slow else "hint.off"
-                hints.append(clickable_hint(session, control, key))
-            else:
-                hints.append(Hint(operator.label(control), say("hint.fine")))
+            elif control is ControlName.FINE:
+                key, item = "hint.fine", ""
+            hints.append(operator.hint(key, control, item=item))
         if operator.is_one_of(SourceKind.MOUSE):
             action = say("hint.hide sticks" if sticks.is_shown else "hint.sticks")
             hints.append(Hint(say("hint.mouse"), action, PRESS + SHOW))
@@ -175,20 +175,26 @@ class ArmScreen:
         session = self._session
         away = MM_PER_M * distance(session.tip, target)
         if away < nearest_mm:
-            return session.texts.say("status.near", name=name, distance=f"{nearest_mm:.0f}")
+            return session.say("status.near", name=name, distance=f"{nearest_mm:.0f}")
         step_mm = STEP_MM if away >= LOOKED_AT_MM else PRACTICED_STEP_MM
         words = direction_words(session.tip, target, self._axes())
-        return session.texts.say(
+        return session.say(
             "status.toward",
             name=name,
             distance=f"{step_mm * round(away / step_mm):.0f}",
-            direction=session.texts.listed(session.texts.say(f"way.{word}") for word in words),
+            direction=session.texts.listed(session.say(f"way.{word}") for word in words),
         )
 
-    def _slipped(self, label: str, error_mm: float, key: str = "tutorial.slipped") -> str:
-        undo = self._session.operator.label(ControlName.UNDO)
-        point, say = self._state.training.next_point, self._session.texts.say
-        return say(key, label=label, error=error_mm, point=point, undo=undo)
+    def _on_skin(self) -> ScreenMessage:
+        touch = self._session.operator.label(ControlName.TOUCH)
+        return self._message("work.on skin", Tone.GOOD, touch=touch)
+
+    def _touched(self, key: str, tone: Tone, label: str, error_mm: float) -> ScreenMessage:
+        undo, point = (
+            self._session.operator.label(ControlName.UNDO),
+            self._state.training.next_point,
+        )
+        return self._message(key, tone, label=label, error=error_mm, point=point, undo=undo)
 
     def _axes(self) -> Axes:
         session = self._session

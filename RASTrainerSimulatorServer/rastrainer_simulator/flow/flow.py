@@ -11,13 +11,12 @@ from rastrainer_simulator.flow.arm_screen import ArmEvents
 from rastrainer_simulator.flow.pages.experiment import open_experiment
 from rastrainer_simulator.flow.pages.introduction import practiced_page, tutorial_done_page
 from rastrainer_simulator.flow.pages.result import ResultPage, waiting_page
-from rastrainer_simulator.flow.pages.session_page import SessionPage, clickable_hint
 from rastrainer_simulator.flow.pages.start import start_page
 from rastrainer_simulator.flow.pages.trial_review import ReplayPage
 from rastrainer_simulator.flow.procedure_screen import ProcedureScreen
 from rastrainer_simulator.flow.session.chosen_trial import begin_ghost, needs_tutorial
 from rastrainer_simulator.flow.session.open_pages import Page
-from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.flow.session.session import SessionPage, TrainingSession
 from rastrainer_simulator.flow.session.tutorial import Tutorial
 from rastrainer_simulator.flow.trial_screen import (
     TrialScreen,
@@ -28,7 +27,7 @@ from rastrainer_simulator.flow.trial_screen import (
 from rastrainer_simulator.flow.tutorial_screen import TutorialScreen
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.feedback_event import touch_feedback
-from rastrainer_simulator.presentation.screen import Hint, Menu, Screen, ScreenMessage, Tone
+from rastrainer_simulator.presentation.screen import Menu, Screen, ScreenMessage, Tone
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.state import Answer, SimulationState, StepResult, TouchStage, TrialResult
 from rastrainer_simulator.texts.texts import key_of
@@ -98,7 +97,7 @@ class Flow:
             session.history.changed(training.trainee, training.trial_id)
         if session.ghost.has_just_loaded():
             if session.ghost.rule is GhostRule.OFF:
-                session.notices.add(session.texts.say("ghost.none"))
+                session.notices.add(session.say("ghost.none"))
             elif session.has_open_trial:
                 self._control_loop.note_display(GhostReport(session.ghost.rule.value))
         is_connected = session.services.is_slicer_connected()
@@ -162,7 +161,7 @@ class Flow:
         )
 
     def _over(self, shown: Screen, page: Page, menu: Menu) -> Screen:
-        session, say = self._session, self._session.texts.say
+        session, say = self._session, self._session.say
         said = session.training.instruction
         why: tuple[ScreenMessage, ...] = ()
         tones = {**dict.fromkeys(INTERRUPTED, Tone.WARNING), NOT_RECORDED: Tone.ERROR}
@@ -171,15 +170,15 @@ class Flow:
         elif key_of(said) in tones:
             why = (ScreenMessage(session.texts.again(said), tones[key_of(said)]),)
         in_head = shown if self._procedure_screen.is_open else Screen()
-        choose = session.operator.pair_label(ControlName.UP, ControlName.DOWN)
+        hint = session.operator.hint
         return Screen(
             menu=menu,
             warnings=why,
             status=shown.status,
             hints=(
-                Hint(choose, say("hint.choose")),
-                clickable_hint(session, ControlName.ACCEPT, "hint.accept"),
-                clickable_hint(session, ControlName.BACK, "hint.back"),
+                hint("hint.choose", ControlName.UP, ControlName.DOWN),
+                hint("hint.accept", ControlName.ACCEPT),
+                hint("hint.back", ControlName.BACK),
             ),
             errors=in_head.errors,
             is_head_clear=in_head.is_head_clear,
@@ -192,7 +191,7 @@ class Flow:
         The answer's `isNeeded` says whether the trial run has to wait for it.
         """
         session = self._session
-        say = session.texts.say
+        say = session.say
         if session.has_open_trial:
             open_ = session.training
             task = session.task_title(open_.task)
@@ -223,7 +222,7 @@ class Flow:
             return
         if tutorial.setup is not self._control_loop.setup:
             session.end_tutorial()
-            session.notices.add(session.texts.say("tutorial.head is gone"), Tone.WARNING)
+            session.notices.add(session.say("tutorial.head is gone"), Tone.WARNING)
             session.pages.show_start()
             return
         self._tutorial_screen.advance(dt)
@@ -277,7 +276,8 @@ class Flow:
             learned = session.history.learned.get(training.trainee)
             if training.task == TRIAL_RUN and learned is not None:
                 self._control_loop.note_display(learned)
-            session.view.begin(session.control_loop.setup, truth, session.state)
+            session.view.begin(session.control_loop.setup, session.state)
+            session.view.control.reset()
             is_led = training.trace is not None and guidance is not Guidance.NONE
             traced = training.trial_id, session.control_loop.setup, truth
             session.places.begin(traced if is_led else None)

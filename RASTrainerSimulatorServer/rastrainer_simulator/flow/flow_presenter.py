@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import threading
+from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
@@ -26,12 +26,10 @@ from rastrainer_simulator.input.inputs import (
     InputDevice,
     Source,
     SourceKind,
+    button_in_menu,
 )
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.presentation.feedback_event import (
-    FeedbackEvent,
-    feedback_of,
-)
+from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 from rastrainer_simulator.presentation.messages import Hello, InstructorOrder, Seat
 from rastrainer_simulator.presentation.presenter import Control, Presenter, TraceGuidance
 from rastrainer_simulator.presentation.screen import PRESS, Tone
@@ -54,9 +52,6 @@ SENTENCE_S = 20.0
 """How long the trainee sees a teacher's message: longer than a notice, as it is unexpected."""
 NOTED_S = 0.2
 """How often a moving view is noted in the journal."""
-
-_IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlName.BACK}
-"""Meanings of a view's own buttons while a menu is open: a headset's buttons have no bindings."""
 
 
 class FlowPresenter(Presenter):
@@ -83,23 +78,22 @@ class FlowPresenter(Presenter):
         listener = ControlsListener(self.pressed, self.input_pressed, self.taken_over, self.refused)
         self.controls = Controls(bindings, listener, lambda: not self._session.lock.is_locked)
         self._session = TrainingSession(
-            control_loop, self.controls, services, preferences, self.happened
+            control_loop, self.controls, services, preferences, self._feel
         )
         self._flow = Flow(self._session)
         self.rumble: Callable[[float, float], None] = lambda _strength, _seconds: None
-        self._arriving = threading.Lock()
         self._newest = control_loop.latest
-        self._results: list[StepResult] = []
+        # The control loop's thread adds a tick at one end, ours takes it from the other.
+        self._ticks: deque[StepResult] = deque()
         self._views = OperatedViews()
         self._noted_view: tuple[str, ViewReport] | None = None
         self._since_noted_s = 0.0
         self._without_picture_s = 0.0
-        self._number = 0
         self._sent_sticks = NEUTRAL_STICKS
         self._is_changed = True
         self._since_refresh = 0.0
         self.screen = self._flow.screen()
-        self._unsubscribe = control_loop.subscribe(self._take_tick)
+        self._unsubscribe = control_loop.subscribe(self._ticks.append)
 
     def close(self) -> None:
         self._unsubscribe()
@@ -112,25 +106,22 @@ class FlowPresenter(Presenter):
 
     def advance(self, dt: float) -> None:
         # A state ahead of its events would sound the alarm of a contact twice.
-        with self._arriving:
-            results, self._results = self._results, []
-            newest = self._newest
-        for result in results:
-            self._flow.process_tick(result)
-            self._is_changed = True
+        while self._ticks:
+            tick = self._ticks.popleft()
+            self._newest = tick.state
+            if tick.events:
+                self._flow.process_tick(tick)
+                self._is_changed = True
         self.controls.advance(dt)
-        self._await_picture(dt, newest)
-        self._flow.advance(dt, newest)
+        self._await_picture(dt)
+        self._flow.advance(dt, self._newest)
         self._advance_view(dt)
         self._settle()
         self._since_refresh += dt
         if self._is_changed or self._since_refresh >= REFRESH_S:
             self._is_changed = False
             self._since_refresh = 0.0
-            screen = self._flow.screen()
-            if screen != self.screen:
-                self.screen = screen
-                self.updates.publish(screen)
+            self.show(self._flow.screen())
 
     def pictures(self, now: SimulationState) -> Pictures:
         return self._session.view.pictures(now, self.shown.setup.scenario.cameras)
@@ -147,7 +138,7 @@ class FlowPresenter(Presenter):
         training, curriculum = session.training, session.curriculum
         is_open = session.has_open_trial
         trainee = training.trainee if is_open else session.trainee_id
-        scores = [trial.score for trial in session.history.of(trainee) if not trial.is_aborted]
+        scores = [trial.score for trial in session.history.own(trainee) if not trial.is_aborted]
         wrong = (each for each in screen.warnings if each.tone in (Tone.WARNING, Tone.ERROR))
         return Seat(
             trainee=trainee,
@@ -164,7 +155,7 @@ class FlowPresenter(Presenter):
         )
 
     def instruct(self, order: InstructorOrder, text: str) -> str:
-        say, page = self._session.texts.say, self._session.pages.top
+        say, page = self._session.say, self._session.pages.top
         is_running = self._session.training.is_running or self._session.tutorial is not None
         problem = ""
         if order is InstructorOrder.SAY:
@@ -202,12 +193,15 @@ class FlowPresenter(Presenter):
             self._flow.pause("unseen.left")
         self._settle()
 
+    def receive(self, view: int, kind: str, *values: object) -> None:
+        super().receive(view, kind, *values)
+        self._settle()
+
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
         source = self._views.source(SourceKind.KEYBOARD, view)
         typed = self._session.pages.typed(code, text) if is_down else None
         if typed is None:
             self.controls.set_key(source, code, is_down)
-            self._settle()
             return
         if self.controls.allows(source):
             self._session.pages.write(*typed)
@@ -220,7 +214,6 @@ class FlowPresenter(Presenter):
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
         source = self._views.source(SourceKind.BROWSER_GAMEPAD, view)
         self.controls.set_inputs(source, w3c_gamepad_inputs(axes, buttons))
-        self._settle()
 
     def on_sticks(
         self,
@@ -237,7 +230,6 @@ class FlowPresenter(Presenter):
         if source.kind is SourceKind.MOUSE:
             sticks = self._session.screen_sticks.moved(translation, rotation)
         self.controls.set_sticks(source, sticks)
-        self._settle()
 
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
         if self.controls.is_operator(self._views.source(SourceKind.MOUSE, view)):
@@ -245,15 +237,14 @@ class FlowPresenter(Presenter):
             self._session.view.control.turn(camera, around_deg, higher_deg, zoom)
 
     def on_press(self, view: int, control: str) -> None:
-        if control not in ControlName._value2member_map_:
+        name = button_in_menu(control)
+        if name is None:
             return
-        name = ControlName(control)
-        if self._session.pages.top is not None:
-            name = _IN_MENUS.get(name, name)
+        if self._session.pages.top is None:
+            name = ControlName(control)
         self.controls.press(
             self._views.sticks_source(view, self._session.screen_sticks.is_shown), name
         )
-        self._settle()
 
     def on_item(self, view: int, name: str) -> None:
         pressed = name.removeprefix(PRESS) if name.startswith(PRESS) else ""
@@ -265,7 +256,7 @@ class FlowPresenter(Presenter):
             self._session.pages.choose(name)
         elif not self._session.screen_sticks.pressed(pressed) and control is not None:
             self._flow.pressed(ControlName(pressed))
-        self._settle(is_changed=True)
+        self._is_changed = True
 
     def on_text(self, view: int, name: str, value: str) -> None:
         if self.controls.allows(self._views.hand_source(SourceKind.KEYBOARD, view)):
@@ -273,12 +264,13 @@ class FlowPresenter(Presenter):
             self._is_changed = True
 
     def on_frames(self, view: int, shown: int, dropped: int, refresh_hz: float) -> None:
-        if view not in self._views.joined:
+        joined = self._views.joined.get(view)
+        if joined is None:
             return
-        self._views.joined[view].is_silent = False
+        joined.is_silent = False
         if view != self._views.watched(self.controls.holder):
             return
-        hello = self._views.joined[view].hello
+        hello = joined.hello
         report = DisplayReport(hello.kind, hello.device, refresh_hz, shown, dropped)
         self._control_loop.note_display(report)
 
@@ -290,13 +282,11 @@ class FlowPresenter(Presenter):
     def on_visibility(self, view: int, is_visible: bool) -> None:
         if not is_visible:
             self._lose_sight(view, "unseen.hidden")
-            self._settle()
 
     def on_silence(self, view: int) -> None:
         self._lose_sight(view, "unseen.still")
         if view in self._views.joined:
             self._views.joined[view].is_silent = True
-        self._settle()
 
     def pressed(self, control: ControlName) -> None:
         self._flow.pressed(control)
@@ -308,14 +298,14 @@ class FlowPresenter(Presenter):
         return page is not None and page.input_pressed(device, name)
 
     def taken_over(self, source: Source) -> None:
-        say = self._session.texts.say
+        say = self._session.say
         name = say(f"source.{source.kind.value}")
         self._session.notices.add(say("control.taken", source=name))
         self._flow.taken_over()
         self._is_changed = True
 
     def refused(self, _source: Source) -> None:
-        holder, say = self.controls.holder, self._session.texts.say
+        holder, say = self.controls.holder, self._session.say
         if holder is not None:
             name, menu = say(f"source.{holder.kind.value}"), say("control.menu")
             key = "control.locked" if self._session.lock.is_locked else "control.held"
@@ -332,14 +322,11 @@ class FlowPresenter(Presenter):
         self._session.notices.warn(about, key, **values)
         self._is_changed = True
 
-    def happened(self, what: FeedbackEvent) -> None:
+    def _feel(self, what: FeedbackEvent) -> None:
         preferences = self._session.preferences
-        volume = 0.0 if preferences.muted else preferences.volume / 100.0
-        self._number += 1
-        feedback = feedback_of(what, self._number, volume)
-        if feedback.rumble > 0.0:
-            self.rumble(feedback.rumble, what.seconds)
-        self.updates.publish(feedback)
+        self.happened(what, 0.0 if preferences.muted else preferences.volume / 100.0)
+        if what.rumble > 0.0:
+            self.rumble(what.rumble, what.seconds)
 
     def _lose_sight(self, view: int, why: str) -> None:
         """Pause and release control if no one can see the trial; `why` is the key of a sentence."""
@@ -348,12 +335,12 @@ class FlowPresenter(Presenter):
         for kind in SourceKind:
             self.controls.forget(self._views.source(kind, view))
 
-    def _await_picture(self, dt: float, newest: SimulationState) -> None:
+    def _await_picture(self, dt: float) -> None:
         session, watched = self._session, self._views.watched(self.controls.holder)
         view = None if watched is None else self._views.joined.get(watched)
         # The views show the newest state only when it has been processed.
         is_replayed = self._flow.playback is not None
-        training = (self.shown.latest if is_replayed else self._flow.shown(newest)).training
+        training = (self.shown.latest if is_replayed else self._flow.shown(self._newest)).training
         task = training.task if training.is_marked else ""
         is_blind = session.goes_on_blind == session.training.trial_id != ""
         if view is not None or not self._views.joined:
@@ -409,13 +396,6 @@ class FlowPresenter(Presenter):
         if changed.kind == "headset":
             kinds = {view.hello.kind for view in self._views.joined.values()}
             self._session.mode = (Mode.HMD if "headset" in kinds else Mode.DESKTOP).value
-
-    def _take_tick(self, result: StepResult) -> None:
-        """Note a tick, and queue what happened in it; called in the control loop's thread."""
-        with self._arriving:
-            self._newest = result.state
-            if result.events:
-                self._results.append(result)
 
     def _settle(self, is_changed: bool = False) -> None:
         self._is_changed = self._is_changed or is_changed

@@ -11,10 +11,9 @@ from rastrainer.number_text import clock
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.arm_screen import ArmScreen
-from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind
-from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow, page_kind
 from rastrainer_simulator.flow.session.plan_marks import ball, plan_marks
-from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.flow.session.session import SessionPage, TrainingSession
 from rastrainer_simulator.flow.trial_screen import TrialScreen
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
 from rastrainer_simulator.presentation.screen import (
@@ -72,29 +71,27 @@ class ProcedureScreen(ArmScreen):
         self._trial_screen.open_menu()
 
     def warnings(self) -> tuple[ScreenMessage, ...]:
-        session, say = self._session, self._session.texts.say
-        training = session.training
+        session, training = self._session, self._session.training
         if training.phase is Phase.VERIFYING and self._procedure.registration is None:
             # Why the touches are not registered yet, if that will not change by itself.
             scorer = session.local_scorer
             if scorer is not None and scorer.problem:
-                reason = say("waiting.problem", reason=scorer.problem)
-                return (ScreenMessage(reason, Tone.ERROR),)
+                return (self._message("waiting.problem", Tone.ERROR, reason=scorer.problem),)
             if scorer is None and not session.services.is_slicer_connected():
-                return (ScreenMessage(say("warning.nobody registers"), Tone.WARNING),)
+                return (self._message("warning.nobody registers", Tone.WARNING),)
             return ()
         if training.phase not in FED:
             return super().warnings()
         ruler = self._ruler()
         past = 0.0 if ruler is None else MM_PER_M * session.state.feed - ruler.target_mm
         if past > PAST_TARGET_MM:
-            return (ScreenMessage(say("warning.past target", past=past), Tone.ERROR),)
+            return (self._message("warning.past target", Tone.ERROR, past=past),)
         if self._arm.layer not in _FELT:
             return ()
-        return (ScreenMessage(say(f"felt.{self._arm.layer}"), _FELT[self._arm.layer]),)
+        return (self._message(f"felt.{self._arm.layer}", _FELT[self._arm.layer]),)
 
     def _status(self) -> tuple[str, ...]:
-        session, say = self._session, self._session.texts.say
+        session, say = self._session, self._session.say
         procedure = self._procedure
         facts = [session.task_title(session.training.task)]
         if procedure.present is not None:
@@ -110,7 +107,7 @@ class ProcedureScreen(ArmScreen):
 
     def screen(self) -> Screen:
         """The trainee looks into the head as soon as the guide is being aligned."""
-        session, phase = self._session, self._session.training.phase
+        phase = self._session.training.phase
         names = {
             ControlName.TOUCH: "hint.checkpoint" if phase is Phase.VERIFYING else "hint.next step",
             ControlName.UNDO: "hint.judge",
@@ -120,9 +117,8 @@ class ProcedureScreen(ArmScreen):
         }
         if phase is not Phase.VERIFYING:
             del names[ControlName.UNDO]
-        text = session.texts.again(session.training.instruction)
         return self._shown(
-            ScreenMessage(text, Tone.WARNING if self._is_refused else Tone.GOOD),
+            self._instructed(Tone.WARNING if self._is_refused else Tone.GOOD),
             self._status(),
             self._hints(self._moving_hints(phase), names, can_tilt=phase is Phase.ALIGNING),
             errors=self._marks(),
@@ -146,7 +142,7 @@ class ProcedureScreen(ArmScreen):
 
     def _ruler(self) -> DepthRuler | None:
         """Return the scale along the axis of a locked guide; None before it is locked."""
-        procedure, say = self._procedure, self._session.texts.say
+        procedure, say = self._procedure, self._session.say
         if procedure.stage not in FED or procedure.present is None:
             return None
         guide, line = procedure.present.guide, procedure.present.line
@@ -172,7 +168,7 @@ class ProcedureScreen(ArmScreen):
         return procedure
 
     def _figures(self) -> tuple[str, ...]:
-        state, say = self._session.state, self._session.texts.say
+        state, say = self._session.state, self._session.say
         alignment, ruler = state.alignment, self._ruler()
         if ruler is not None:
             depth = MM_PER_M * state.feed
@@ -192,19 +188,17 @@ class ProcedureScreen(ArmScreen):
 
     def _moving_hints(self, phase: Phase) -> tuple[Hint, ...]:
         """Return the functions of the sticks; in a headset only those not drawn in the hands."""
-        session, say = self._session, self._session.texts.say
-        up_and_down = session.operator.pair_label(ControlName.MOVE_DOWN, ControlName.MOVE_UP)
+        operator, say = self._session.operator, self._session.say
         if phase in FED:
-            return (Hint(up_and_down, say("hint.feed")),)
-        if session.operator.is_one_of(SourceKind.XR):
-            is_aligning = phase is Phase.ALIGNING
+            return (operator.hint("hint.feed", ControlName.MOVE_DOWN, ControlName.MOVE_UP),)
+        is_aligning = phase is Phase.ALIGNING
+        if operator.is_one_of(SourceKind.XR):
             return (Hint(say("headset.tilt"), say("hint.tilt")),) if is_aligning else ()
-        if phase is not Phase.ALIGNING:
-            return self._movement_hints()
-        turn = session.operator.pair_label(ControlName.TURN_LEFT, ControlName.TURN_RIGHT)
-        tilt = session.operator.pair_label(ControlName.TURN_DOWN, ControlName.TURN_UP)
-        turning = (Hint(turn, say("hint.turn")), Hint(tilt, say("hint.tilt")))
-        return (*self._movement_hints(), *turning)
+        turning = (
+            operator.hint("hint.turn", ControlName.TURN_LEFT, ControlName.TURN_RIGHT),
+            operator.hint("hint.tilt", ControlName.TURN_DOWN, ControlName.TURN_UP),
+        )
+        return (*self._movement_hints(), *(turning if is_aligning else ()))
 
 
 STAND_OFF_MM = 30.0

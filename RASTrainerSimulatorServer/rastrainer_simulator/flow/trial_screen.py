@@ -39,12 +39,11 @@ from rastrainer_simulator.flow.arm_screen import (
     off_path,
 )
 from rastrainer_simulator.flow.pages.controls import controls_page
-from rastrainer_simulator.flow.pages.session_page import SessionPage, ShownPage, page_kind
 from rastrainer_simulator.flow.pages.start import settings_page, start_page
 from rastrainer_simulator.flow.pages.trial_review import POOR_MM
 from rastrainer_simulator.flow.session.chosen_trial import guidance_of
-from rastrainer_simulator.flow.session.open_pages import PageContent
-from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.flow.session.open_pages import PageContent, page_kind
+from rastrainer_simulator.flow.session.session import SessionPage, TrainingSession
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
 from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.presentation.screen import Fact, Hint, Screen, ScreenMessage, Tone
@@ -95,7 +94,7 @@ class TrialScreen(ArmScreen):
         elif not is_complete:
             movement = self._movement_hints()
         covered = session.places.guidance(session.state).covered_mm
-        legend = session.texts.say("coverage", distance=f"{covered:.0f}") if covered else ""
+        legend = session.say("coverage", distance=f"{covered:.0f}") if covered else ""
         return self._shown(
             self._instruction(),
             self._status(),
@@ -178,39 +177,32 @@ class TrialScreen(ArmScreen):
         session = self._session
         training = session.training
         if training.is_tracing and not self._is_refused:
-            tone = Tone.GOOD if training.phase is Phase.COMPLETE else Tone.PLAIN
-            return ScreenMessage(session.texts.again(training.instruction), tone)
+            return self._instructed(Tone.GOOD if training.phase is Phase.COMPLETE else Tone.PLAIN)
         if training.phase is Phase.COMPLETE:
-            key = session.operator.label(ControlName.TOUCH)
-            text = session.texts.say(
-                "work.complete", trainee=training.trainee, count=len(training.touches), touch=key
-            )
-            return ScreenMessage(text, Tone.GOOD)
+            key, count = session.operator.label(ControlName.TOUCH), len(training.touches)
+            who = training.trainee
+            return self._message("work.complete", Tone.GOOD, trainee=who, count=count, touch=key)
         is_on_skin = session.state.touch is TouchStage.ON_SKIN
         has_gone_on = is_on_skin and distance(session.tip, self._arm.refused_at) > ELSEWHERE_M
         if self._is_refused and not has_gone_on:
-            return ScreenMessage(session.texts.again(training.instruction), Tone.WARNING)
+            return self._instructed(Tone.WARNING)
         if is_on_skin:
-            key = session.operator.label(ControlName.TOUCH)
-            return ScreenMessage(session.texts.say("work.on skin", touch=key), Tone.GOOD)
+            return self._on_skin()
         if self._is_off_the_path():
-            text = session.texts.say(
-                "work.off the way", trainee=training.trainee, point=training.next_point
-            )
-            return ScreenMessage(text, Tone.WARNING)
+            who, point = training.trainee, training.next_point
+            return self._message("work.off the way", Tone.WARNING, trainee=who, point=point)
         last = training.touches[-1] if training.touches else None
         if training.task == TRIAL_RUN and last is not None and last.label in self._points:
             # Where touches are scored, nothing says how exact they are before the registration.
             error_mm = MM_PER_M * distance(last.position, self._points[last.label])
             if error_mm >= POOR_MM:
-                return ScreenMessage(self._slipped(last.label, error_mm), Tone.WARNING)
-        tone = Tone.GOOD if training.touches else Tone.PLAIN
-        return ScreenMessage(session.texts.again(training.instruction), tone)
+                return self._touched("tutorial.slipped", Tone.WARNING, last.label, error_mm)
+        return self._instructed(Tone.GOOD if training.touches else Tone.PLAIN)
 
     def _status(self) -> list[str]:
         session = self._session
         training = session.training
-        say, trace = session.texts.say, training.trace
+        say, trace = session.say, training.trace
         done = say("status.points", kept=len(training.touches), count=self._count)
         if training.is_tracing and trace is not None:
             limits = {"least": MIN_TRACE_POINTS, "most": MAX_TRACE_POINTS}
@@ -289,7 +281,7 @@ def _resume(page: SessionPage) -> None:
         session.pages.close()
 
 
-@page_kind("trial", leave=_resume, pause_goes_back=True)
+@page_kind("trial", back=_resume, pause_goes_back=True)
 def trial_page(page: SessionPage) -> PageContent:
     """Show the menu during a trial, which is paused while it is open."""
     session, training = page.session, page.session.training
@@ -327,7 +319,7 @@ def _abort(session: TrainingSession, reason: AbortReason) -> partial[None]:
     return partial(session.do, CommandName.ABORT, {"reason": reason.value})
 
 
-def _resume_with_picture(page: ShownPage, _dt: float, is_resumed: bool = False) -> None:
+def _resume_with_picture(page: SessionPage, _dt: float, is_resumed: bool = False) -> None:
     if page.session.picture_share is None and not is_resumed:
         page.set_value("is_resumed", True)
         page.session.do(CommandName.RESUME)
@@ -335,7 +327,7 @@ def _resume_with_picture(page: ShownPage, _dt: float, is_resumed: bool = False) 
 
 @page_kind(
     "preparing",
-    leave=lambda page, **_values: page.session.pages.replace(trial_page(page.session)),
+    back=lambda page, **_values: page.session.pages.replace(trial_page(page.session)),
     advance=_resume_with_picture,
 )
 def preparing_page(page: SessionPage, **_values: bool) -> PageContent:
@@ -364,7 +356,7 @@ def abort_page(page: SessionPage) -> PageContent:
     return PageContent((text,), rows=rows, first="keep")
 
 
-@page_kind("practice", leave=lambda page: page.session.do(CommandName.RESUME))
+@page_kind("practice", back=lambda page: page.session.do(CommandName.RESUME))
 def practice_page(page: SessionPage) -> PageContent:
     """Say that the trial run's minutes are over: the trainee decides how to continue."""
     session = page.session

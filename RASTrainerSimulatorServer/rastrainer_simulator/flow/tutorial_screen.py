@@ -14,8 +14,6 @@ from rastrainer_simulator.flow.session.tutorial import (
     CENTERED_M,
     DONE_DEG,
     DONE_MM,
-    STEPS,
-    WAYS,
     Tutorial,
     TutorialObservation,
     TutorialStep,
@@ -106,7 +104,7 @@ class TutorialScreen(ArmScreen):
         done = tutorial.advance(dt, seen)
         if done is not None:
             self._has_paused = False
-            is_heard_anyway = {ControlName.TOUCH, ControlName.UNDO} & {*STEPS[done].controls}
+            is_heard_anyway = {ControlName.TOUCH, ControlName.UNDO} & {*done.controls}
             if not is_heard_anyway:
                 session.happened(FeedbackEvent.STEP)
 
@@ -133,7 +131,7 @@ class TutorialScreen(ArmScreen):
             session.view.is_best_wanted = True
         elif control is ControlName.TOUCH and tutorial.may_touch:
             self._play_reply(tutorial.touch(session.state))
-        elif control is ControlName.UNDO and tutorial.may_undo:
+        elif control is ControlName.UNDO and tutorial.asks_for(ControlName.UNDO):
             self._play_reply(tutorial.practice.handle(CommandName.UNDO, session.state))
         elif control in (ControlName.MENU, ControlName.PAUSE):
             self.open_menu()
@@ -143,42 +141,37 @@ class TutorialScreen(ArmScreen):
         self._session.pages.show(tutorial_page(self._session))
 
     def _instruction(self) -> ScreenMessage:
-        session, tutorial = self._session, self._tutorial
-        say = session.texts.say
-        if self._way:
-            return ScreenMessage(say("tutorial.homing"))
-        if self._is_refused:
-            sentence = session.texts.again(tutorial.practice.training.state.instruction)
-            return ScreenMessage(sentence, Tone.WARNING)
-        if tutorial.praised is not None:
-            errors = tutorial.practice.errors_mm()
-            if ControlName.TOUCH in STEPS[tutorial.praised].controls and errors:
-                recorded = say("tutorial.recorded", error=errors[-1])
-                return ScreenMessage(recorded, _banner(errors[-1]))
-            return ScreenMessage(say("tutorial.praise"), Tone.GOOD)
-        if tutorial.may_touch and self._state.touch is TouchStage.ON_SKIN:
-            key = session.operator.label(ControlName.TOUCH)
-            return ScreenMessage(say("work.on skin", touch=key), Tone.GOOD)
-        off_mm = tutorial.practice.off_center_mm(session.state)
-        if tutorial.may_touch and off_mm is not None:
-            point = tutorial.practice.training.state.next_point
-            text = say("tutorial.center", point=point, distance=f"{off_mm:.0f}")
-            return ScreenMessage(text, Tone.WARNING)
+        tutorial = self._tutorial
         practice, errors = tutorial.practice.training.state, tutorial.practice.errors_mm()
+        if self._way:
+            return self._message("tutorial.homing")
+        if self._is_refused:
+            return self._instructed(Tone.WARNING)
+        if tutorial.praised is not None:
+            if ControlName.TOUCH in tutorial.praised.controls and errors:
+                error = errors[-1]
+                return self._message("tutorial.recorded", _banner(error), error=error)
+            return self._message("tutorial.praise", Tone.GOOD)
+        if tutorial.may_touch and self._state.touch is TouchStage.ON_SKIN:
+            return self._on_skin()
+        off_mm = tutorial.practice.off_center_mm(self._session.state)
+        if tutorial.may_touch and off_mm is not None:
+            off, point = f"{off_mm:.0f}", practice.next_point
+            return self._message("tutorial.center", Tone.WARNING, point=point, distance=off)
         if tutorial.step is TutorialStep.GUIDED and errors:
             key = "tutorial.slipped" if errors[-1] >= POOR_MM else "tutorial.touched"
-            slip = self._slipped(practice.touches[-1].label, errors[-1], key)
-            return ScreenMessage(slip, _banner(errors[-1]))
+            label = practice.touches[-1].label
+            return self._touched(key, _banner(errors[-1]), label, errors[-1])
         is_on_point = self._state.touch in (TouchStage.ON_SKIN, TouchStage.PRESSED)
         is_lifted = tutorial.step is TutorialStep.TOUCH and not is_on_point
         return ScreenMessage(self._sentence(TutorialStep.LOWER if is_lifted else tutorial.step))
 
     def _status(self) -> list[str]:
-        tutorial, say = self._tutorial, self._session.texts.say
+        tutorial, say = self._tutorial, self._session.say
         step, steps = tutorial.place
         place = () if tutorial.practiced else (say("tutorial.place", step=step, steps=steps),)
         facts: list[str] = [self._session.practice_title, *place]
-        key = STEPS[tutorial.step].shown if tutorial.step is not None else ""
+        key = tutorial.step.shown if tutorial.step is not None else ""
         if key and tutorial.praised is None:
             done, goal = tutorial.amount
             coarse = {DONE_MM: STEP_MM, DONE_DEG: STEP_DEG}.get(key, 1)
@@ -190,17 +183,17 @@ class TutorialScreen(ArmScreen):
 
     def _all_hints(self) -> tuple[Hint, ...]:
         session, step = self._session, self._tutorial.step
-        say, operator = session.texts.say, session.operator
+        operator = session.operator
         if step is None:
             return ()
-        controls = STEPS[step].controls
+        controls = step.controls
         moving: list[Hint] = []
         names: dict[ControlName, str] = {}
         if step is TutorialStep.TURN_VIEW:
-            moving.append(Hint(operator.pair_label(*controls), say("hint.turn_view")))
-        elif step in WAYS or step is TutorialStep.LOOK_AROUND:
+            moving.append(operator.hint("hint.turn_view", *controls))
+        elif step.way is not None or step is TutorialStep.LOOK_AROUND:
             (control,) = controls
-            moving.append(Hint(operator.label(control), say(f"control.{control.value}")))
+            moving.append(operator.hint(f"control.{control.value}", control, item=""))
         else:
             has_view = TutorialStep.BEST_VIEW in self._tutorial.steps
             there = [each for each in controls if has_view or each is not ControlName.BEST_VIEW]
@@ -221,21 +214,15 @@ class TutorialScreen(ArmScreen):
         if step is None:
             return ""
         session = self._session
-        controls = STEPS[step].controls
+        controls = step.controls
         is_pair = step is TutorialStep.TURN_VIEW
-        name = (
-            session.operator.pair_label(*controls)
-            if is_pair
-            else session.operator.label(controls[0])
-        )
+        name = session.operator.label(*(controls if is_pair else controls[:1]))
         key = f"tutorial.{step.value}"
         for variant in (session.operator.learned(session.mode).value, session.preferences.axes):
             if f"{key}.{variant}" in session.texts:
                 key = f"{key}.{variant}"
         point = self._tutorial.practice.training.state.next_point
-        return session.texts.say(
-            key, control=name, point=point, count=GUIDED_TOUCHES, limit=LIMIT_MM
-        )
+        return session.say(key, control=name, point=point, count=GUIDED_TOUCHES, limit=LIMIT_MM)
 
 
 def _banner(error_mm: float) -> Tone:

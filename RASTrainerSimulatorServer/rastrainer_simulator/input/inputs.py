@@ -124,3 +124,16 @@ SITUATIONS = {
     for name in ControlName
 }
 """Where each control counts; two that count in the same situation cannot share an input."""
+
+_IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlName.BACK}
+
+
+def button_in_menu(name: str) -> ControlName | None:
+    """Return what a view's own button does in a menu, by the name of its control; None if nothing.
+
+    A headset's buttons have no bindings.
+    """
+    if name not in ControlName._value2member_map_:
+        return None
+    control = ControlName(name)
+    return _IN_MENUS.get(control, control)

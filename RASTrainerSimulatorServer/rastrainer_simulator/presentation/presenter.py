@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer_simulator.loop.results import Subscribers
+from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_of
 from rastrainer_simulator.presentation.messages import (
     Feedback,
     Hello,
@@ -55,11 +56,22 @@ class Presenter:
         updates: each new screen, feedback and holder of the control.
     """
 
-    screen: Screen
     control = Control()
 
     def __init__(self) -> None:
         self.updates: Subscribers[ViewUpdate] = Subscribers()
+        self.screen = Screen()
+        self._feedback_count = 0
+
+    def show(self, screen: Screen) -> None:
+        if screen != self.screen:
+            self.screen = screen
+            self.updates.publish(screen)
+
+    def happened(self, what: FeedbackEvent, volume: float = 1.0) -> None:
+        """Have the views play the sound and the vibration of an event."""
+        self._feedback_count += 1
+        self.updates.publish(feedback_of(what, self._feedback_count, volume))
 
     def pictures(self, now: SimulationState) -> Pictures:
         raise NotImplementedError

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import Future
 from functools import partial
 
 from rastrainer.errors import InputError
 from rastrainer.study.ratings import HIGHEST, LOWEST, MARKS, RatingDomain, RatingForm
-from rastrainer_simulator.flow.session.open_pages import OpenPages, Page, PageContent, PageRow
+from rastrainer_simulator.flow.session.open_pages import (
+    OpenPages,
+    Page,
+    PageContent,
+    PageRow,
+    page_kind,
+)
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.input.gamepads import w3c_gamepad_inputs
-from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice
-from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_of
+from rastrainer_simulator.input.inputs import ControlContext, InputDevice, button_in_menu
+from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 from rastrainer_simulator.presentation.screen import Fact, Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.rating.rating_work import RatingWork
 from rastrainer_simulator.replay.playback import Playback, PlaybackSwitch
@@ -21,9 +26,7 @@ from rastrainer_simulator.replay.replay_presenter import RATE, ReplayPresenter
 from rastrainer_simulator.state import StepResult
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label, pair_label
 
-_DOWN = 0.5
 _REPEATED = ("ArrowLeft", "ArrowRight")
-_IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlName.BACK}
 
 
 class RatingPresenter(ReplayPresenter):
@@ -39,13 +42,12 @@ class RatingPresenter(ReplayPresenter):
     ) -> None:
         """Begin with a replay; `load` begins to load another, by its trial's UUID."""
         self.work = work
-        self.pages = OpenPages(self._happened)
+        self.pages = OpenPages(self.happened)
         self.shown = PlaybackSwitch(first)
         self.shown.show(first)
         self.leave = end
         self._load = load
         self._loading: Future[Playback] | None = None
-        self._inputs: dict[int, tuple[frozenset[int], frozenset[int]]] = {}
         self._keys: dict[int, set[str]] = {}
         self._problem = ""
         blinded = Texts(LANGUAGES[language]).say("rating.replay", **work.numbers)
@@ -78,13 +80,13 @@ class RatingPresenter(ReplayPresenter):
     def load(self, go: Callable[[], object]) -> None:
         go()
         self._loading = self._load(self.work.trial_id)
-        self.pages.show(LoadingPage(self, self._loading))
+        self.pages.show(loading_page(self, self._loading))
         self._refresh()
 
     def rate(self) -> None:
         self._playback.pause(True)
         open_ = self.work.open_domain
-        self.pages.show(RatedPage(self) if open_ is None else DomainPage(self, *open_))
+        self.pages.show(rated_page(self) if open_ is None else domain_page(self, *open_))
         self._refresh()
 
     def undo(self) -> None:
@@ -93,7 +95,6 @@ class RatingPresenter(ReplayPresenter):
 
     def view_left(self, view: int) -> None:
         super().view_left(view)
-        self._inputs.pop(view, None)
         self._keys.pop(view, None)
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
@@ -109,38 +110,14 @@ class RatingPresenter(ReplayPresenter):
             if not is_again or code in _REPEATED:
                 super().on_key(view, code, is_down, text)
         elif is_down and not is_again:
-            self._try(lambda: self._page_pressed(InputDevice.KEYBOARD, code))
-
-    def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
-        """Process a gamepad: newly pressed buttons are for the open page, else for the replay."""
-        now = _pressed(axes), _pressed(buttons)
-        before = self._inputs.get(view, (frozenset(), frozenset()))
-        self._inputs[view] = now
-        moved, tapped = (
-            [value * (number in new - old) for number, value in enumerate(values)]
-            for values, new, old in zip((axes, buttons), now, before, strict=True)
-        )
-        if self.pages.top is not None:
-            inputs = w3c_gamepad_inputs(moved, tapped)
-            names = [name for name, value in inputs.items() if value > _DOWN]
-
-            def press() -> None:
-                for name in names:
-                    self._page_pressed(InputDevice.GAMEPAD, name)
-
-            self._try(press)
-            return
-        # Released at once: a button that has led from the form back here is not pressed again.
-        super().on_pad(view, axes, tapped)
-        super().on_pad(view, axes, ())
+            self._press(InputDevice.KEYBOARD, code)
 
     def on_press(self, view: int, control: str) -> None:
         """Process a button of an XR controller, or of a touch screen."""
         if self.pages.top is None:
             super().on_press(view, control)
-        elif control in ControlName._value2member_map_:
-            name = ControlName(control)
-            self._try(lambda: self.pages.pressed(_IN_MENUS.get(name, name)))
+        elif (name := button_in_menu(control)) is not None:
+            self._try(partial(self.pages.pressed, name))
 
     def on_item(self, view: int, name: str) -> None:  # noqa: ARG002
         """Process a click on an item of the page, or on the hint that leads to the form."""
@@ -154,7 +131,13 @@ class RatingPresenter(ReplayPresenter):
         self.pages.show(None)
         self._play(playback, self.say("rating.replay"))
 
-    def _page_pressed(self, device: InputDevice, name: str) -> None:
+    def _press(self, device: InputDevice, name: str) -> None:
+        if self.pages.top is None:
+            super()._press(device, name)
+        else:
+            self._try(lambda: self._press_on_page(device, name))
+
+    def _press_on_page(self, device: InputDevice, name: str) -> None:
         page = self.pages.top
         if page is None or page.input_pressed(device, name):
             return
@@ -168,7 +151,7 @@ class RatingPresenter(ReplayPresenter):
             act()
         except InputError as error:
             self._problem = str(error)
-            self._happened(FeedbackEvent.ERROR)
+            self.happened(FeedbackEvent.ERROR)
         self._refresh()
 
     def _follow(self, result: StepResult) -> None:
@@ -189,124 +172,85 @@ class RatingPresenter(ReplayPresenter):
         problem = (ScreenMessage(self._problem, Tone.ERROR),) if self._problem else ()
         return dataclasses.replace(screen, warnings=(*screen.warnings, *problem))
 
-    def _happened(self, what: FeedbackEvent) -> None:
-        self._count += 1
-        self.updates.publish(feedback_of(what, self._count))
-
-
-def _pressed(values: Sequence[float]) -> frozenset[int]:
-    return frozenset(number for number, value in enumerate(values) if abs(value) > _DOWN)
-
 
 _KEYS = {f"{key}{mark}": mark for key in ("Digit", "Numpad") for mark in MARKS}
 _SENTENCES = {LOWEST: "low", (LOWEST + HIGHEST) // 2: "middle", HIGHEST: "high"}
 """Marks that a sentence describes."""
 
 
-class RatingPage(Page):
-    """A page that a rater reads."""
-
-    def __init__(self, actions: RatingPresenter) -> None:
-        self.actions = actions
-
-    def say(self, key: str, **values: object) -> str:
-        """Return a sentence with the replay's number."""
-        return self.actions.say(key, **values)
-
-    def rows(self, *names: str) -> tuple[PageRow, ...]:
-        actions = self.actions
-        acts = {
-            "undo": actions.undo,
-            "next": lambda: actions.load(actions.work.go_to_next),
-            "previous": lambda: actions.load(actions.work.go_back),
-            "leave": actions.leave,
-        }
-        return tuple(
-            self.button(name, acts.get(name), self.say(f"rating.{name}")) for name in names
-        )
-
-    def back(self) -> None:
-        self.actions.watch()
+RatingPage = Page[RatingPresenter]
+"""A page that a rater reads."""
 
 
-class DomainPage(RatingPage):
-    """Accepts one mark, and leads to the next domain."""
+def _rows(page: RatingPage, *names: str) -> tuple[PageRow, ...]:
+    desk = page.session
+    acts = {
+        "undo": desk.undo,
+        "next": lambda: desk.load(desk.work.go_to_next),
+        "previous": lambda: desk.load(desk.work.go_back),
+        "leave": desk.leave,
+    }
+    return tuple(page.button(name, acts.get(name), page.say(f"rating.{name}")) for name in names)
 
-    name = "rating"
 
-    def __init__(self, actions: RatingPresenter, form: RatingForm, domain: RatingDomain) -> None:
-        super().__init__(actions)
-        self._form, self._domain = form, domain
+def _watch(page: RatingPage, *_arguments: object) -> None:
+    page.session.watch()
 
-    def content(self) -> PageContent:
-        """Return the marks, three of them with their meaning."""
-        marks = (
-            self.button(f"mark {mark}", partial(self._give, mark), self._label(mark))
-            for mark in MARKS
-        )
-        others = self.rows(*(["undo"] if self.actions.work.marks else []), "watch", "leave")
-        domain = self.say(f"rate.{self._domain.name}")
-        title = self.say("rating.title", form=self._form.title, domain=domain)
-        # The focus is not on a mark, which would then be given more often than others.
-        said = (self.say("rating.text"),)
-        return PageContent(said, rows=(*marks, *others), title=title, first="watch")
 
-    def input_pressed(self, device: InputDevice, name: str) -> bool:
-        if device is not InputDevice.KEYBOARD or name not in _KEYS:
-            return False
-        self._give(_KEYS[name])
-        return True
+def _give(page: RatingPage, mark: int) -> None:
+    page.session.work.give(mark)
+    page.session.rate()
 
-    def _give(self, mark: int) -> None:
-        self.actions.work.give(mark)
-        self.actions.rate()
 
-    def _label(self, mark: int) -> str:
+def _type_mark(page: RatingPage, device: InputDevice, name: str, *_domain: object) -> bool:
+    is_mark = device is InputDevice.KEYBOARD and name in _KEYS
+    if is_mark:
+        _give(page, _KEYS[name])
+    return is_mark
+
+
+@page_kind("rating", back=_watch, input_pressed=_type_mark)
+def domain_page(page: RatingPage, form: RatingForm, domain: RatingDomain) -> PageContent:
+    """Accept one mark, three of them with their meaning, and lead to the next domain."""
+
+    def label(mark: int) -> str:
         if mark not in _SENTENCES:
             return str(mark)
-        sentence = self.say(f"rate.{self._domain.name}.{_SENTENCES[mark]}")
-        return self.say("rating.mark", mark=mark, sentence=sentence)
+        sentence = page.say(f"rate.{domain.name}.{_SENTENCES[mark]}")
+        return page.say("rating.mark", mark=mark, sentence=sentence)
+
+    marks = (page.button(f"mark {each}", partial(_give, page, each), label(each)) for each in MARKS)
+    others = _rows(page, *(["undo"] if page.session.work.marks else []), "watch", "leave")
+    title = page.say("rating.title", form=form.title, domain=page.say(f"rate.{domain.name}"))
+    # The focus is not on a mark, which would then be given more often than others.
+    said = (page.say("rating.text"),)
+    return PageContent(said, rows=(*marks, *others), title=title, first="watch")
 
 
-class RatedPage(RatingPage):
-    """Shows the marks of a replay, and leads to the next one."""
-
-    name = "rated"
-
-    def content(self) -> PageContent:
-        work = self.actions.work
-        facts = [
-            Fact(self.say(f"rate.{domain.name}"), str(work.marks[domain.name]))
-            for form in work.forms
-            for domain in form.domains
-            if domain.name in work.marks
-        ]
-        is_last = work.rated == len(work.trial_ids)
-        title = self.say("rated.all" if is_last else "rated.title")
-        text = self.say("rated.all text" if is_last else "rated.text", rated=work.rated)
-        following = [] if is_last else ["next"]
-        previous = ["previous"] if work.place else []
-        rows = self.rows(*following, "undo", "watch", *previous, "leave")
-        return PageContent((text,), facts, rows, title=title, first="next")
+@page_kind("rated", back=_watch)
+def rated_page(page: RatingPage) -> PageContent:
+    """Show the marks of a replay, and lead to the next one."""
+    work = page.session.work
+    facts = [
+        Fact(page.say(f"rate.{domain.name}"), str(work.marks[domain.name]))
+        for form in work.forms
+        for domain in form.domains
+        if domain.name in work.marks
+    ]
+    is_last = work.rated == len(work.trial_ids)
+    title = page.say("rated.all" if is_last else "rated.title")
+    text = page.say("rated.all text" if is_last else "rated.text", rated=work.rated)
+    following = [] if is_last else ["next"]
+    previous = ["previous"] if work.place else []
+    rows = _rows(page, *following, "undo", "watch", *previous, "leave")
+    return PageContent((text,), facts, rows, title=title, first="next")
 
 
-class LoadingPage(RatingPage):
-    """Waits for a replay; says why where it cannot be shown."""
-
-    name = "rating-loading"
-
-    def __init__(self, actions: RatingPresenter, loading: Future[Playback]) -> None:
-        super().__init__(actions)
-        self._loading = loading
-
-    def content(self) -> PageContent:
-        problem = ""
-        if self._loading.done():
-            error = self._loading.exception()
-            problem = str(error) if isinstance(error, InputError) else ""
-        text = problem or self.say("rating-loading.text")
-        rows = self.rows(*(["previous"] if self.actions.work.place else []), "leave")
-        return PageContent((text,), rows=rows)
-
-    def back(self) -> None:
-        """There is nothing to go back to yet."""
+# There is nothing to go back to yet.
+@page_kind("rating-loading", back=lambda _page, _loading: None)
+def loading_page(page: RatingPage, loading: Future[Playback]) -> PageContent:
+    """Wait for a replay; say why where it cannot be shown."""
+    error = loading.exception() if loading.done() else None
+    problem = str(error) if isinstance(error, InputError) else ""
+    rows = _rows(page, *(["previous"] if page.session.work.place else []), "leave")
+    return PageContent((problem or page.say("rating-loading.text"),), rows=rows)

@@ -3,84 +3,75 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import Future
-from enum import Enum
+from dataclasses import dataclass
 from functools import reduce
 
 from rastrainer.number_text import clock
-from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.input.inputs import ControlName
-from rastrainer_simulator.presentation.feedback_event import feedback_event, feedback_of
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS, Bindings
+from rastrainer_simulator.input.gamepads import w3c_gamepad_inputs
+from rastrainer_simulator.input.inputs import (
+    ControlContext,
+    ControlName,
+    InputDevice,
+    button_in_menu,
+)
+from rastrainer_simulator.presentation.feedback_event import feedback_event
 from rastrainer_simulator.presentation.messages import InstructorOrder
 from rastrainer_simulator.presentation.presenter import Presenter
 from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage
 from rastrainer_simulator.replay.playback import PERIOD_S, Playback
 from rastrainer_simulator.state import SimulationState, StepResult
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label, pair_label
-from rastrainer_simulator.viewpoint.best_view import BestView, BestViews
-from rastrainer_simulator.viewpoint.view_control import (
-    STILL,
-    Pictures,
-    ViewControl,
-    camera_pose,
-    orbit_to,
-)
+from rastrainer_simulator.viewpoint.trial_view import TrialView
+from rastrainer_simulator.viewpoint.view_control import Pictures, camera_pose
 
 STEP_S = 5.0
 SLOWLY = 0.5
 """Speed at which the worst touch is shown."""
 
 
-class PlayerAction(str, Enum):
-    """Actions of a viewer of a replay."""
-
-    PLAY = "play"
-    BACK = "back"
-    FORWARD = "forward"
-    WORST = "worst"
-    CAMERA = "camera"
-    END = "end"
+WORST_TOO = {InputDevice.KEYBOARD: "KeyT", InputDevice.GAMEPAD: "x"}
+"""Additional inputs for the worst touch, which no control of the menus uses."""
+PRESSED = 0.5
 
 
-ACTIONS: Mapping[ControlName, PlayerAction] = {
-    ControlName.ACCEPT: PlayerAction.PLAY,
-    ControlName.PAUSE: PlayerAction.PLAY,
-    ControlName.LEFT: PlayerAction.BACK,
-    ControlName.RIGHT: PlayerAction.FORWARD,
-    ControlName.UP: PlayerAction.WORST,
-    ControlName.CAMERA: PlayerAction.CAMERA,
-    ControlName.BACK: PlayerAction.END,
-    ControlName.MENU: PlayerAction.END,
-}
-"""The actions of the controls during a replay."""
+def viewer_control(bindings: Bindings, device: InputDevice, name: str) -> ControlName | None:
+    """Return the control that an input works during a replay; None if it works none."""
+    control = bindings.control(device, name, ControlContext.MENU)
+    if control is None and name == WORST_TOO[device]:
+        return ControlName.UP
+    is_camera = name in bindings.table(device)[ControlName.CAMERA]
+    return ControlName.CAMERA if control is None and is_camera else control
 
 
+@dataclass(frozen=True)
 class Player:
-    """Carries out the viewer's actions."""
+    """Carries out what the viewer's controls do.
 
-    def __init__(self, playback: Playback, end: Callable[[], None], blinded: str = "") -> None:
-        """`end` is called when the viewer ends it; `blinded` as of `ReplayPresenter`."""
-        self.playback = playback
-        self._blinded = blinded
-        self._end = end
+    `end` is called when the viewer ends it; `blinded` is as of `ReplayPresenter`.
+    """
 
-    def do(self, action: PlayerAction) -> None:
-        playback = self.playback
-        if action is PlayerAction.PLAY:
-            playback.pause(playback.is_playing)
-        elif action is PlayerAction.BACK:
-            playback.play_from(playback.time_s - STEP_S)
-        elif action is PlayerAction.FORWARD:
-            playback.play_from(playback.time_s + STEP_S)
-        elif action is PlayerAction.CAMERA:
-            names = tuple(playback.setup.scenario.cameras)
-            place = names.index(playback.latest.camera) if playback.latest.camera in names else -1
-            playback.use_camera(names[(place + 1) % len(names)])
-        elif action is PlayerAction.END:
-            self._end()
-        elif playback.trial.worst is not None and not self._blinded:
-            _label, begin, end = playback.trial.worst
-            playback.play_from(begin, end, SLOWLY)
+    playback: Playback
+    end: Callable[[], None]
+    blinded: str = ""
+
+    def do(self, control: ControlName) -> None:
+        playback, worst = self.playback, self.playback.trial.worst
+        match control:
+            case ControlName.ACCEPT | ControlName.PAUSE:
+                playback.pause(playback.is_playing)
+            case ControlName.LEFT:
+                playback.play_from(playback.time_s - STEP_S)
+            case ControlName.RIGHT:
+                playback.play_from(playback.time_s + STEP_S)
+            case ControlName.CAMERA:
+                names, now = tuple(playback.setup.scenario.cameras), playback.latest.camera
+                place = names.index(now) if now in names else -1
+                playback.use_camera(names[(place + 1) % len(names)])
+            case ControlName.BACK | ControlName.MENU:
+                self.end()
+            case ControlName.UP if worst is not None and not self.blinded:
+                playback.play_from(*worst[1:], SLOWLY)
 
     def screen(self, texts: Texts, hints: tuple[Hint, ...], language: str) -> Screen:
         """Return the present screen; `language` is the BCP 47 tag of the texts."""
@@ -88,8 +79,8 @@ class Player:
         trial = playback.trial
         task = playback.setup.scenario.task(trial.task)
         instruction: str = say("replay.title", task=task.title, trainee=trial.trainee)
-        if self._blinded:
-            instruction = self._blinded
+        if self.blinded:
+            instruction = self.blinded
         elif trial.worst is not None and playback.speed != 1.0:
             instruction = say("replay.worst", point=trial.worst[0])
         kept = len(playback.latest.training.touches)
@@ -108,34 +99,6 @@ class Player:
         )
 
 
-_KEYS = {
-    "Space": PlayerAction.PLAY,
-    "Enter": PlayerAction.PLAY,
-    "ArrowLeft": PlayerAction.BACK,
-    "ArrowRight": PlayerAction.FORWARD,
-    "ArrowUp": PlayerAction.WORST,
-    "KeyT": PlayerAction.WORST,
-    "KeyC": PlayerAction.CAMERA,
-    "KeyM": PlayerAction.END,
-    "Escape": PlayerAction.END,
-}
-"""W3C `KeyboardEvent.code` → action."""
-_PAD = {
-    0: PlayerAction.PLAY,
-    1: PlayerAction.END,
-    2: PlayerAction.WORST,
-    3: PlayerAction.CAMERA,
-    9: PlayerAction.END,
-    12: PlayerAction.WORST,
-    14: PlayerAction.BACK,
-    15: PlayerAction.FORWARD,
-}
-"""Buttons of the W3C standard gamepad."""
-_PRESSES = {
-    **{control.value: action for control, action in ACTIONS.items()},
-    ControlName.TOUCH.value: PlayerAction.PLAY,
-    ControlName.UNDO.value: PlayerAction.END,
-}
 RATE = "rate"
 """The item of the hint by which a rater who clicks leaves the replay."""
 _PLAY, _CAMERA = (("Space",), "hint.play"), (("KeyC",), "hint.camera")
@@ -161,19 +124,15 @@ class ReplayPresenter(Presenter):
         super().__init__()
         self._language = language
         self._texts = Texts(LANGUAGES[language])
-        self._count = 0
-        self._held: dict[int, frozenset[int]] = {}
+        self._held: dict[int, Sequence[str]] = {}
         self._key_names: Mapping[str, str] = {}
         self._end = end
-        self.screen = Screen()
         self._play(playback, blinded)
 
     def _play(self, playback: Playback, blinded: str) -> None:
         self._playback = playback
-        self._view = ViewControl()
-        self._best = BestViews()
-        self._search: Future[BestView | None] | None = None
-        self._wants_worst = False
+        self._view = TrialView()
+        self._is_view_begun = False
         self._player = Player(playback, self._end, blinded)
         self._blinded = blinded
         playback.changed = self._refresh
@@ -181,38 +140,41 @@ class ReplayPresenter(Presenter):
         self._refresh()
 
     def pictures(self, now: SimulationState) -> Pictures:
-        self._view.use(now.camera)
+        self._view.control.use(now.camera)
         camera = self._playback.setup.scenario.cameras[now.camera]
-        return Pictures(camera_pose(camera, self._view.orbit))
+        return Pictures(camera_pose(camera, self._view.control.orbit))
 
     def instruct(self, order: InstructorOrder, text: str) -> str:  # noqa: ARG002
         """Refuse: a recorded trial takes no orders."""
         return self._texts.say("instructor.nothing runs")
 
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:  # noqa: ARG002
-        self._wants_worst = False
+        self._view.is_best_wanted = False
         camera = self._playback.setup.scenario.cameras[self._playback.latest.camera]
-        self._view.turn(camera, around_deg, higher_deg, zoom)
+        self._view.control.turn(camera, around_deg, higher_deg, zoom)
 
     def view_left(self, view: int) -> None:
         self._held.pop(view, None)
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:  # noqa: ARG002
         if is_down:
-            self._do(_KEYS.get(code))
+            self._press(InputDevice.KEYBOARD, code)
 
     def on_layout(self, view: int, keys: Mapping[str, str]) -> None:  # noqa: ARG002
         self._key_names = keys
         self._refresh()
 
-    def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:  # noqa: ARG002
-        held = frozenset(number for number, value in enumerate(buttons) if value > 0.5)
-        for number in held - self._held.get(view, frozenset()):
-            self._do(_PAD.get(number))
-        self._held[view] = held
+    def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
+        """Process the inputs of a gamepad that have just been pressed."""
+        inputs = w3c_gamepad_inputs(axes, buttons)
+        down = [name for name, value in inputs.items() if value > PRESSED]
+        held, self._held[view] = self._held.get(view, ()), down
+        for name in down:
+            if name not in held:
+                self._press(InputDevice.GAMEPAD, name)
 
     def on_press(self, view: int, control: str) -> None:  # noqa: ARG002
-        self._do(_PRESSES.get(control))
+        self._do(button_in_menu(control))
 
     def on_visibility(self, view: int, is_visible: bool) -> None:  # noqa: ARG002
         if not is_visible:
@@ -221,46 +183,33 @@ class ReplayPresenter(Presenter):
     def on_silence(self, view: int) -> None:  # noqa: ARG002
         self._playback.pause(True)
 
-    def _do(self, action: PlayerAction | None) -> None:
-        if action is None:
+    def _press(self, device: InputDevice, name: str) -> None:
+        self._do(viewer_control(DEFAULT_BINDINGS, device, name))
+
+    def _do(self, control: ControlName | None) -> None:
+        if control is None:
             return
-        self._player.do(action)
-        if action in (PlayerAction.WORST, PlayerAction.CAMERA):
-            self._wants_worst = action is PlayerAction.WORST and not self._blinded
+        self._player.do(control)
+        if control not in (ControlName.UP, ControlName.CAMERA):
+            return
         playback = self._playback
-        now, worst = playback.latest, playback.trial.worst
-        if worst is None or not self._wants_worst:
-            return
-        if self._search is None:
-            head_to_world = now.head_to_world.copy()
-            head_to_world[:3, 3] *= MM_PER_M
-            self._best.look(playback.setup, playback.trial.task, head_to_world)
-        self._search = self._best.search(worst[0], now.q)
+        is_led = playback.trial.worst is not None and not self._blinded
+        is_best_wanted = is_led and control is ControlName.UP
+        if is_best_wanted and not self._is_view_begun:
+            self._is_view_begun = True
+            self._view.begin(playback.setup, playback.latest)
+        self._view.is_best_wanted = is_best_wanted
 
     def _follow(self, result: StepResult) -> None:
-        """Publish the events as sounds and vibration, and move the view.
-
-        It goes to the best view of the worst touch if that is wanted, as soon as it is known.
-        """
+        """Publish the events as sounds and vibration, and move the view."""
         for event in result.events:
             kind = feedback_event(event, result.state.touch)
             if kind is not None:
-                self._count += 1
-                self.updates.publish(feedback_of(kind, self._count))
-        is_found = self._wants_worst and self._search is not None and self._search.done()
-        view = self._search.result() if self._search is not None and is_found else None
-        camera = self._playback.setup.scenario.cameras[result.state.camera]
-        self._view.use(result.state.camera)
-        if view is not None:
-            self._wants_worst = False
-            self._view.go(orbit_to(camera, view.eye, view.fiducial))
-        self._view.advance(PERIOD_S, camera, STILL, is_arm_still=True)
+                self.happened(kind)
+        self._view.advance(PERIOD_S, result.state, self._playback.setup.scenario)
 
     def _refresh(self) -> None:
-        screen = self._make_screen()
-        if screen != self.screen:
-            self.screen = screen
-            self.updates.publish(screen)
+        self.show(self._make_screen())
 
     def _make_screen(self) -> Screen:
         hints = []

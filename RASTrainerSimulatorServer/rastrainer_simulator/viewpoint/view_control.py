@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Annotated, NamedTuple
+from typing import Annotated
 
 from rastrainer.json_checks import number
 from rastrainer.scenario.scenario import Camera
@@ -261,17 +261,13 @@ SIDEWAYS = 0.2
 """Sine of the angle between the guide and the picture's right, below which up decides."""
 
 
-class Aim(NamedTuple):
-    """Offsets of a planned line's entry and target from the guide's axis: right and up, m.
+def aim(
+    guide: GuideAxis, line: PlannedLine, pictures: Pictures
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the offsets of a line's entry and target from the guide's axis: right and up, m.
 
     Right is the right of the main picture, or of the eyes in a headset. Up is across both.
     """
-
-    entry: tuple[float, float]
-    target: tuple[float, float]
-
-
-def aim(guide: GuideAxis, line: PlannedLine, pictures: Pictures) -> Aim:
     main = pictures.main
     to_the_right = unit(cross(subtract(main.focal_point, main.position), main.view_up))
     upward = main.view_up
@@ -288,4 +284,4 @@ def aim(guide: GuideAxis, line: PlannedLine, pictures: Pictures) -> Aim:
         offset = subtract(point, guide.tip)
         return dot(offset, right), dot(offset, up)
 
-    return Aim(beside(line.entry), beside(line.target))
+    return beside(line.entry), beside(line.target)

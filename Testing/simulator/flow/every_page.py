@@ -18,7 +18,6 @@ from rastrainer.protocol import MAX_ASSIGNMENTS, AssignmentState, GoalKind, Phas
 from rastrainer.registration.fits import RIGID
 from rastrainer.study.ratings import FORMS
 from rastrainer.study_messages import AssignmentStanding, CurriculumMessage, StudyStep
-from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.flow import pages, procedure_screen, trial_screen
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.pages import (
@@ -30,14 +29,13 @@ from rastrainer_simulator.flow.pages import (
     trainee_id,
     trial_review,
 )
-from rastrainer_simulator.flow.pages.session_page import PageKind, SessionPage
 from rastrainer_simulator.flow.pages.trial_review import MOST_TRIALS
-from rastrainer_simulator.flow.session.open_pages import OpenPages
+from rastrainer_simulator.flow.session.open_pages import OpenPages, Page
 from rastrainer_simulator.flow.session.preferences import InstructorLock
 from rastrainer_simulator.flow.session.trainee_history import OwnTrial
 from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.presentation.screen import Screen, without_secrets
-from rastrainer_simulator.rating.rating_presenter import DomainPage, LoadingPage, RatedPage
+from rastrainer_simulator.rating.rating_presenter import domain_page, loading_page, rated_page
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.state import TrainingState, TrialResult
 from rastrainer_simulator.texts.texts import LANGUAGES
@@ -137,14 +135,12 @@ PROCEDURE_SCORED = replace(
 
 OWN_TRIALS = tuple(
     OwnTrial(
-        TrialRow(
-            *("T-001", "desktop", "task-1"),
-            values={"score": 61.0 + number},
-            trial_id=f"trial-{number}",
-            acceptable=True,
-        ),
-        "test-head",
-        f"2026-11-{number + 1:02d}T15:04:05Z",
+        *("T-001", "desktop", "task-1"),
+        values={"score": 61.0 + number},
+        trial_id=f"trial-{number}",
+        acceptable=True,
+        scenario="test-head",
+        started_utc=f"2026-11-{number + 1:02d}T15:04:05Z",
         is_passed=number % 2 == 0,
     )
     for number in range(MOST_TRIALS)
@@ -229,9 +225,9 @@ def _screens_of_raters(texts, language: str) -> dict[str, Screen]:
     desk = _Desk(texts)
     form = FORMS["osats"]
     rater_pages = (
-        DomainPage(desk, form, form.domains[-1]),
-        RatedPage(desk),
-        LoadingPage(desk, _Loading.trial),
+        domain_page(desk, form, form.domains[-1]),
+        rated_page(desk),
+        loading_page(desk, _Loading.trial),
     )
     screens = {}
     for page in rater_pages:
@@ -246,9 +242,7 @@ def names_of_pages() -> set[str]:
     names = (each.name for each in iter_modules(pages.__path__, f"{pages.__name__}."))
     modules = (trial_screen, procedure_screen, *map(import_module, names))
     found = [value for module in modules for value in vars(module).values()]
-    kinds = {value.name for value in found if isinstance(value, PageKind)}
-    classes = [v for v in found if isinstance(v, type) and issubclass(v, SessionPage) and v.name]
-    return kinds | {each.name for each in classes}
+    return {v.name for v in found if isinstance(v, type) and issubclass(v, Page) and v.name}
 
 
 def with_curriculum(session) -> None:
@@ -270,7 +264,7 @@ def with_curriculum(session) -> None:
     session.services = replace(session.services, is_slicer_connected=lambda: True)
 
 
-def _pages(session) -> Iterator[SessionPage]:
+def _pages(session) -> Iterator[Page]:
     keys, touch = InputDevice.KEYBOARD, ControlName.TOUCH
     for simple in (start.start_page, start.quit_page, start.settings_page):
         yield simple(session)

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from rastrainer_simulator.flow.session.trial_view import AWAY_M, TALLEST_M, across_line, along_skin
 from rastrainer_simulator.trial_state import PlannedLine
+from rastrainer_simulator.viewpoint.trial_view import AWAY_M, TALLEST_M, across_line, along_skin
 from rastrainer_simulator.viewpoint.view_control import UP
 
 EYE = (0.5, -0.6, 0.6)

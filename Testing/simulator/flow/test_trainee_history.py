@@ -107,7 +107,7 @@ def test_a_trial_failed_by_aborting_counts_toward_competence_though_it_has_no_sc
     write_scored(tmp_path, 1, 40.0)
     write_aborted(tmp_path, 2)
     write_aborted(tmp_path, 3, touches=0)
-    assert [trial.is_aborted for trial in TraineeHistory(tmp_path).of(TRAINEE)] == [False, True]
+    assert [trial.is_aborted for trial in TraineeHistory(tmp_path).own(TRAINEE)] == [False, True]
 
 
 def test_a_score_whose_journal_was_altered_is_left_out(tmp_path):

@@ -6,12 +6,12 @@ import pytest
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.protocol import StepKind
 from rastrainer.study_messages import StudyStep
-from rastrainer_simulator.flow.session.trial_view import turned
 from rastrainer_simulator.presentation.messages import Hello
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.replay.resimulation import replay
 from rastrainer_simulator.state import OperatorInput
 from rastrainer_simulator.viewpoint.arm_cover import ArmCover, places_to_see
+from rastrainer_simulator.viewpoint.trial_view import turned
 from rastrainer_simulator.viewpoint.view_control import FRONT
 
 LEFT = OperatorInput((-1.0, 0.0, 0.0), operator="keyboard")

@@ -176,7 +176,7 @@ def test_the_worst_touch_is_shown_in_its_best_view_until_the_camera_changes(view
 
     # One thread searches for the views, one after the other; first it is kept busy.
     may_search = threading.Event()
-    viewer.presenter._best._worker.submit(may_search.wait, 60.0)
+    viewer.presenter._view._best._worker.submit(may_search.wait, 60.0)
     viewer.press("KeyT")
     assert off_middle() > 0.001
     may_search.set()

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
 from rastrainer.protocol import PROCEDURE_PHASES, RegistrationMethod
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.record import AbortedTrial, AnyTrial
+
+Row = TypeVar("Row", bound="TrialRow")
 
 
 @dataclass(frozen=True)
@@ -43,7 +45,7 @@ class TrialRow:
     is_in_procedure: bool = False
 
     @classmethod
-    def of(cls, record: AnyTrial, **known: Any) -> TrialRow:
+    def of(cls: type[Row], record: AnyTrial, **known: Any) -> Row:
         phase = record.phase if isinstance(record, AbortedTrial) else ""
         return cls(
             record.trainee,

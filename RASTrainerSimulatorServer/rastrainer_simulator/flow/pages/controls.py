@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from functools import partial
-from typing import TypeVar
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
-from rastrainer_simulator.flow.pages.session_page import SessionPage, ShownPage, page_kind
-from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
-from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow, page_kind
+from rastrainer_simulator.flow.session.session import SessionPage, TrainingSession
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS, LAYOUTS, preset_name
 from rastrainer_simulator.input.inputs import (
     IN_MENUS,
@@ -40,7 +37,6 @@ _LISTED = (
     ("pause", (ControlName.PAUSE,)),
     ("menu", (ControlName.MENU,)),
 )
-T = TypeVar("T")
 REMEMBERED = 4
 """Number of inputs shown on the page to try them."""
 
@@ -74,7 +70,7 @@ Pressed = tuple[tuple[InputDevice, str], ...]
 """Inputs with their devices, the newest first."""
 
 
-def _show_input(page: ShownPage, device: InputDevice, name: str, pressed: Pressed = ()) -> bool:
+def _show_input(page: SessionPage, device: InputDevice, name: str, pressed: Pressed = ()) -> bool:
     if name in page.session.controls.bindings.table(device)[ControlName.MENU]:
         return False
     page.set_value("pressed", ((device, name), *pressed)[:REMEMBERED])
@@ -82,7 +78,7 @@ def _show_input(page: ShownPage, device: InputDevice, name: str, pressed: Presse
     return True
 
 
-@page_kind("test", take_input=_show_input)
+@page_kind("test", input_pressed=_show_input)
 def pad_test_page(page: SessionPage, pressed: Pressed = ()) -> PageContent:
     """Show every input that arrives, except the menu's, which leaves."""
     session, say, held = page.session, page.say, page.session.controls.held
@@ -117,7 +113,7 @@ LISTEN_S = 10.0
 
 
 @page_kind("bindings")
-def bindings_page(page: ShownPage, device: InputDevice, group: str = "work") -> PageContent:
+def bindings_page(page: SessionPage, device: InputDevice, group: str = "work") -> PageContent:
     session, say = page.session, page.say
     table, presets = session.controls.bindings.table(device), LAYOUTS[device]
     preset = preset_name(device, table)
@@ -136,15 +132,11 @@ def bindings_page(page: ShownPage, device: InputDevice, group: str = "work") -> 
         label = say(f"control.{control.value}")
         return page.button(control.value, listen, label, value=session.texts.listed(inputs))
 
-    def shown(name: str, options: Sequence[T], chosen: T, key: str) -> PageRow:
-        return page.choice(name, options, chosen, partial(page.set_value, name), say(key))
-
+    shown = say(f"bindings.preset.{preset or 'own'}")
     rows = (
-        shown("device", tuple(InputDevice), device, f"device.{device.value}"),
-        page.choice(
-            "preset", tuple(presets), preset, use_preset, say(f"bindings.preset.{preset or 'own'}")
-        ),
-        shown("group", tuple(GROUPS), group, f"bindings.group.{group}"),
+        page.choice("device", tuple(InputDevice), device, say(f"device.{device.value}")),
+        page.choice("preset", tuple(presets), preset, shown, use_preset),
+        page.choice("group", tuple(GROUPS), group, say(f"bindings.group.{group}")),
         *map(control_row, GROUPS[group]),
         page.button("defaults", restore_defaults),
         page.button("back"),
@@ -152,14 +144,14 @@ def bindings_page(page: ShownPage, device: InputDevice, group: str = "work") -> 
     return PageContent(rows=rows)
 
 
-def _count_down(page: ShownPage, dt: float, *_wanted: object, left_s: float = LISTEN_S) -> None:
+def _count_down(page: SessionPage, dt: float, *_wanted: object, left_s: float = LISTEN_S) -> None:
     page.set_value("left_s", left_s - dt)
     if left_s <= dt:
         page.back()
 
 
 def _take_new_input(
-    page: ShownPage,
+    page: SessionPage,
     pressed: InputDevice,
     name: str,
     device: InputDevice,
@@ -177,7 +169,7 @@ def _take_new_input(
     return True
 
 
-@page_kind("listen", advance=_count_down, take_input=_take_new_input)
+@page_kind("listen", advance=_count_down, input_pressed=_take_new_input)
 def listen_page(
     page: SessionPage, device: InputDevice, control: ControlName, left_s: float = LISTEN_S
 ) -> PageContent:
@@ -220,13 +212,13 @@ def rebind(session: TrainingSession, device: InputDevice, control: ControlName, 
     try:
         bindings = session.controls.bindings.rebound(device, control, name)
     except InputError:
-        session.complain(session.texts.say("bindings.impossible"))
+        session.complain(session.say("bindings.impossible"))
         return
     session.rebind(bindings)
     session.notices.add(
-        session.texts.say(
+        session.say(
             "bindings.changed",
-            control=session.texts.say(f"control.{control.value}"),
+            control=session.say(f"control.{control.value}"),
             input=session.operator.input_label(device, name),
         )
     )

@@ -8,33 +8,22 @@ from __future__ import annotations
 from collections.abc import Iterator
 from concurrent.futures import Future
 from functools import partial
+from typing import Any
 
 from rastrainer.protocol import TRIAL_RUN, Mode, StepKind, TutorialRule
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.scenario import method_of, playable_methods
 from rastrainer.study_messages import AssignmentStanding, StudyStep
 from rastrainer.trial.scoring import PASS_MARK
-from rastrainer_simulator.flow.pages.session_page import SessionPage, ShownPage, page_kind
 from rastrainer_simulator.flow.pages.trainee_id import (
     clicked_id_page,
     keyboard_page,
     questionnaire_page,
 )
 from rastrainer_simulator.flow.pages.trial_review import own_trials_page
-from rastrainer_simulator.flow.session.chosen_trial import (
-    assignment_obstacle,
-    has_learned,
-    needs_tutorial,
-    obstacle,
-    offered_method,
-    skippable,
-    start_task,
-    tutorial_obstacle,
-    tutorial_rule,
-    usual_id,
-)
-from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
-from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.flow.session import chosen_trial
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow, page_kind
+from rastrainer_simulator.flow.session.session import SessionPage, TrainingSession
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.presentation.screen import ItemKind, MenuItem, ScoreTrend
 
@@ -53,7 +42,7 @@ class ExperimentPage(SessionPage):
 
     def __init__(self, session: TrainingSession, first: str = "") -> None:
         super().__init__(session)
-        self._usual_id = "" if session.trainee_id else usual_id(session)
+        self._usual_id = "" if session.trainee_id else chosen_trial.usual_id(session)
         session.trainee = self._usual_id or session.trainee
         self._first = first or self._next_task()
 
@@ -72,31 +61,30 @@ class ExperimentPage(SessionPage):
         rows = (*self._choices(), *self._beginnings(), self.button("back"))
         return PageContent(said, rows=rows, trend=trend, first=self._first)
 
+    def set_value(self, name: str, value: Any) -> None:
+        """Choose for the session, not for this page alone."""
+        setattr(self.session, name, value)
+
     def _choices(self) -> Iterator[PageRow]:
         session, step, say = self.session, self.session.step, self.say
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
             yield self.button("answer", partial(self._open_questionnaire, step))
         yield from self._trainee()
-        modes, shown = [mode.value for mode in Mode], say(f"mode.{session.mode}")
-        yield self.choice("mode", modes, session.mode, partial(setattr, session, "mode"), shown)
+        modes = [mode.value for mode in Mode]
+        yield self.choice("mode", modes, session.mode, say(f"mode.{session.mode}"))
         yield self.button("scenario", self._open_heads, value=session.scenario.title)
-        methods, offered = playable_methods(session.scenario), offered_method(session)
-        is_free = step is None
+        methods, offered = playable_methods(session.scenario), chosen_trial.offered_method(session)
+        others: dict[str, Any] = {"is_enabled": step is None}
         if len(methods) > 1:
             method = offered if step is None else method_of(step.method)
-            shown, help_ = say(f"method.{method.value}"), say("experiment.method help")
-            choose = partial(setattr, session, "method")
-            yield self.choice(
-                "method", methods, offered, choose, shown, is_enabled=is_free, help=help_
-            )
+            others["help"], shown = say("experiment.method help"), say(f"method.{method.value}")
+            yield self.choice("method", methods, offered, shown, **others)
         names = ["", *(each.name for each in session.scenario.procedures)]
         chosen = session.procedure if session.procedure in names else ""
         if len(names) > 1:
+            others["help"] = say("experiment.procedure help")
             shown = session.procedure_title(chosen if step is None else step.procedure)
-            choose, help_ = partial(setattr, session, "procedure"), say("experiment.procedure help")
-            yield self.choice(
-                "procedure", names, chosen, choose, shown, is_enabled=is_free, help=help_
-            )
+            yield self.choice("procedure", names, chosen, shown, **others)
 
     def _open_heads(self) -> None:
         session = self.session
@@ -130,9 +118,9 @@ class ExperimentPage(SessionPage):
             summary, advice = words.summary(curriculum), words.advice(curriculum)
             opening = self.open_page(assignments_page)
             yield self.button("assignments", opening, value=summary, help=advice)
-        if tutorial_rule(session) is not TutorialRule.SKIPPED:
-            reason = tutorial_obstacle(session)
-            is_done = has_learned(session)
+        if chosen_trial.tutorial_rule(session) is not TutorialRule.SKIPPED:
+            reason = chosen_trial.tutorial_obstacle(session)
+            is_done = chosen_trial.has_learned(session)
             yield self.button(
                 "tutorial",
                 session.begin_tutorial,
@@ -140,7 +128,7 @@ class ExperimentPage(SessionPage):
                 is_enabled=not reason,
                 help=reason or self.say("experiment.tutorial help"),
             )
-        what = skippable(session)
+        what = chosen_trial.skippable(session)
         if what:
             label = self.say(f"experiment.skip {what}")
             yield self.button("skip", partial(self._skip, what), label)
@@ -159,11 +147,11 @@ class ExperimentPage(SessionPage):
 
     def _task(self, name: str) -> PageRow:
         session = self.session
-        reason = obstacle(session, name)
+        reason = chosen_trial.obstacle(session, name)
         outcome = session.outcome_of(name)
         return self.button(
             name,
-            partial(start_task, session, name),
+            partial(chosen_trial.start_task, session, name),
             session.task_title(name),
             value=self.say(f"experiment.{outcome}") if outcome else "",
             is_enabled=not reason,
@@ -175,18 +163,18 @@ class ExperimentPage(SessionPage):
         session, step = self.session, self.session.step
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
             return "answer"
-        if needs_tutorial(session) and not tutorial_obstacle(session):
+        if chosen_trial.needs_tutorial(session) and not chosen_trial.tutorial_obstacle(session):
             return "tutorial"
         curriculum = session.curriculum
         best = None if curriculum is None else curriculum.find(curriculum.next)
-        if best is not None and not assignment_obstacle(session, best):
+        if best is not None and not chosen_trial.assignment_obstacle(session, best):
             return "assignments"
         outcomes = ("", "failed") if step is None else ("",)
         trainee, head = session.trainee_id, session.scenario.name
         for name in (task.name for task in session.scenario.tasks):
             is_left_out = name == TRIAL_RUN and session.history.needs_no_trial_run(trainee, head)
             is_to_do = session.outcome_of(name) in outcomes and not is_left_out
-            if is_to_do and not obstacle(session, name):
+            if is_to_do and not chosen_trial.obstacle(session, name):
                 return name
         return "mode" if trainee else ""
 
@@ -205,7 +193,7 @@ def open_experiment(
 Listing = Future[list[ListedScenario]]
 
 
-def _leave_when_loaded(page: ShownPage, _dt: float, _listing: Listing, wanted: str = "") -> None:
+def _leave_when_loaded(page: SessionPage, _dt: float, _listing: Listing, wanted: str = "") -> None:
     """Go back once the chosen head is loaded; stay if it was refused."""
     session = page.session
     if wanted == session.scenario.name and not session.reload.is_under_way:
@@ -213,7 +201,7 @@ def _leave_when_loaded(page: ShownPage, _dt: float, _listing: Listing, wanted: s
 
 
 @page_kind("scenario", advance=_leave_when_loaded)
-def scenario_page(page: ShownPage, listing: Listing, wanted: str = "") -> PageContent:
+def scenario_page(page: SessionPage, listing: Listing, wanted: str = "") -> PageContent:
     """List the scenarios, and why some cannot be used."""
     session, is_loading = page.session, page.session.reload.is_under_way
     present = session.scenario.name
@@ -257,7 +245,7 @@ def assignments_page(page: SessionPage) -> PageContent:
         return PageContent(rows=(back,))
 
     def row(each: AssignmentStanding) -> PageRow:
-        reason = assignment_obstacle(session, each)
+        reason = chosen_trial.assignment_obstacle(session, each)
         return page.button(
             _ASSIGNMENT + each.name,
             partial(begin, each),
@@ -270,7 +258,7 @@ def assignments_page(page: SessionPage) -> PageContent:
     def begin(each: AssignmentStanding) -> None:
         session.mode = each.mode or session.mode
         session.method, session.procedure = method_of(each.method), each.procedure
-        start_task(session, each.task)
+        chosen_trial.start_task(session, each.task)
 
     said = (curriculum.title, words.advice(curriculum))
     rows = (*map(row, curriculum.assignments), back)

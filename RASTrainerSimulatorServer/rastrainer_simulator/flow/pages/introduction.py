@@ -8,30 +8,25 @@ from rastrainer.number_text import clock
 from rastrainer.protocol import TRIAL_RUN, TutorialRule
 from rastrainer_simulator.flow.pages.controls import controls_page
 from rastrainer_simulator.flow.pages.experiment import open_experiment
-from rastrainer_simulator.flow.pages.session_page import SessionPage, ShownPage, page_kind
 from rastrainer_simulator.flow.pages.trial_review import error_tone
-from rastrainer_simulator.flow.session.chosen_trial import (
-    may_skip,
-    obstacle,
-    start_task,
-    tutorial_rule,
-)
-from rastrainer_simulator.flow.session.open_pages import PageContent
+from rastrainer_simulator.flow.session import chosen_trial
+from rastrainer_simulator.flow.session.open_pages import PageContent, page_kind
+from rastrainer_simulator.flow.session.session import SessionPage
 from rastrainer_simulator.presentation.screen import Fact
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 
 SHEETS = 3
 
 
-def _leave_sheet(page: ShownPage, sheet: int = 1) -> None:
+def _leave_sheet(page: SessionPage, sheet: int = 1) -> None:
     if sheet == 1:
         page.session.pages.close()
     else:
         page.set_value("sheet", sheet - 1)
 
 
-@page_kind("introduction", leave=_leave_sheet)
-def introduction_page(page: ShownPage, sheet: int = 1) -> PageContent:
+@page_kind("introduction", back=_leave_sheet)
+def introduction_page(page: SessionPage, sheet: int = 1) -> PageContent:
     """Show one of a few sheets of text; the last leads to the controls."""
     session = page.session
     key, alone = f"introduction.text.{sheet}", f"introduction.text.{sheet}.alone"
@@ -56,8 +51,8 @@ def tutorial_page(page: SessionPage) -> PageContent:
     tutorial = session.tutorial
     step, steps = (1, 1) if tutorial is None else tutorial.place
     is_practice = tutorial is not None and bool(tutorial.practiced)
-    is_optional = tutorial_rule(session) is not TutorialRule.REQUIRED
-    is_skipped = not is_practice and (is_optional or may_skip(session))
+    is_optional = chosen_trial.tutorial_rule(session) is not TutorialRule.REQUIRED
+    is_skipped = not is_practice and (is_optional or chosen_trial.may_skip(session))
 
     def leave() -> None:
         if is_skipped:
@@ -85,8 +80,8 @@ def tutorial_done_page(page: SessionPage, outcome: TutorialOutcome) -> PageConte
         Fact(say("tutorial-done.first"), say("tutorial.mm", error=outcome.first_error_mm)),
         Fact(say("tutorial-done.touches"), session.texts.listed(errors)),
     )
-    reason = obstacle(session, TRIAL_RUN)
-    start = partial(start_task, session, TRIAL_RUN)
+    reason = chosen_trial.obstacle(session, TRIAL_RUN)
+    start = partial(chosen_trial.start_task, session, TRIAL_RUN)
     rows = (
         page.button("trial-run", start, is_enabled=not reason, help=reason),
         page.button("again", session.begin_tutorial),

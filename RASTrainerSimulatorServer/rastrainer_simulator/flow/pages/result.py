@@ -27,10 +27,9 @@ from rastrainer.trial.scoring import (
 )
 from rastrainer.trial.trial_feedback import MAX_SHORT
 from rastrainer_simulator.flow.pages.experiment import open_experiment
-from rastrainer_simulator.flow.pages.session_page import SessionPage, ShownPage, page_kind
 from rastrainer_simulator.flow.pages.trial_review import ErrorsPage, ReplayPage
-from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
-from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow, page_kind
+from rastrainer_simulator.flow.session.session import SessionPage, TrainingSession
 from rastrainer_simulator.flow.session.trainee_history import (
     beyond_limits,
     detail_number,
@@ -61,7 +60,7 @@ def procedure_details(result: TrialResult | None) -> Mapping[str, Any]:
 
 def procedure_facts(session: TrainingSession, result: TrialResult) -> list[Fact]:
     """Return the procedure's score and its errors in short; [] in a trial of touches alone."""
-    details, say = procedure_details(result), session.texts.say
+    details, say = procedure_details(result), session.say
     score = detail_number(details, "score")
     if score is None:
         return []
@@ -89,12 +88,11 @@ def _trajectories_of(details: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
 
 
 @page_kind("procedure-errors")
-def procedure_errors_page(page: ShownPage, number: int = 0) -> PageContent:
+def procedure_errors_page(page: SessionPage, trajectory: int = 0) -> PageContent:
     each = _trajectories_of(procedure_details(page.session.training.result))
-    details = each[number] if each else {}
+    details = each[trajectory] if each else {}
     name, say = _text(details.get("name")), page.say
-    choose = partial(page.set_value, "number")
-    choice = page.choice("trajectory", range(len(each)), number, choose, name)
+    choice = page.choice("trajectory", range(len(each)), trajectory, name)
     lines = page.button("lines", page.open_page(ErrorsPage, True))
     by_robot = details.get("selfAligned") is True
     text = say("procedure-errors.robot text" if by_robot else "procedure-errors.text")
@@ -178,7 +176,7 @@ def _onward(page: SessionPage) -> tuple[PageRow, ...]:
     return (*rows, page.button("menu", menu, page.say("result.menu")))
 
 
-@page_kind("waiting", leave=lambda page: open_experiment(page.session, _following(page.session)))
+@page_kind("waiting", back=lambda page: open_experiment(page.session, _following(page.session)))
 def waiting_page(page: SessionPage) -> PageContent:
     session, say = page.session, page.say
     scorer, is_there = session.local_scorer, session.services.is_slicer_connected()
@@ -308,7 +306,7 @@ def _worst_point(training: TrainingState, result: TrialResult) -> str:
 
 
 def _facts_of_trial(session: TrainingSession) -> tuple[Fact, ...]:
-    training, state, say = session.training, session.state, session.texts.say
+    training, state, say = session.training, session.state, session.say
     took = state.procedure_time
     procedure = (Fact(say("result.procedure time"), clock(took or 0.0)),)
     return (

@@ -9,22 +9,15 @@ from functools import partial
 from rastrainer_simulator.flow.pages.controls import controls_page
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.introduction import introduction_page
-from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind
-from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
-from rastrainer_simulator.flow.session.preferences import (
-    OF_A_TRIAL,
-    OF_INSTRUCTORS,
-    OF_TRAINEES,
-    OPTIONS,
-    PREFERENCES_FILE,
-)
-from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.flow.session import preferences
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow, page_kind
+from rastrainer_simulator.flow.session.session import SessionPage, TrainingSession
 from rastrainer_simulator.input.inputs import InputDevice
 from rastrainer_simulator.ops.instructor_pin import LONGEST_PIN, SHORTEST_PIN, PinAnswer
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 
 
-@page_kind("start", leave=lambda _page: None)
+@page_kind("start", back=lambda _page: None)
 def start_page(page: SessionPage) -> PageContent:
     """Show the first menu. It leads new trainees through the introduction once."""
     has_read = page.session.has_read_introduction
@@ -54,22 +47,22 @@ def settings_page(page: SessionPage) -> PageContent:
     session, lock = page.session, page.session.lock
 
     def setting(name: str) -> PageRow:
-        waits = session.has_open_trial and name in OF_A_TRIAL
-        is_locked = lock.is_locked and name not in OF_TRAINEES
-        help_ = page.say(f"settings.{name} help", file=PREFERENCES_FILE)
+        waits = session.has_open_trial and name in preferences.OF_A_TRIAL
+        is_locked = lock.is_locked and name not in preferences.OF_TRAINEES
+        help_ = page.say(f"settings.{name} help", file=preferences.PREFERENCES_FILE)
         if waits:
             help_ = page.say("settings.waits")
         elif is_locked:
             help_ = page.say("settings.locked")
-        is_free = lock.has_pin or name not in OF_INSTRUCTORS
+        is_free = lock.has_pin or name not in preferences.OF_INSTRUCTORS
         is_enabled = is_free and not waits and not is_locked
         chosen = getattr(session.preferences, name)
         return page.choice(
             name,
-            OPTIONS[name],
+            preferences.OPTIONS[name],
             chosen,
-            lambda value: session.prefer(**{name: value}),
             shown(name, chosen),
+            lambda value: session.prefer(**{name: value}),
             is_enabled=is_enabled,
             help=help_,
         )
@@ -85,7 +78,8 @@ def settings_page(page: SessionPage) -> PageContent:
 
     unlock = page.button("unlock", page.open_page(PinPage))
     pin = unlock if lock.is_locked else page.button("lock", lock.lock)
-    rows = (*map(setting, OPTIONS), *((pin,) if lock.has_pin else ()), page.button("back"))
+    locks = (pin,) if lock.has_pin else ()
+    rows = (*map(setting, preferences.OPTIONS), *locks, page.button("back"))
     return PageContent(rows=rows)
 
 

@@ -8,8 +8,8 @@ from functools import partial
 
 from rastrainer.study.protocol.questionnaires import QuestionnaireItem, find_questionnaire
 from rastrainer.study_messages import StudyStep
-from rastrainer_simulator.flow.pages.session_page import SessionPage, ShownPage, page_kind
-from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow, page_kind
+from rastrainer_simulator.flow.session.session import SessionPage
 from rastrainer_simulator.presentation.screen import Fact
 
 ROWS = ("ABCDEFGHIJ", "KLMNOPQRST", "UVWXYZ-_.", "0123456789")
@@ -30,15 +30,14 @@ def _delete(page: SessionPage, write: Write) -> PageRow:
 
 
 @page_kind("keyboard")
-def keyboard_page(page: ShownPage, write: Write, **chosen: str) -> PageContent:
+def keyboard_page(page: SessionPage, write: Write, **chosen: str) -> PageContent:
     """Show rows of characters: left and right choose one, accepting types it."""
 
     def row(number: int, characters: str) -> PageRow:
         name = f"row{number}"
         here = chosen.get(name, characters[0])
         shown = " ".join(f"[{each}]" if each == here else each for each in characters)
-        choose, label = partial(page.set_value, name), page.say("keyboard.row")
-        choice = page.choice(name, characters, here, choose, shown, label)
+        choice = page.choice(name, characters, here, shown, label=page.say("keyboard.row"))
         return replace(choice, accept=lambda: write(page.session.trainee + here))
 
     others = _delete(page, write), page.button("done")
@@ -83,7 +82,7 @@ def _follow_study(page: SessionPage, _dt: float, step: StudyStep, **_answers: in
 
 
 @page_kind("questionnaire", advance=_follow_study)
-def questionnaire_page(page: ShownPage, step: StudyStep, **answers: int) -> PageContent:
+def questionnaire_page(page: SessionPage, step: StudyStep, **answers: int) -> PageContent:
     """Collect an answer to each item, and submit them together for Slicer to store."""
     asked = find_questionnaire(step.questionnaire)
 
@@ -95,9 +94,9 @@ def questionnaire_page(page: ShownPage, step: StudyStep, **answers: int) -> Page
         line = page.say(item.name)
         if item.anchors:
             line = page.say("questionnaire.ends", topic=line, **ends(item.name))
-        mark, choose = answers.get(item.name), partial(page.set_value, item.name)
+        mark = answers.get(item.name)
         shown = UNANSWERED if mark is None else str(mark)
-        return page.choice(item.name, asked.marks, mark, choose, shown, f"{number}. {line}")
+        return page.choice(item.name, asked.marks, mark, shown, label=f"{number}. {line}")
 
     def keep() -> None:
         given = [answers[item.name] for item in asked.items]

@@ -8,16 +8,15 @@ from functools import partial
 
 from rastrainer.errors import InputError
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.flow.pages.session_page import SessionPage, clickable_hint, page_kind
-from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow, page_kind
 from rastrainer_simulator.flow.session.plan_marks import plan_marks, scored_lines
-from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.flow.session.session import SessionPage, TrainingSession
 from rastrainer_simulator.flow.session.trainee_history import OwnTrial
 from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice, SourceKind
-from rastrainer_simulator.presentation.screen import ErrorArrow, Hint, Screen, ScreenMessage, Tone
+from rastrainer_simulator.presentation.screen import ErrorArrow, Screen, ScreenMessage, Tone
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
-from rastrainer_simulator.replay.replay_presenter import ACTIONS, Player, PlayerAction
+from rastrainer_simulator.replay.replay_presenter import Player, viewer_control
 from rastrainer_simulator.trial_state import PlannedLine
 from rastrainer_simulator.vectors import Vector, add, length, scale, subtract
 
@@ -65,16 +64,15 @@ class ErrorsPage(SessionPage):
                 error_arrow(session.truly_in_world(fiducials[t.label]), t.position)
                 for t in training.touches
             )
-        back = Hint(session.operator.label(ControlName.BACK), self.say("hint.result"), "back")
-        hints: tuple[Hint, ...] = (back,)
+        hint = session.operator.hint
+        hints = [hint("hint.result", ControlName.BACK, item="back")]
         if not session.operator.is_one_of(SourceKind.XR):
             # In a headset the trainee looks around by turning the head.
             pairs = (ControlName.LEFT, ControlName.RIGHT), (ControlName.UP, ControlName.DOWN)
-            turn = self.say("hint.turn_view")
-            hints = (*(Hint(session.operator.pair_label(*pair), turn) for pair in pairs), back)
+            hints = [*(hint("hint.turn_view", *pair) for pair in pairs), *hints]
         return Screen(
             instruction=ScreenMessage(self.content().title),
-            hints=hints,
+            hints=tuple(hints),
             language=session.preferences.language,
             errors=tuple(errors),
             is_head_clear=self._has_lines,
@@ -100,10 +98,6 @@ def error_tone(error_mm: float) -> Tone:
     return Tone.GOOD if error_mm <= GOOD_MM else tone
 
 
-_WORST = {InputDevice.KEYBOARD: "KeyT", InputDevice.GAMEPAD: "x"}
-"""Additional inputs for the worst touch, which no control of the menus uses."""
-
-
 class ReplayPage(SessionPage):
     """Waits for the recorded trial, and replays it for the operator."""
 
@@ -125,14 +119,13 @@ class ReplayPage(SessionPage):
         """Return the screen of the playback, with the plan of a procedure if it was visible."""
         if self._player is None or self.playback is None:
             return None
-        session = self.session
-        label, pair_label = session.operator.label, session.operator.pair_label
+        session, hint = self.session, self.session.operator.hint
         hints = (
-            clickable_hint(session, ControlName.ACCEPT, "hint.play"),
-            Hint(pair_label(ControlName.LEFT, ControlName.RIGHT), self.say("hint.seek")),
-            clickable_hint(session, ControlName.UP, "hint.worst"),
-            clickable_hint(session, ControlName.CAMERA, "hint.camera"),
-            Hint(label(ControlName.BACK), self.say("hint.result"), "back"),
+            hint("hint.play", ControlName.ACCEPT),
+            hint("hint.seek", ControlName.LEFT, ControlName.RIGHT),
+            hint("hint.worst", ControlName.UP),
+            hint("hint.camera", ControlName.CAMERA),
+            hint("hint.result", ControlName.BACK, item="back"),
         )
         shown = self._player.screen(session.texts, hints, session.preferences.language)
         procedure = self.playback.latest.training.procedure
@@ -150,17 +143,16 @@ class ReplayPage(SessionPage):
     def pressed(self, control: ControlName) -> bool:
         if self._player is None:
             return False
-        if control in ACTIONS:
-            self._do(self._player, ACTIONS[control])
+        self._do(self._player, control)
         return True
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
         bindings = self.session.controls.bindings
         if self._player is None or bindings.control(device, name, ControlContext.MENU) is not None:
             return False
-        is_camera = name in bindings.table(device)[ControlName.CAMERA]
-        if is_camera or name == _WORST[device]:
-            self._do(self._player, PlayerAction.CAMERA if is_camera else PlayerAction.WORST)
+        control = viewer_control(bindings, device, name)
+        if control is not None:
+            self._do(self._player, control)
         return True
 
     def _begin(self) -> None:
@@ -177,11 +169,11 @@ class ReplayPage(SessionPage):
         if self._begins_at_worst and trial.worst is None:
             session.complain(self.say("replay.no worst"))
         elif self._begins_at_worst:
-            self._do(self._player, PlayerAction.WORST)
+            self._do(self._player, ControlName.UP)
 
-    def _do(self, player: Player, action: PlayerAction) -> None:
-        player.do(action)
-        if action is PlayerAction.WORST and player.playback.trial.worst is not None:
+    def _do(self, player: Player, control: ControlName) -> None:
+        player.do(control)
+        if control is ControlName.UP and player.playback.trial.worst is not None:
             self.session.view.is_best_wanted = True
 
 
@@ -199,15 +191,14 @@ def own_trials_page(page: SessionPage) -> PageContent:
             session.pages.open(ReplayPage(session, loading, begins_at_worst=False))
 
     def row(each: OwnTrial) -> PageRow:
-        past = each.past
-        is_shown = each.scenario == session.scenario.name and not past.is_aborted
+        is_shown = each.scenario == session.scenario.name and not each.is_aborted
         verdict = say(_VERDICTS[each.is_passed])
         when = each.started_utc[:16].replace("T", " ")
         return page.button(
-            f"trial {past.trial_id}",
-            partial(show, past.trial_id),
-            f"{session.task_title(past.task)} ({when} UTC)",
-            value=verdict if past.is_aborted else f"{past.score:.0f} / 100, {verdict}",
+            f"trial {each.trial_id}",
+            partial(show, each.trial_id),
+            f"{session.task_title(each.task)} ({when} UTC)",
+            value=verdict if each.is_aborted else f"{each.score:.0f} / 100, {verdict}",
             is_enabled=is_shown,
             help=say("own-trials.help" if is_shown else "own-trials.not shown"),
         )

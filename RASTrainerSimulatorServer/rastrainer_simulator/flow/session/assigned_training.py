@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from rastrainer.protocol import FREE, AssignmentState, GoalKind, StepKind
 from rastrainer.study.protocol.steps import StepAnswers
@@ -83,59 +83,58 @@ Titles = Callable[[str], str]
 """Maps the name of a task or a procedure to its title."""
 
 
+@dataclass(frozen=True)
 class AssignmentTexts:
     """Describes assignments in the trainee's language."""
 
-    def __init__(self, texts: Texts, task_title: Titles, procedure_title: Titles) -> None:
-        self._say = texts.say
-        self._texts = texts
-        self._task_title = task_title
-        self._procedure_title = procedure_title
+    texts: Texts
+    task_title: Titles
+    procedure_title: Titles
 
     def title(self, each: AssignmentStanding) -> str:
         by = f"study.by {each.method}"
-        words = [self._task_title(each.task)]
-        words += [self._say(by)] if by in self._texts else []
-        words += [self._say(f"study.{each.mode}")] if each.mode else []
+        words = [self.task_title(each.task)]
+        words += [self.texts.say(by)] if by in self.texts else []
+        words += [self.texts.say(f"study.{each.mode}")] if each.mode else []
         trial = " ".join(words)
         if not each.procedure:
             return trial
-        procedure = self._procedure_title(each.procedure)
-        return self._say("assignments.with procedure", trial=trial, procedure=procedure)
+        procedure = self.procedure_title(each.procedure)
+        return self.texts.say("assignments.with procedure", trial=trial, procedure=procedure)
 
     def label(self, each: AssignmentStanding) -> str:
         """Return a short title for a row: the task, and the first that is special about it."""
         if each.procedure:
-            special = self._procedure_title(each.procedure)
+            special = self.procedure_title(each.procedure)
         elif each.method != FIDUCIALS:
-            special = self._say(f"method.{each.method}")
+            special = self.texts.say(f"method.{each.method}")
         else:
-            special = self._say(f"mode.{each.mode}") if each.mode else ""
-        return " · ".join(filter(None, (self._task_title(each.task), special)))
+            special = self.texts.say(f"mode.{each.mode}") if each.mode else ""
+        return " · ".join(filter(None, (self.task_title(each.task), special)))
 
     def progress(self, each: AssignmentStanding) -> str:
         if each.state is AssignmentState.REACHED:
-            return self._say("assignments.reached")
+            return self.texts.say("assignments.reached")
         if each.state is AssignmentState.LOCKED:
-            return self._say("assignments.locked")
+            return self.texts.say("assignments.locked")
         key = "assignments.percent" if each.goal is GoalKind.COMPETENT else "assignments.count"
-        return self._say(key, done=each.done, needed=each.needed)
+        return self.texts.say(key, done=each.done, needed=each.needed)
 
     def goal(self, each: AssignmentStanding) -> str:
         if not each.mark:
-            return self._say("assignments.no mark")
+            return self.texts.say("assignments.no mark")
         if each.goal is GoalKind.COMPETENT:
-            return self._say("assignments.competent", mark=each.mark)
+            return self.texts.say("assignments.competent", mark=each.mark)
         key = "assignments.one trial" if each.needed == 1 else "assignments.trials"
-        return self._say(key, needed=each.needed, mark=each.mark)
+        return self.texts.say(key, needed=each.needed, mark=each.mark)
 
     def gate(self, curriculum: CurriculumMessage, each: AssignmentStanding) -> str:
         missing = [found for name in each.missing if (found := curriculum.find(name)) is not None]
-        names = self._texts.listed(self.title(one) for one in missing) or "–"
-        return self._say("assignments.gate", assignments=names)
+        names = self.texts.listed(self.title(one) for one in missing) or "–"
+        return self.texts.say("assignments.gate", assignments=names)
 
     def summary(self, curriculum: CurriculumMessage) -> str:
-        return self._say(
+        return self.texts.say(
             "assignments.summary",
             reached=sum(each.state is AssignmentState.REACHED for each in curriculum.assignments),
             count=len(curriculum.assignments),
@@ -147,17 +146,17 @@ class AssignmentTexts:
         if best is None:
             return self.summary(curriculum)
         label, progress = self.label(best), self.progress(best)
-        following = self._say("assignments.next in brief", assignment=label, progress=progress)
+        following = self.texts.say("assignments.next in brief", assignment=label, progress=progress)
         return f"{self.summary(curriculum)} · {following}"
 
     def advice(self, curriculum: CurriculumMessage) -> str:
         best = curriculum.find(curriculum.next)
         if best is None:
-            return self._say("assignments.all reached")
+            return self.texts.say("assignments.all reached")
         if not best.played:
-            return self._say("assignments.next unplayed", assignment=self.title(best))
-        sentence = self._say("assignments.next", assignment=self.title(best))
+            return self.texts.say("assignments.next unplayed", assignment=self.title(best))
+        sentence = self.texts.say("assignments.next", assignment=self.title(best))
         part = f"assignments.part {best.weakest}"
-        if part not in self._texts:
+        if part not in self.texts:
             return sentence
-        return f"{sentence} {self._say('assignments.weakest', part=self._say(part))}"
+        return f"{sentence} {self.texts.say('assignments.weakest', part=self.texts.say(part))}"

@@ -106,7 +106,7 @@ def obstacle(session: TrainingSession, task: str) -> str:
 
 
 def _not_now(session: TrainingSession, step: StudyStep) -> str:
-    return session.texts.say("experiment.study", step=session.step_sentence(step))
+    return session.say("experiment.study", step=session.step_sentence(step))
 
 
 def assignment_obstacle(session: TrainingSession, each: AssignmentStanding) -> str:
@@ -124,7 +124,7 @@ def assignment_obstacle(session: TrainingSession, each: AssignmentStanding) -> s
         and (not each.method or each.method in {m.value for m in playable_methods(scenario)})
     )
     if not is_on_head:
-        return session.texts.say("assignments.other head")
+        return session.say("assignments.other head")
     return _missing_before(session, each.task, is_assigned=True)
 
 
@@ -142,12 +142,12 @@ def _missing_before(session: TrainingSession, task: str, is_assigned: bool) -> s
     if not missing:
         return ""
     key = "experiment.trial run first" if missing == TRIAL_RUN else "experiment.order"
-    return session.texts.say(key, task=session.task_title(missing))
+    return session.say(key, task=session.task_title(missing))
 
 
 def _tutorial_first(session: TrainingSession, task: str) -> str:
     is_missing = task == TRIAL_RUN and needs_tutorial(session)
-    return session.texts.say("experiment.tutorial first") if is_missing else ""
+    return session.say("experiment.tutorial first") if is_missing else ""
 
 
 def tutorial_obstacle(session: TrainingSession) -> str:
@@ -164,8 +164,8 @@ def tutorial_obstacle(session: TrainingSession) -> str:
 
 def _unready(session: TrainingSession) -> str:
     if not session.trainee_id:
-        return session.texts.say("experiment.no trainee")
-    return session.texts.say("being set up") if session.reload.is_under_way else ""
+        return session.say("experiment.no trainee")
+    return session.say("being set up") if session.reload.is_under_way else ""
 
 
 def tutorial_rule(session: TrainingSession) -> TutorialRule:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, TypeVar
+from functools import partial
+from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
@@ -59,26 +60,50 @@ class PageContent:
     first: str = ""
 
 
-class Page:
-    """A page of text, facts and rows.
+class PageOwner(Protocol):
+    """What pages read and change: a trainee's session, or a rater's work."""
+
+    pages: OpenPages
+
+    def say(self, key: str, **values: object) -> str:
+        """Return a sentence in the reader's language."""
+
+
+S = TypeVar("S", bound=PageOwner)
+
+
+class Page(Generic[S]):
+    """A page of text, facts and rows, which stores only its own state.
 
     Attributes:
+        arguments, values: what the functions of a `page_kind` are given; they may change values.
+        focus: name of the row that has the focus.
         is_private: whether its rows are only for the views of who operates.
         pause_goes_back: whether the control that pauses, which opened the page, also closes it.
     """
 
     name: str = ""
+    focus: str = ""
     is_private: ClassVar[bool] = False
-    pause_goes_back: bool = False
+    pause_goes_back: ClassVar[bool] = False
+
+    def __init__(self, session: S, *arguments: Any, **values: Any) -> None:
+        self.session, self.arguments, self.values = session, arguments, values
 
     def content(self) -> PageContent:
         raise NotImplementedError
 
     def say(self, key: str, **values: object) -> str:
-        raise NotImplementedError
+        return self.session.say(key, **values)
 
     def back(self) -> None:
-        raise NotImplementedError
+        self.session.pages.close()
+
+    def set_value(self, name: str, value: Any) -> None:
+        self.values[name] = value
+
+    def open_page(self, page: Callable[..., Page[Any]], *arguments: object) -> Callable[[], None]:
+        return lambda: self.session.pages.open(page(self.session, *arguments))
 
     def button(
         self, name: str, accept: Callable[[], object] | None = None, label: str = "", **others: Any
@@ -92,12 +117,16 @@ class Page:
         name: str,
         options: Sequence[T],
         chosen: T,
-        choose: Callable[[T], object],
         shown: str,
+        choose: Callable[[T], object] | None = None,
         label: str = "",
         **others: Any,
     ) -> PageRow:
-        """Return a choice, around the ends; from a value that is no option it goes to an end."""
+        """Return a choice, around the ends; from a value that is no option it goes to an end.
+
+        Without a function, it is among the page's own values.
+        """
+        choose = choose or partial(self.set_value, name)
 
         def step(direction: int) -> None:
             before = -1 if direction > 0 else 0
@@ -124,6 +153,24 @@ class Page:
         """Clean up: the page is no longer open."""
 
 
+def page_kind(name: str, **others: Any) -> Callable[[Callable[..., PageContent]], type[Page[Any]]]:
+    """Return a decorator that makes a kind of page of the function that returns its content.
+
+    `others` are members of `Page` that differ. Each function is given the page, what the method is
+    given, the page's arguments, and its values by their names.
+    """
+
+    def method(function: Callable[..., Any]) -> Callable[..., Any]:
+        return lambda page, *given: function(page, *given, *page.arguments, **page.values)
+
+    def kind(show: Callable[..., PageContent]) -> type[Page[Any]]:
+        members = {"content": show, **others}
+        methods = {key: method(each) if callable(each) else each for key, each in members.items()}
+        return type(name, (Page,), {"name": name, **methods})
+
+    return kind
+
+
 GRACE_S = 0.7
 """How long a page that opens automatically has no focus: presses meant for the arm do nothing."""
 
@@ -138,19 +185,18 @@ class OpenPages:
         home: makes the page that all others lie over.
     """
 
-    home: Callable[[], Page]
+    home: Callable[[], Page[Any]]
 
     def __init__(self, happened: Callable[[FeedbackEvent], None]) -> None:
         self._happened = happened
-        self._open: list[Page] = []
-        self._focus: list[str] = []
+        self._open: list[Page[Any]] = []
         self._grace_s = 0.0
 
     @property
-    def top(self) -> Page | None:
+    def top(self) -> Page[Any] | None:
         return self._open[-1] if self._open else None
 
-    def show(self, page: Page | None, ignore_input_briefly: bool = False) -> None:
+    def show(self, page: Page[Any] | None, ignore_input_briefly: bool = False) -> None:
         while self._open:
             self.close()
         if page is not None:
@@ -164,19 +210,17 @@ class OpenPages:
     def show_start(self) -> None:
         self.show(self.home())
 
-    def open(self, page: Page, ignore_input_briefly: bool = False) -> None:
+    def open(self, page: Page[Any], ignore_input_briefly: bool = False) -> None:
         """Open a page over the others; with a grace time where it opens automatically."""
-        first = page.content().first
+        page.focus = page.content().first
         self._grace_s = GRACE_S if ignore_input_briefly else 0.0
         self._open.append(page)
-        self._focus.append(first)
 
     def close(self) -> None:
         if self._open:
-            self._focus.pop()
             self._open.pop().closed()
 
-    def replace(self, page: Page) -> None:
+    def replace(self, page: Page[Any]) -> None:
         self.close()
         self.open(page)
 
@@ -204,9 +248,7 @@ class OpenPages:
         elif control in _STEPS:
             row = self._row()
             if row is not None and row.item.kind is ItemKind.CHOICE:
-                self._happened(FeedbackEvent.FOCUS if row.item.is_enabled else FeedbackEvent.ERROR)
-                if row.item.is_enabled:
-                    row.step(_STEPS[control])
+                self._act(row, FeedbackEvent.FOCUS, partial(row.step, _STEPS[control]))
         elif control is ControlName.ACCEPT:
             self.choose(self._focused(page.content().rows))
         elif control is ControlName.PAUSE and page.pause_goes_back:
@@ -226,16 +268,14 @@ class OpenPages:
             self._happened(FeedbackEvent.FOCUS)
 
     def focus(self, name: str) -> None:
-        if self._focus:
-            self._focus[-1] = name
+        if self.top is not None:
+            self.top.focus = name
 
     def choose(self, name: str) -> None:
         row = self._row(name)
         if row is not None:
             self.focus(name)
-            self._happened(FeedbackEvent.ACCEPT if row.item.is_enabled else FeedbackEvent.ERROR)
-            if row.item.is_enabled:
-                row.accept()
+            self._act(row, FeedbackEvent.ACCEPT, row.accept)
 
     def write(self, name: str, value: str) -> None:
         row = self._row(name)
@@ -253,11 +293,15 @@ class OpenPages:
         value = row.item.value
         return row.item.name, value[:-1] if is_deleting else value + text
 
+    def _act(self, row: PageRow, felt: FeedbackEvent, act: Callable[[], object]) -> None:
+        self._happened(felt if row.item.is_enabled else FeedbackEvent.ERROR)
+        if row.item.is_enabled:
+            act()
+
     def _row(self, name: str | None = None) -> PageRow | None:
         """Return a row by its name; without a name, the row that has the focus."""
         rows = () if self.top is None else self.top.content().rows
-        if rows and name is None:
-            name = self._focused(rows)
+        name = self._focused(rows) if name is None else name
         return next((row for row in rows if row.item.name == name), None)
 
     def _focused(self, rows: Sequence[PageRow]) -> str:
@@ -266,7 +310,7 @@ class OpenPages:
             return ""
         items = [row.item for row in rows if row.item.kind is not ItemKind.AXIS]
         names = [item.name for item in items]
-        if self._focus[-1] in names:
-            return self._focus[-1]
+        if self.top is not None and self.top.focus in names:
+            return self.top.focus
         chosen = next((item.name for item in items if item.is_enabled), "")
         return chosen or (names[0] if names else "")

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import reduce
 
 from rastrainer.protocol import Mode
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.controls import Controls
 from rastrainer_simulator.input.inputs import ControlName, InputDevice, SourceKind
-from rastrainer_simulator.presentation.screen import ControlsPicture
+from rastrainer_simulator.presentation.screen import PRESS, ControlsPicture, Hint
 from rastrainer_simulator.state import OperatorInput
 from rastrainer_simulator.texts.texts import NO_NAMES, Texts, input_label, pair_label
 
@@ -63,8 +64,14 @@ class OperatorDevice:
         holder = self.controls.holder
         return holder is not None and holder.kind in kinds
 
-    def label(self, control: ControlName) -> str:
-        """Return the first input of a control on what the operator has in their hands."""
+    def label(self, *controls: ControlName) -> str:
+        """Return the first input of a control, or of two that belong together.
+
+        It is on what the operator has in their hands.
+        """
+        return reduce(pair_label, map(self._label, controls))
+
+    def _label(self, control: ControlName) -> str:
         holder = self.controls.holder
         kind = "" if holder is None else _OWN_LABELS.get(holder.kind, "")
         own = f"{_BY_MOUSE if self.steers_by_mouse else kind}.{control.value}"
@@ -75,9 +82,10 @@ class OperatorDevice:
             return self.input_label(InputDevice.GAMEPAD, DEFAULT_BINDINGS.gamepad[control][0])
         return self.input_label(self.kind, self.controls.bindings.table(self.kind)[control][0])
 
-    def pair_label(self, first: ControlName, second: ControlName) -> str:
-        """Return the first inputs of two controls that belong together."""
-        return pair_label(self.label(first), self.label(second))
+    def hint(self, key: str, *controls: ControlName, item: str | None = None) -> Hint:
+        """Return what controls do; a click presses a single one, or sends back the item."""
+        press = PRESS + controls[0].value if len(controls) == 1 else ""
+        return Hint(self.label(*controls), self.texts.say(key), press if item is None else item)
 
     def stick_label(self, controls: Sequence[ControlName]) -> str:
         """Return what moves the tool in some directions: "Left stick", or the keys, "W A S D"."""

@@ -21,7 +21,7 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
 from rastrainer.study_messages import CurriculumMessage, StudyStep
 from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
-from rastrainer_simulator.flow.session.open_pages import OpenPages
+from rastrainer_simulator.flow.session.open_pages import OpenPages, Page
 from rastrainer_simulator.flow.session.operator_device import OperatorDevice
 from rastrainer_simulator.flow.session.preferences import (
     PREFERENCES_FILE,
@@ -32,7 +32,6 @@ from rastrainer_simulator.flow.session.preferences import (
 from rastrainer_simulator.flow.session.services import FlowServices, SimulationReload
 from rastrainer_simulator.flow.session.trace_places import TracePlaces
 from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
-from rastrainer_simulator.flow.session.trial_view import TrialView
 from rastrainer_simulator.flow.session.tutorial import Tutorial
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, Bindings, write_bindings
 from rastrainer_simulator.input.controls import Controls
@@ -47,6 +46,7 @@ from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from rastrainer_simulator.training.local_scorer import LocalScorer
 from rastrainer_simulator.trial_state import ProcedureState
 from rastrainer_simulator.vectors import Vector, in_meters
+from rastrainer_simulator.viewpoint.trial_view import TrialView
 from rastrainer_simulator.viewpoint.view_control import Orbit
 
 _log = logging.getLogger(__name__)
@@ -86,7 +86,7 @@ class TrainingSession:
         self.history = TraineeHistory(services.records)
         scoring = control_loop.submit, services.records, services.is_slicer_connected
         self.local_scorer = (
-            LocalScorer(*scoring, self.history.of) if services.scores_alone else None
+            LocalScorer(*scoring, self.history.own) if services.scores_alone else None
         )
         self.happened = happened
         self.pages = OpenPages(happened)
@@ -108,6 +108,10 @@ class TrainingSession:
         self.goes_on_blind = ""
         self._noted: CurriculumMessage | None = None
         self.state: SimulationState = control_loop.latest
+
+    def say(self, key: str, **values: object) -> str:
+        """Return a sentence in the trainee's language."""
+        return self.texts.say(key, **values)
 
     @property
     def training(self) -> TrainingState:
@@ -185,7 +189,7 @@ class TrainingSession:
             return check_arguments(command, arguments)
         except InputError as error:
             _log.warning("%s", error)
-            self.complain(self.texts.say("warning.impossible"))
+            self.complain(self.say("warning.impossible"))
             return None
 
     def begin_tutorial(self, task: str = TRIAL_RUN, point: str = "") -> None:
@@ -194,15 +198,15 @@ class TrainingSession:
         It is recorded nowhere, and refused while its head is about to go.
         """
         if self.reload.is_under_way:
-            self.complain(self.texts.say("being set up"))
+            self.complain(self.say("being set up"))
             return
         wanted = {"task": task, "trainee": self.trainee_id, "mode": self.mode}
         arguments, setup = self._checked(CommandName.START_TASK, wanted), self.control_loop.setup
         if arguments is not None:
             self.tutorial = Tutorial(setup, self.state, arguments, point)
             self.practiced = task, point
-            practice = self.tutorial.practice
-            self.view.begin(setup, practice.training.truth, practice.shown(self.state))
+            self.view.begin(setup, self.tutorial.practice.shown(self.state))
+            self.view.control.reset()
             self.view.control.go(TUTORIAL_VIEW)
             self.pages.show(None)
 
@@ -240,7 +244,7 @@ class TrainingSession:
     def load_trial(self, trial_id: str) -> TrialLoading:
         found = journals_of(self.services.records, trial_id)
         if not found:
-            raise InputError(self.texts.say("replay.no journal"))
+            raise InputError(self.say("replay.no journal"))
         return load_trial(found[0], self.control_loop.setup)
 
     def note_done(self) -> None:
@@ -249,11 +253,8 @@ class TrainingSession:
     def outcome_of(self, task: str) -> str:
         """Return "passed", "failed" or "done" of the trainee's trials of a task; "" of none."""
         trainee, scenario = self.trainee_id, self.scenario.name
-        trials = [
-            each
-            for each in self.history.own(trainee)
-            if (each.past.task, each.scenario) == (task, scenario)
-        ]
+        own = self.history.own(trainee)
+        trials = [each for each in own if (each.task, each.scenario) == (task, scenario)]
         if any(each.is_passed for each in trials):
             return "passed"
         if trials and trials[-1].is_passed is False:
@@ -286,34 +287,34 @@ class TrainingSession:
     def task_title(self, name: str) -> str:
         key = f"task.{name}"
         if key in self.texts:
-            return self.texts.say(key)
+            return self.say(key)
         titles = {task.name: task.title for task in self.scenario.tasks}
         return titles.get(name, name)
 
     def procedure_title(self, name: str) -> str:
         titles = {each.name: each.title for each in self.scenario.procedures}
-        return titles.get(name, name) if name else self.texts.say("experiment.touches alone")
+        return titles.get(name, name) if name else self.say("experiment.touches alone")
 
     @property
     def practice_title(self) -> str:
         task, point = self.practiced
         key = "tutorial.practice" if point else "tutorial.title"
-        return self.texts.say(key, task=self.task_title(task), point=point)
+        return self.say(key, task=self.task_title(task), point=point)
 
     def preparing(self) -> str:
         share = self.picture_share
         key = "preparing.loaded" if share else "preparing.built"
-        return "" if share is None else self.texts.say(key, share=100.0 * share)
+        return "" if share is None else self.say(key, share=100.0 * share)
 
     def step_sentence(self, step: StudyStep) -> str:
         asked = QUESTIONNAIRES.get(step.questionnaire)
         task, by = self.task_title(step.task), f"study.by {step.method}"
-        return self.texts.say(
+        return self.say(
             f"study.{step.kind}",
             number=step.number,
             count=step.count,
-            task=f"{task} {self.texts.say(by)}" if by in self.texts else task,
-            mode=self.texts.say(f"study.{step.mode}") if step.mode else "",
+            task=f"{task} {self.say(by)}" if by in self.texts else task,
+            mode=self.say(f"study.{step.mode}") if step.mode else "",
             minutes=step.minutes,
             left=clock(self.services.assigned.break_left_s(step.trainee)),
             questionnaire=step.questionnaire if asked is None else asked.title,
@@ -330,5 +331,9 @@ class TrainingSession:
             is_new = earlier is not None and earlier.state is not AssignmentState.REACHED
             if each.state is AssignmentState.REACHED and is_new:
                 title = self.assignment_texts.title(each)
-                said = self.texts.say("assignments.just reached", assignment=title)
+                said = self.say("assignments.just reached", assignment=title)
                 self.notices.add(said, Tone.GOOD, REACHED_S)
+
+
+SessionPage = Page[TrainingSession]
+"""A page of a trainee's session."""

@@ -57,13 +57,10 @@ _START = re.compile(
 
 
 @dataclass(frozen=True)
-class OwnTrial:
+class OwnTrial(TrialRow):
     """A scored or failed trial, as its trainee finds it again."""
 
-    past: TrialRow
-    scenario: str
-    started_utc: str
-    is_passed: bool | None
+    is_passed: bool | None = None
     journal: Path = Path()
 
 
@@ -146,26 +143,21 @@ class TraineeHistory:
         found = (self._own[path] for path in paths)
         return tuple(trial for trial in found if trial is not None)
 
-    def of(self, trainee: str) -> tuple[TrialRow, ...]:
-        return tuple(trial.past for trial in self.own(trainee))
-
     def best(self, trainee: str, task: str) -> tuple[Path, ...]:
         """Return the journals of a trainee's acceptable trials of a task, the best score first."""
         found = [
             own
             for own in self.own(trainee)
-            if own.past.task == task
-            and own.past.acceptable
-            and own.past.method == RegistrationMethod.FIDUCIALS
+            if own.task == task and own.acceptable and own.method == RegistrationMethod.FIDUCIALS
         ]
-        found.sort(key=lambda own: -own.past.score)
+        found.sort(key=lambda own: -own.score)
         return tuple(own.journal for own in found)
 
     def trend(self, trainee: str, mode: str) -> tuple[float, ...]:
         """Return the newest scores of a trainee in a mode, by fiducials."""
         scores = [
             trial.score
-            for trial in self.of(trainee)
+            for trial in self.own(trainee)
             if (trial.mode, trial.method) == (mode, RegistrationMethod.FIDUCIALS)
             and not trial.is_aborted
         ]
@@ -202,9 +194,8 @@ def _own_trial(journal: Path) -> OwnTrial | None:
         last = {entry["kind"]: entry for entry in entries}
         if "attempt" in last:
             aborted = record_from_json(AbortedTrial, last["attempt"]["record"])
-            failed = TrialRow.of(aborted)
-            own = OwnTrial(failed, aborted.scenario, aborted.started_utc, False, journal)
-            return own if aborted.counts_as_failed else None
+            failed = OwnTrial.of(aborted, is_passed=False, journal=journal)
+            return failed if aborted.counts_as_failed else None
         if "registered" not in last or "scored" not in last:
             return None
         record = record_from_json(TrialRecord, last["registered"]["record"])
@@ -214,9 +205,9 @@ def _own_trial(journal: Path) -> OwnTrial | None:
             return None
         score = float(scored["score"])
         acceptable = details["isAccurate"] is True and not beyond_limits(details)
-        past = TrialRow.of(record, values={"score": score}, acceptable=acceptable)
         verdict = is_passed(record.task, score, details)
-        return OwnTrial(past, record.scenario, record.started_utc, verdict, journal)
+        known = {"acceptable": acceptable, "is_passed": verdict, "journal": journal}
+        return OwnTrial.of(record, values={"score": score}, **known)
     except (OSError, DamagedLineError, InputError, KeyError, TypeError, ValueError):
         return None
 

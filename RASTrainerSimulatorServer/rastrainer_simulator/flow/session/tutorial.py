@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 import uuid
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
 
@@ -41,37 +40,59 @@ TURN_DEG = 20.0
 LOOK_DEG = 15.0
 
 
-class TutorialStep(str, Enum):
-    """A step; the name is also the key of its sentence."""
+DONE_MM, DONE_DEG = "tutorial.done mm", "tutorial.done degrees"
+_CAREFULLY = (ControlName.FINE, ControlName.BEST_VIEW)
+_TURNING = (ControlName.VIEW_LEFT, ControlName.VIEW_RIGHT)
+_TOUCHING = (ControlName.TOUCH, *_CAREFULLY)
+_REPEATING = (ControlName.TOUCH, ControlName.UNDO, *_CAREFULLY)
 
-    RIGHT = "right"
-    LEFT = "left"
-    FORWARD = "forward"
-    BACK = "back"
-    UP = "up"
-    DOWN = "down"
-    SLOW = "slow"
-    TURN_VIEW = "turn view"
-    LOOK_AROUND = "look around"
-    BEST_VIEW = "best view"
-    LOWER = "lower"
-    TOUCH = "touch"
-    UNDO = "undo"
-    PAUSE = "pause"
-    GUIDED = "guided"
-    AGAIN = "again"
+
+class TutorialStep(str, Enum):
+    """A step; the name is also the key of its sentence.
+
+    It has the controls that do it, how much there is to do, and the key of what says how far it is.
+    Its sentence names the first control, or the first two as a pair. Where slow motion is among
+    them, the tip may go anywhere. `way` is right, forward and up of a step that moves the tip in
+    one direction.
+    """
+
+    controls: tuple[ControlName, ...]
+    goal: float
+    shown: str
+    way: Vector | None
+
+    RIGHT = "right", (ControlName.MOVE_RIGHT,), MOVE_MM, DONE_MM, (1.0, 0.0, 0.0)
+    LEFT = "left", (ControlName.MOVE_LEFT,), MOVE_MM, DONE_MM, (-1.0, 0.0, 0.0)
+    FORWARD = "forward", (ControlName.MOVE_FORWARD,), MOVE_MM, DONE_MM, (0.0, 1.0, 0.0)
+    BACK = "back", (ControlName.MOVE_BACK,), MOVE_MM, DONE_MM, (0.0, -1.0, 0.0)
+    UP = "up", (ControlName.MOVE_UP,), MOVE_MM, DONE_MM, (0.0, 0.0, 1.0)
+    DOWN = "down", (ControlName.MOVE_DOWN,), MOVE_MM, DONE_MM, (0.0, 0.0, -1.0)
+    SLOW = "slow", (ControlName.FINE,), SLOW_MM, DONE_MM
+    TURN_VIEW = "turn view", _TURNING, TURN_DEG, DONE_DEG
+    LOOK_AROUND = "look around", (ControlName.MOVE_FORWARD,), LOOK_DEG, DONE_DEG
+    BEST_VIEW = "best view", (ControlName.BEST_VIEW,)
+    LOWER = "lower", _CAREFULLY
+    TOUCH = "touch", _TOUCHING
+    UNDO = "undo", (ControlName.UNDO,)
+    PAUSE = "pause", (ControlName.MENU,)
+    GUIDED = "guided", _REPEATING, GUIDED_TOUCHES, "tutorial.done points"
+    AGAIN = "again", _TOUCHING
+
+    def __new__(
+        cls,
+        value: str,
+        controls: tuple[ControlName, ...],
+        goal: float = 1.0,
+        shown: str = "",
+        way: Vector | None = None,
+    ) -> TutorialStep:
+        step = str.__new__(cls, value)
+        step._value_, step.controls, step.goal = value, controls, goal
+        step.shown, step.way = shown, way
+        return step
 
 
 _OF_VIEW = (TutorialStep.TURN_VIEW, TutorialStep.LOOK_AROUND, TutorialStep.BEST_VIEW)
-WITH_POINTS = (
-    TutorialStep.BEST_VIEW,
-    TutorialStep.LOWER,
-    TutorialStep.TOUCH,
-    TutorialStep.UNDO,
-    TutorialStep.PAUSE,
-    TutorialStep.GUIDED,
-)
-"""Steps in which the next point is marked."""
 OF_PRACTICE = (TutorialStep.AGAIN,)
 """The only step where one point of a trial is practiced."""
 
@@ -110,55 +131,6 @@ class TutorialObservation:
     has_paused: bool = False
 
 
-DONE_MM, DONE_DEG = "tutorial.done mm", "tutorial.done degrees"
-
-
-@dataclass(frozen=True)
-class StepRule:
-    """The controls that do a step, how much there is to do, and the key of what says how far it is.
-
-    The step's sentence names the first control, or the first two as a pair. Where slow motion is
-    among them, the tip may go anywhere.
-    """
-
-    controls: tuple[ControlName, ...]
-    goal: float = 1.0
-    shown: str = ""
-
-
-_CAREFULLY = (ControlName.FINE, ControlName.BEST_VIEW)
-_TURNING = (ControlName.VIEW_LEFT, ControlName.VIEW_RIGHT)
-_TOUCHING = (ControlName.TOUCH, *_CAREFULLY)
-_REPEATING = (ControlName.TOUCH, ControlName.UNDO, *_CAREFULLY)
-STEPS: Mapping[TutorialStep, StepRule] = {
-    TutorialStep.RIGHT: StepRule((ControlName.MOVE_RIGHT,), MOVE_MM, DONE_MM),
-    TutorialStep.LEFT: StepRule((ControlName.MOVE_LEFT,), MOVE_MM, DONE_MM),
-    TutorialStep.FORWARD: StepRule((ControlName.MOVE_FORWARD,), MOVE_MM, DONE_MM),
-    TutorialStep.BACK: StepRule((ControlName.MOVE_BACK,), MOVE_MM, DONE_MM),
-    TutorialStep.UP: StepRule((ControlName.MOVE_UP,), MOVE_MM, DONE_MM),
-    TutorialStep.DOWN: StepRule((ControlName.MOVE_DOWN,), MOVE_MM, DONE_MM),
-    TutorialStep.SLOW: StepRule((ControlName.FINE,), SLOW_MM, DONE_MM),
-    TutorialStep.TURN_VIEW: StepRule(_TURNING, TURN_DEG, DONE_DEG),
-    TutorialStep.LOOK_AROUND: StepRule((ControlName.MOVE_FORWARD,), LOOK_DEG, DONE_DEG),
-    TutorialStep.BEST_VIEW: StepRule((ControlName.BEST_VIEW,)),
-    TutorialStep.LOWER: StepRule(_CAREFULLY),
-    TutorialStep.TOUCH: StepRule(_TOUCHING),
-    TutorialStep.UNDO: StepRule((ControlName.UNDO,)),
-    TutorialStep.PAUSE: StepRule((ControlName.MENU,)),
-    TutorialStep.GUIDED: StepRule(_REPEATING, GUIDED_TOUCHES, "tutorial.done points"),
-    TutorialStep.AGAIN: StepRule(_TOUCHING),
-}
-WAYS: Mapping[TutorialStep, Vector] = {
-    TutorialStep.RIGHT: (1.0, 0.0, 0.0),
-    TutorialStep.LEFT: (-1.0, 0.0, 0.0),
-    TutorialStep.FORWARD: (0.0, 1.0, 0.0),
-    TutorialStep.BACK: (0.0, -1.0, 0.0),
-    TutorialStep.UP: (0.0, 0.0, 1.0),
-    TutorialStep.DOWN: (0.0, 0.0, -1.0),
-}
-"""Right, forward and up of the steps that move the tip in one direction."""
-
-
 def amount_done(
     step: TutorialStep,
     done: float,
@@ -189,9 +161,10 @@ def amount_done(
             return float(now.has_paused)
         case TutorialStep.TOUCH | TutorialStep.GUIDED | TutorialStep.AGAIN:
             return now.touched
+    assert step.way is not None, "all other steps move the tip"
     # Since the tip last moved the other way.
-    way = now.axes.to_world(WAYS[step])
-    return max(0.0, done + MM_PER_M * dot(subtract(now.tip, before.tip), way))
+    moved = subtract(now.tip, before.tip)
+    return max(0.0, done + MM_PER_M * dot(moved, now.axes.to_world(step.way)))
 
 
 _NOT_MOVED = Perturbation(0.0, 0.0, 0.0)
@@ -347,8 +320,7 @@ class Tutorial:
     def amount(self) -> tuple[float, float]:
         if self.step is None or self._first_seen is None:
             return 0.0, 1.0
-        goal = STEPS[self.step].goal
-        return min(self._amount, goal), goal
+        return min(self._amount, self.step.goal), self.step.goal
 
     @property
     def has_learned_view(self) -> bool:
@@ -356,14 +328,10 @@ class Tutorial:
 
     @property
     def may_touch(self) -> bool:
-        return self.step is TutorialStep.LOWER or self._asks_for(ControlName.TOUCH)
+        return self.step is TutorialStep.LOWER or self.asks_for(ControlName.TOUCH)
 
-    @property
-    def may_undo(self) -> bool:
-        return self._asks_for(ControlName.UNDO)
-
-    def _asks_for(self, control: ControlName) -> bool:
-        return self.step is not None and control in STEPS[self.step].controls
+    def asks_for(self, control: ControlName) -> bool:
+        return self.step is not None and control in self.step.controls
 
     def use(self, device: SourceKind) -> None:
         self.steps = OF_PRACTICE if self.practiced else steps_for(device, self.mode)
@@ -378,7 +346,8 @@ class Tutorial:
         step = self.step
         if step is None:
             return None
-        if step in WITH_POINTS and not self._first.has_points:
+        if step in (TutorialStep.BEST_VIEW, TutorialStep.LOWER):
+            # From here on, the next point is marked.
             self._first.has_points = True
         first = self._first_seen or before
         if first.yaw_deg is None and before.yaw_deg is not None:
@@ -387,7 +356,7 @@ class Tutorial:
         self._first_seen = first
         self._seconds[step.value] = self._seconds.get(step.value, 0.0) + dt
         self._amount = amount_done(step, self._amount, first, before, now)
-        if self._amount < STEPS[step].goal:
+        if self._amount < step.goal:
             return None
         self._done.append(step)
         self._amount, self._first_seen = 0.0, None

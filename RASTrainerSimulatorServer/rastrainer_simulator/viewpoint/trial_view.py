@@ -9,10 +9,10 @@ from dataclasses import replace
 
 from rastrainer.protocol import OPEN_PHASES
 from rastrainer.scenario.scenario import Camera, Scenario
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.state import OperatorInput, SimulationState
+from rastrainer_simulator.state import NEUTRAL_STICKS, OperatorInput, SimulationState
 from rastrainer_simulator.teleoperation.steering import AxesChoice
-from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.trial_state import PlannedLine
 from rastrainer_simulator.vectors import (
     Vector,
@@ -28,6 +28,7 @@ from rastrainer_simulator.vectors import (
 )
 from rastrainer_simulator.viewpoint.best_view import BestView, BestViews
 from rastrainer_simulator.viewpoint.view_control import (
+    STILL,
     UP,
     CameraPose,
     Pictures,
@@ -55,14 +56,15 @@ class TrialView:
         # Whether to go to the best view for the arm as it stands now, once it is found.
         self.is_best_wanted = False
 
-    def begin(self, setup: SimulationSetup, truth: Truth, state: SimulationState) -> None:
-        """Look from the front again, and begin to look for the best views of a trial."""
+    def begin(self, setup: SimulationSetup, state: SimulationState) -> None:
+        """Begin to look for the best views of a trial."""
         self.close()
         training = state.training
         self._trial_id = training.trial_id
         if training.is_marked:
-            self._best.look(setup, training.task, truth.head_to_world)
-        self.control.reset()
+            head_to_world = state.head_to_world.copy()
+            head_to_world[:3, 3] *= MM_PER_M
+            self._best.look(setup, training.task, head_to_world)
 
     def close(self) -> None:
         self._best.forget()
@@ -78,9 +80,9 @@ class TrialView:
         dt: float,
         state: SimulationState,
         scenario: Scenario,
-        motion: Vector,
-        sticks: OperatorInput,
-        follows: bool,
+        motion: Vector = STILL,
+        sticks: OperatorInput = NEUTRAL_STICKS,
+        follows: bool = False,
     ) -> None:
         camera = scenario.cameras[state.camera]
         self.control.use(state.camera)
