@@ -206,10 +206,14 @@ def test_the_feedback_sentences_are_in_order():
     errors = np.zeros((15, 3))
     errors[3] = 5.0 * NORMALS[3]
     history = [past(1, 50.0), past(2, 60.0)]
-    feedback = trial_feedback(
-        gentle_score(150.0, 2.5), registered(errors), NORMALS, {"idle_time_s": 40.0}, recording()
+    score, motion = gentle_score(150.0, 2.5), {"idle_time_s": 40.0}
+    feedback = trial_feedback(registered(errors), NORMALS, motion, recording())
+    feedback = replace(
+        feedback,
+        score=score,
+        advice=advise(score, feedback.touches, motion),
+        progress=progress_of(history, history[1].trial_id, 55.0),
     )
-    feedback = replace(feedback, progress=progress_of(history, history[1].trial_id, 55.0))
     assert feedback.worst.label == "4"
     assert feedback.worst.replay_s == pytest.approx([5.98, 7.98])
     sentences = feedback.sentences
