@@ -54,6 +54,8 @@ def touchable(
     return can_be
 
 
+POSES_TRIED = 12
+"""Poses of the head, besides the nominal one, in which what is planned must be reached."""
 WIDER = 1.2
 """Perturbation of the poses for planning over the perturbation in trials: a margin."""
 
