@@ -33,7 +33,7 @@ from rastrainer.scenario.points import (
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.face_removal import nose_tip
-from rastrainer_simulator.authoring.planning_setup import PlanningSetup
+from rastrainer_simulator.authoring.planning_setup import POSES_TRIED, PlanningSetup
 
 REFERENCE = {
     "Nasion": (1.0, 84.4, -40.0),
@@ -56,7 +56,6 @@ PATCH_LIMIT_MM = 12.0
 """A patch that would move farther has found something else, and is not moved."""
 NOSE_BELOW_MM = (25.0, 70.0)
 """How far below the nasion the tip of the nose is."""
-POSES_TRIED = 12
 NEAR_MM, PLACES_TRIED = 6.0, 8
 
 

@@ -29,31 +29,8 @@ def pose_head(collision: Collision, head_to_world: np.ndarray) -> np.ndarray:
     return pose
 
 
-def touchable(
-    planner: TouchPlanner,
-    collision: Collision,
-    positions: np.ndarray,
-    normals: np.ndarray,
-    poses: Iterable[np.ndarray],
-) -> np.ndarray:
-    """Return which points (n,) bool can be touched in every pose of the head.
-
-    Positions (mm) and outward unit normals are (n, 3) float, RAS; `poses` are HeadToWorld, (4, 4)
-    float, mm, into which the collision's head is put. The planner has the same collision.
-    """
-    can_be = np.ones(len(positions), dtype=bool)
-    likely = np.zeros(len(positions), dtype=int)
-    for head_to_world in poses:
-        pose = pose_head(collision, head_to_world)
-        for place in np.flatnonzero(can_be):
-            position = transforms.apply(pose, positions[place] / MM_PER_M)
-            normal = pose[:3, :3] @ normals[place]
-            found = planner.touch(position, normal, int(likely[place]))
-            can_be[place] = found is not None
-            likely[place] = 0 if found is None else found.number
-    return can_be
-
-
+POSES_TRIED = 12
+"""Poses of the head, besides the nominal one, in which what is planned must be reached."""
 WIDER = 1.2
 """Perturbation of the poses for planning over the perturbation in trials: a margin."""
 
@@ -106,6 +83,17 @@ class PlanningSetup:
         """Return which points (n,) bool can be touched in every pose of the head.
 
         The links keep 5 mm off head, stand, table and each other, and the tool's shaft, which
-        starts 3 mm behind its tip, is off the head; see `TouchPlanner`. Shapes (n, 3), RAS mm.
+        starts 3 mm behind its tip, is off the head; see `TouchPlanner`. Positions (mm) and outward
+        unit normals are (n, 3) float, RAS; poses are HeadToWorld, (4, 4) float, mm.
         """
-        return touchable(self._planner, self.collision, positions, normals, poses)
+        can_be = np.ones(len(positions), dtype=bool)
+        likely = np.zeros(len(positions), dtype=int)
+        for head_to_world in poses:
+            pose = pose_head(self.collision, head_to_world)
+            for place in np.flatnonzero(can_be):
+                position = transforms.apply(pose, positions[place] / MM_PER_M)
+                normal = pose[:3, :3] @ normals[place]
+                found = self._planner.touch(position, normal, int(likely[place]))
+                can_be[place] = found is not None
+                likely[place] = 0 if found is None else found.number
+        return can_be

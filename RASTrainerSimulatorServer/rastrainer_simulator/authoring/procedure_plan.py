@@ -23,12 +23,11 @@ from rastrainer.procedure.plan import (
 from rastrainer.scenario.library import require_usable_lines
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.authoring.planning_setup import PlanningSetup, pose_head
+from rastrainer_simulator.authoring.planning_setup import POSES_TRIED, PlanningSetup, pose_head
 from rastrainer_simulator.core.setup import SimulationSetup
 
 STAND_OFFS_M = (0.01, 0.03, 0.05, 0.08)
 """Distances of the guide's tip from the entry: where it may be locked, and on the way there."""
-POSES_TRIED = 12
 
 
 def is_guide_held(

@@ -19,7 +19,7 @@ from rastrainer.scenario.points import LABELS, Task, task_file, touch_order
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer.work_progress import Progress, Warn
-from rastrainer_simulator.authoring.planning_setup import PlanningSetup, pose_head
+from rastrainer_simulator.authoring.planning_setup import POSES_TRIED, PlanningSetup, pose_head
 from rastrainer_simulator.authoring.procedure_plan import check_procedures
 from rastrainer_simulator.authoring.task_proposal import PLANS, TaskPlan, target_spread
 from rastrainer_simulator.authoring.touch_order import complexity, shortest_path_mm
@@ -150,7 +150,6 @@ NO_ROOM = (
     "there is no room for all numbers beside the arrows; spread the fiducials, or touch them in "
     "another order."
 )
-POSES_TRIED = 12
 COMPLEXITY_TOLERANCE = 0.02
 SHORTEST_PATH_TOLERANCE = 0.01
 """Tolerance, as a share of the path."""

@@ -96,8 +96,8 @@ def _played(place: StudyPlace, scenario: Scenario, notes: list[str]) -> Found:
     found: dict[RegistrationMethod, list[tuple[str, MethodResult]]] = {}
     others = 0
     with Study.open_for_reading(place) as opened:
-        names = [one.pseudonym for kept in (False, True) for one in opened.trainees(archived=kept)]
-        trials = [trial for name in names for trial in opened.history(name)]
+        everyone = opened.trainees(archived=None)
+        trials = [trial for one in everyone for trial in opened.history(one.pseudonym)]
     for trial in trials:
         if trial.record.scenario != scenario.name:
             others += 1

@@ -11,6 +11,7 @@ from markupsafe import Markup
 
 from rastrainer.number_text import fixed
 from rastrainer.procedure.errors import TrajectoryErrors
+from rastrainer.protocol import PROCEDURE_PHASES
 from rastrainer.study.study_data import StudyData
 from rastrainer.trial import procedure_outcome
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
@@ -21,13 +22,7 @@ from rastrainer_simulator.statistics.intervals import mean, rms
 
 KINDS = {"biopsy": ("Biopsy", "#1b6ca8"), "dbs": ("DBS", "#c2571a"), "seeg": ("SEEG", "#3f8f4f")}
 """Title and color of each kind."""
-PHASES = {
-    "running": "touching",
-    "verifying": "verifying",
-    "aligning": "aligning",
-    "drilling": "drilling",
-    "inserting": "inserting",
-}
+PHASES = {"running": "touching", **{each.value: each.value for each in PROCEDURE_PHASES}}
 """Title of each phase."""
 WHOLE, BY_REGISTRATION, BY_HAND = "mm", "by_registration_mm", "by_hand_mm"
 """Length of a target point error, and of its parts."""

@@ -65,25 +65,15 @@ def fit_differences(differences: np.ndarray, order: np.ndarray | None = None) ->
 
     `order` is as in `is_separable`; if the period cannot be separated, the plain mean is returned.
     """
-    n = differences.shape[-1]
-    means = differences.mean(axis=-1)
-    centered = differences - means[..., None]
-    if order is None or not is_separable(order):
-        sd = np.sqrt((centered**2).sum(axis=-1) / (n - 1))
-        return DifferenceFit(means, sd / np.sqrt(n), sd, n - 1)
-    offsets = order - order.mean()
-    squares = float(offsets @ offsets)
-    later = centered @ offsets / squares
-    residuals = centered - later[..., None] * offsets
-    sd = np.sqrt((residuals**2).sum(axis=-1) / (n - 2))
-    return DifferenceFit(
-        mean=means - later * order.mean(),
-        standard_error=sd * np.sqrt(1 / n + order.mean() ** 2 / squares),
-        sd=sd,
-        dof=n - 2,
-        later=later,
-        later_error=sd / np.sqrt(squares),
-    )
+    design = np.ones((differences.shape[-1], 1))
+    if order is not None and is_separable(order):
+        design = np.column_stack([design, order])
+    inverse, dof = np.linalg.inv(design.T @ design), len(design) - design.shape[1]
+    fitted = differences @ design @ inverse
+    sd = np.sqrt(((differences - fitted @ design.T) ** 2).sum(axis=-1) / dof)
+    errors = sd[..., None] * np.sqrt(np.diag(inverse))
+    later = [found[..., 1] for found in (fitted, errors) if design.shape[1] > 1]
+    return DifferenceFit(fitted[..., 0], errors[..., 0], sd, dof, *later)
 
 
 @dataclass(frozen=True)

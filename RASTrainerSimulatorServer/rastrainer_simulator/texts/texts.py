@@ -42,8 +42,8 @@ def _table(tag: str) -> dict[str, str]:
 
 
 ENGLISH: Mapping[str, str] = MappingProxyType(
-    # Slicer sends a trial's feedback as keys and values, for others as English sentences.
-    _table("en") | {f"feedback.{key}": text for key, text in wording.ENGLISH.items()}
+    _table("en")
+    | {start + key: text for start, own in wording.TABLES.items() for key, text in own.items()}
 )
 LANGUAGES: Mapping[str, Mapping[str, str]] = MappingProxyType(
     {"en": ENGLISH} | {tag: MappingProxyType(_table(tag)) for tag in ("de", "fr", "es", "zh-Hans")}

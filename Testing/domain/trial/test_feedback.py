@@ -89,9 +89,9 @@ def test_safety_advice_comes_first_then_the_most_rewarding():
     }
     advice = advise(gentle_score(110.0, 1.2), findings, motion)
     assert len(advice) == 3
-    assert advice[0].topic == "contacts"
+    assert advice[0].sentence.key == "contacts"
     assert "2 times" in advice[0].sentence
-    assert advice[1].topic == "worst touches"
+    assert advice[1].sentence.key.startswith("worst touch")
     assert advice[1].gain > advice[2].gain > 0
 
 
@@ -113,7 +113,8 @@ def test_the_direction_of_a_common_bias_is_reported(words):
     motion = {"idle_time_s": 80.0, "unintended_contacts": 1}
     contacts, *advice = advise(score, EVEN, motion, bias)
     # Beyond its limit, it comes right after safety.
-    assert (contacts.topic, advice[0].topic) == ("contacts", "common bias")
+    assert contacts.sentence.key == "contact"
+    assert advice[0].sentence.key.endswith("common bias")
     length = f"{bias.length_mm:.1f} mm"
     assert f"On average, the touches are {length} too far {words}, which" in advice[0].sentence
 
@@ -121,9 +122,9 @@ def test_the_direction_of_a_common_bias_is_reported(words):
 def test_a_bias_explained_by_scatter_is_not_reported():
     score = gentle_score(110.0, 0.5, common_bias_mm=0.8)
     by_chance = advise(score, EVEN, {}, CommonBias((0.8, 0.0, 0.0), p=0.2))
-    assert "common bias" not in [one.topic for one in by_chance]
+    assert not any("common bias" in one.sentence.key for one in by_chance)
     advice, *others = advise(score, EVEN, {}, CommonBias((0.8, 0.0, 0.0), p=0.01))
-    assert (advice.topic, tuple(others)) == ("common bias", by_chance)
+    assert (advice.sentence.key, tuple(others)) == ("common bias", by_chance)
     assert advice.gain == pytest.approx(gentle_score(110.0, 0.5).score - score.score)
 
 
@@ -205,10 +206,14 @@ def test_the_feedback_sentences_are_in_order():
     errors = np.zeros((15, 3))
     errors[3] = 5.0 * NORMALS[3]
     history = [past(1, 50.0), past(2, 60.0)]
-    feedback = trial_feedback(
-        gentle_score(150.0, 2.5), registered(errors), NORMALS, {"idle_time_s": 40.0}, recording()
+    score, motion = gentle_score(150.0, 2.5), {"idle_time_s": 40.0}
+    feedback = trial_feedback(registered(errors), NORMALS, motion, recording())
+    feedback = replace(
+        feedback,
+        score=score,
+        advice=advise(score, feedback.touches, motion),
+        progress=progress_of(history, history[1].trial_id, 55.0),
     )
-    feedback = replace(feedback, progress=progress_of(history, history[1].trial_id, 55.0))
     assert feedback.worst.label == "4"
     assert feedback.worst.replay_s == pytest.approx([5.98, 7.98])
     sentences = feedback.sentences

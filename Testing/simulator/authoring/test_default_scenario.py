@@ -12,15 +12,10 @@ from rastrainer.registration.localization_error import LocalizationError
 from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import expected_tre
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.authoring.planning_setup import touchable
+from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.task_proposal import target_spread
 from rastrainer_simulator.authoring.touch_order import SurfaceGraph, complexity
-from rastrainer_simulator.collision.collision import Collision
-from rastrainer_simulator.collision.robot_shape import robot_shape
-from rastrainer_simulator.collision.touch_planner import TouchPlanner
-from rastrainer_simulator.robot.model import load_robot
 
 FOLDER = asset_path("scenarios", "colin27")
 SCENARIO = load_scenario(FOLDER)
@@ -93,14 +88,15 @@ def test_the_fiducials_locate_the_center_of_the_head_well(name):
 
 @pytest.mark.parametrize("count", [4, pytest.param(20, marks=pytest.mark.soak)])
 def test_the_robot_can_touch_every_fiducial_in_other_poses_of_the_head(count):
-    robot = load_robot()
-    collision = Collision(robot_shape(robot), MESH.vertices / MM_PER_M, MESH.triangles)
+    planning = PlanningSetup(SCENARIO, MESH)
     fiducials = np.concatenate([task.fiducials for task in SCENARIO.tasks])
     normals = outward_normals(MESH, fiducials)
     seeds = range(90_000, 90_000 + count)
     poses = [SCENARIO.head_to_world, *map(SCENARIO.perturbed_head_to_world, seeds)]
-    can_be = touchable(TouchPlanner(robot, collision), collision, fiducials, normals, poses)
-    assert can_be.all()
+    assert planning.touchable(fiducials, normals, poses).all()
+    far = SCENARIO.head_to_world.copy()
+    far[:3, 3] += [1000.0, 0.0, 0.0]
+    assert not planning.touchable(fiducials[:2], normals[:2], [poses[0], far]).any()
 
 
 def test_the_notice_of_the_mri_travels_with_the_scenario():

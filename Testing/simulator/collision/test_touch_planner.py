@@ -2,8 +2,6 @@ import numpy as np
 import pytest
 import trimesh
 
-from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.authoring.planning_setup import touchable
 from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.robot_shape import robot_shape
 from rastrainer_simulator.collision.touch_planner import TouchPlanner, tool_directions
@@ -76,14 +74,3 @@ def test_the_likely_direction_is_tried_first_and_no_other_is_missed(planner):
         assert planner.touch(place, outward, likely=touch.number).number == touch.number
     below = CENTER - [0, 0, RADIUS]
     assert planner.touch(below, np.array([0.0, 0.0, -1.0]), likely=7) is None
-
-
-def test_a_place_is_touchable_only_if_it_is_touchable_in_every_pose(planner, collision):
-    positions = RADIUS * MM_PER_M * np.array([[0, 0, 1], [0.8, 0, 0.6]])
-    normals = positions / (RADIUS * MM_PER_M)
-    near, far = np.eye(4), np.eye(4)
-    near[:3, 3], far[:3, 3] = CENTER * MM_PER_M, [780, 0, 300]
-    everywhere = touchable(planner, collision, positions, normals, [near])
-    in_both = touchable(planner, collision, positions, normals, [near, far])
-    assert everywhere.tolist() == [True, True]
-    assert in_both.tolist() == [True, False]

@@ -161,7 +161,6 @@ MAX_ADVICE = 3
 class Advice:
     """One improvement, and about how many points it gains."""
 
-    topic: str
     sentence: Sentence
     gain: float
 
@@ -183,7 +182,7 @@ def advise(
     first = list(_contacts(motion, _gain(score, contact_time_s=0.0, contact_path_mm=0.0)))
     depth, gain = score.measures.pressing_depth_mm, _gain(score, pressing_depth_mm=0.0)
     if depth > DEPTH_LIMIT_MM or gain >= MIN_GAIN:
-        first.append(Advice("pressing", say("pressing", depth=depth), gain))
+        first.append(Advice(say("pressing", depth=depth), gain))
     candidates = [*_accuracy(score, findings), *_time(score, motion)]
     if bias is not None and score.is_unbiased is False:
         first.append(_common_bias(score, bias))
@@ -199,10 +198,10 @@ def _contacts(motion: Mapping[str, float], gain: float) -> Iterator[Advice]:
     seconds = float(motion.get("unintended_contact_time_s", 0.0))
     if seconds >= LONG_CONTACT_S:
         path = float(motion.get("unintended_contact_path_mm", 0.0))
-        yield Advice("contacts", say("dragging", time=seconds, path=path), gain)
+        yield Advice(say("dragging", time=seconds, path=path), gain)
     elif count:
         sentence = say("contact") if count == 1 else say("contacts", count=count)
-        yield Advice("contacts", sentence, gain)
+        yield Advice(sentence, gain)
 
 
 _DIRECTIONS = (
@@ -221,7 +220,7 @@ def _common_bias(score: TrialScore, bias: CommonBias) -> Advice:
         sentence = say("common bias", bias=bias.length_mm, direction=first)
     else:
         sentence = say("oblique common bias", bias=bias.length_mm, direction=first, second=other)
-    return Advice("common bias", sentence, _gain(score, common_bias_mm=0.0))
+    return Advice(sentence, _gain(score, common_bias_mm=0.0))
 
 
 def _accuracy(score: TrialScore, findings: Sequence[TouchFinding]) -> Iterator[Advice]:
@@ -236,7 +235,6 @@ def _accuracy(score: TrialScore, findings: Sequence[TouchFinding]) -> Iterator[A
             (typical if finding.is_outlier else finding.residual_mm) ** 2 for finding in findings
         )
         yield Advice(
-            "worst touches",
             say(
                 "worst touch" if len(outliers) == 1 else "worst touches",
                 points=", ".join(finding.label for finding in outliers),
@@ -249,7 +247,6 @@ def _accuracy(score: TrialScore, findings: Sequence[TouchFinding]) -> Iterator[A
         in_depth = float((np.array(depths) ** 2).sum())
         if in_depth > 0.5 * total:
             yield Advice(
-                "depth",
                 say("depth"),
                 _gain(score, error_factor=math.sqrt(max(1 - in_depth / total, 0.04) / 0.75)),
             )
@@ -260,7 +257,6 @@ def _time(score: TrialScore, motion: Mapping[str, float]) -> Iterator[Advice]:
     idle = motion.get("idle_time_s", 0.0)
     if idle > 0:
         yield Advice(
-            "idle time",
             say("idle time", idle=float(idle), time=time),
             # Half of it is needed to aim.
             _gain(score, time_s=time - idle / 2),
@@ -269,21 +265,18 @@ def _time(score: TrialScore, motion: Mapping[str, float]) -> Iterator[Advice]:
     if efficiency < GOOD_EFFICIENCY:
         moving = time - idle
         yield Advice(
-            "detours",
             say("detours", times=1 / efficiency),
             _gain(score, time_s=time - moving * (1 - efficiency / GOOD_EFFICIENCY)),
         )
     refused = int(motion.get("refused_touches", 0) + motion.get("undone_touches", 0))
     if refused:
         yield Advice(
-            "repeated touches",
             say("repeated touch") if refused == 1 else say("repeated touches", count=refused),
             _gain(score, time_s=max(time - ATTEMPT_S * refused, 0.2 * time)),
         )
     slow = time / score.reference.time_s
     if slow > 1.3:
         yield Advice(
-            "pace",
             say("pace", time=time, usual=float(score.reference.time_s)),
             0.5 * _gain(score, time_s=score.reference.time_s),
         )

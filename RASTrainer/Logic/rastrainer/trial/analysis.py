@@ -114,10 +114,10 @@ class TrialAnalysis(TouchRegistration):
         unshifted = unshifted_tre_mm(record, scenario, truth.matrix, truth.skin)
         score = replace(score, unshifted_tre_mm=unshifted)
         normals = normals_at(scenario, record.task, self.rigid.labels, record.method)
-        feedback = trial_feedback(score, self.rigid, normals, record.motion, trajectory, bias=bias)
-        feedback = replace(feedback, skin=skin_sentences(truth.skin, truth.true_tre_mm, unshifted))
+        feedback = trial_feedback(self.rigid, normals, record.motion, trajectory)
         procedure = procedure_outcome(record, scenario, truth.matrix, references)
-        return replace(self, truth=truth, score=score, feedback=feedback, procedure=procedure)
+        explained = replace(self, feedback=feedback, procedure=procedure)
+        return explained.scored_as(score, scenario, truth)
 
     def scored_as(
         self, score: TrialScore | None, scenario: Scenario, truth: RevealedTruth | None
@@ -169,7 +169,7 @@ def analyze_trial(
             if record.method is RegistrationMethod.FIDUCIALS
             else None
         ),
-        feedback=trial_feedback(None, rigid, normals, record.motion, trajectory),
+        feedback=trial_feedback(rigid, normals, record.motion, trajectory),
     )
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Annotated
 
@@ -128,35 +128,32 @@ class PlayRecording:
     """Derives from a journal's entries how its trial is played."""
 
     def __init__(self) -> None:
-        self._started_by = ""
-        self._seed_source = SeedSource.DRAWN
-        self._speed = 1.0
-        self._pauses = 0
+        self._how = HowPlayed()
         self._simulated_s = self._clock_s = 0.0
         self._since_complete = (0.0, 0.0)
         self._times: tuple[float, float] | None = None
         self._phase = Phase.RUNNING
         self._way_mm: dict[str, float] = defaultdict(float)
-        self._feed_commands = 0
         self._view_s: Counter[str] = Counter()
         self._tip: tuple[float, ...] | None = None
 
     def add(self, line: Line) -> None:
         self._add_time(line)
+        how = self._how
         match line.entry:
             case JournalHeader(session=session) | Continued(session=session):
-                speed = session.speed or 0.0
-                self._speed = max(self._speed, speed, key=lambda each: abs(each - 1.0))
-                if session.is_seeded and self._seed_source is SeedSource.DRAWN:
-                    self._seed_source = SeedSource.SESSION
+                speed = max(how.speed, session.speed or 0.0, key=lambda each: abs(each - 1.0))
+                self._how = replace(how, speed=speed)
+                if session.is_seeded and how.seed_source is SeedSource.DRAWN:
+                    self._how = replace(self._how, seed_source=SeedSource.SESSION)
             case CommandDone(name=CommandName.START_TASK, arguments=arguments, sender=sender):
-                self._started_by = sender
+                self._how = replace(how, started_by=sender)
                 if arguments.get("seed") is not None:
-                    self._seed_source = SeedSource.CLIENT
+                    self._how = replace(self._how, seed_source=SeedSource.CLIENT)
             case CommandDone(name=CommandName.FEED):
-                self._feed_commands += 1
+                self._how = replace(how, feed_commands=how.feed_commands + 1)
             case PhaseChange(phase=Phase.PAUSED):
-                self._pauses += 1
+                self._how = replace(how, pauses=how.pauses + 1)
             case Sample(tip_mm=tip, moved_by=moved_by):
                 if self._tip is not None and moved_by:
                     self._way_mm[moved_by] += math.dist(tip, self._tip)
@@ -166,16 +163,8 @@ class PlayRecording:
                 self._view_s[view] += 1
 
     def played(self) -> HowPlayed:
-        return HowPlayed(
-            started_by=self._started_by,
-            seed_source=self._seed_source,
-            speed=self._speed,
-            pace=self._simulated_s / self._clock_s if self._clock_s else self._speed,
-            pauses=self._pauses,
-            way_mm=dict(self._way_mm),
-            feed_commands=self._feed_commands,
-            view_s=dict(self._view_s),
-        )
+        pace = self._simulated_s / self._clock_s if self._clock_s else self._how.speed
+        return replace(self._how, pace=pace, way_mm=dict(self._way_mm), view_s=dict(self._view_s))
 
     def _add_time(self, line: Line) -> None:
         """Add what has passed since the last entry, except in a pause and after the last point."""

@@ -159,12 +159,14 @@ def score_procedure(measures: ProcedureMeasures, reference_s: float) -> Procedur
         raise InputError("The procedure's duration must be above 0 s.")
     desirabilities = {
         "time": of_time(measures.duration_s, reference_s),
-        **_accuracy(measures.target_mm, measures.entry_mm, measures.angle_deg),
-        **_safety(measures.plunge_mm, measures.intrusion_mm),
+        **_besides_time(
+            *(measures.target_mm, measures.entry_mm, measures.angle_deg),
+            *(measures.plunge_mm, measures.intrusion_mm),
+        ),
     }
     product = math.prod(desirabilities.values())
     if not (measures.is_accurate and measures.is_safe):
-        product *= _worst_acceptable()
+        product *= WORST_ACCEPTABLE
     return ProcedureScore(
         score=100 * product ** (1 / len(desirabilities)),
         desirabilities=desirabilities,
@@ -175,29 +177,26 @@ def score_procedure(measures: ProcedureMeasures, reference_s: float) -> Procedur
     )
 
 
-def _accuracy(target_mm: float, entry_mm: float, angle_deg: float) -> dict[str, float]:
+def _besides_time(
+    target_mm: float, entry_mm: float, angle_deg: float, plunge_mm: float, intrusion_mm: float
+) -> dict[str, float]:
     return {
         "target": falling(target_mm, HALF_TARGET_MM),
         "entry": falling(entry_mm, HALF_ENTRY_MM),
         "angle": falling(angle_deg, HALF_ANGLE_DEG),
-    }
-
-
-def _safety(plunge_mm: float, intrusion_mm: float) -> dict[str, float]:
-    return {
         "plunge": falling(plunge_mm, HALF_PLUNGE_MM),
         "distance": falling(intrusion_mm, HALF_INTRUSION_MM),
     }
 
 
-def _worst_acceptable() -> float:
-    """Return the product of the desirabilities at all limits and infinite time.
+_AT_LIMITS = _besides_time(
+    TARGET_LIMIT_MM, ENTRY_LIMIT_MM, ANGLE_LIMIT_DEG, PLUNGE_LIMIT_MM, MAX_SAFETY_MM
+)
+WORST_ACCEPTABLE = TIME_FLOOR * math.prod(_AT_LIMITS.values())
+"""Brings, as a factor, every procedure beyond a limit below every acceptable one.
 
-    As a factor it brings every procedure beyond a limit below every acceptable one.
-    """
-    accuracy = _accuracy(TARGET_LIMIT_MM, ENTRY_LIMIT_MM, ANGLE_LIMIT_DEG)
-    safety = _safety(PLUNGE_LIMIT_MM, MAX_SAFETY_MM)
-    return TIME_FLOOR * math.prod([*accuracy.values(), *safety.values()])
+It is the product of the desirabilities at all limits and infinite time.
+"""
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,6 @@ from rastrainer.errors import InputError
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.number_text import fixed
 from rastrainer.registration.registration import Registration
-from rastrainer.registration.target_error import CommonBias
 from rastrainer.trial.advice import Advice, TouchFinding, advise, touch_findings
 from rastrainer.trial.lc_cusum import LcCusum, lc_cusum, lc_cusum_limit
 from rastrainer.trial.scoring import (
@@ -173,25 +172,23 @@ class TrialFeedback:
 
 
 def trial_feedback(
-    score: TrialScore | None,
     registration: Registration,
-    normals: np.ndarray | None = None,
-    motion: Mapping[str, float] | None = None,
-    trajectory: Trajectory | None = None,
-    bias: CommonBias | None = None,
+    normals: np.ndarray,
+    motion: Mapping[str, float],
+    trajectory: Trajectory | None,
 ) -> TrialFeedback:
-    """Return the feedback on a trial; unknown parts are left out.
+    """Return the feedback on a trial without its score.
 
     `normals` are the skin's outward unit normals (n, 3) at the fiducials, RAS. The metric
     `path_efficiency` adds advice on detours.
     """
     findings = touch_findings(registration, normals, trajectory)
     return TrialFeedback(
-        score=score,
+        score=None,
         touches=findings,
         worst=max(findings, key=lambda finding: finding.residual_mm),
-        advice=advise(score, findings, motion or {}, bias),
-        paused_s=(motion or {}).get("pause_time_s", 0.0),
+        advice=advise(None, findings, motion),
+        paused_s=motion.get("pause_time_s", 0.0),
     )
 
 

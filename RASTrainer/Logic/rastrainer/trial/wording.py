@@ -1,4 +1,4 @@
-"""The feedback's sentences in English, with keys for translation."""
+"""What 3D Slicer and the simulator both say, in English, with keys for translation."""
 
 from __future__ import annotations
 
@@ -77,6 +77,33 @@ ENGLISH: Mapping[str, str] = {
     "not competent": "{share:.0f} % of the way to demonstrated competence (LC-CUSUM; trials so "
     "far: {trials}).",
 }
+
+PARTS = {
+    "time": "time",
+    "accuracy": "accuracy",
+    "common bias": "the bias that all touches share",
+    "safety": "unintended contact and pressing",
+    "target": "the error at the target",
+    "entry": "the error at the entry",
+    "angle": "the angle",
+    "plunge": "drilling too deep",
+    "distance": "too little distance to no-go structures",
+}
+"""The parts of the scores of touches and of procedures."""
+IN_MODE = {"desktop": "on the desktop screen", "hmd": "with the headset"}
+BY_METHOD = {
+    "landmarks": "by landmarks of the face",
+    "surface": "by a trace over the skin",
+    "landmarks-surface": "by landmarks and a trace",
+}
+"""Fiducials, the default method, are not mentioned."""
+TABLES: Mapping[str, Mapping[str, str]] = {
+    "feedback.": ENGLISH,
+    "assignments.part ": PARTS,
+    "study.": IN_MODE,
+    "study.by ": BY_METHOD,
+}
+"""All of them, by what the keys begin with in the simulator's texts."""
 
 _ROUND_UP = 1 + 1e-12
 """Rounds halves up: 0.25, stored slightly below, becomes 0.3."""

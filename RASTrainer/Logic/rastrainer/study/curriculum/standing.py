@@ -17,6 +17,7 @@ from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.database.values import day_of, moment
 from rastrainer.study.protocol.steps import trial_title
 from rastrainer.study_messages import WHOLE_WAY, Assignment, AssignmentStanding, CurriculumMessage
+from rastrainer.trial import wording
 from rastrainer.trial.scoring import passes
 from rastrainer.trial.trial_feedback import competence_of
 from rastrainer.trial.trial_row import TrialRow
@@ -165,20 +166,6 @@ def _weakest(trials: Sequence[TrialRow]) -> str:
     return min(means, key=lambda name: means[name], default="")
 
 
-PARTS = {
-    "time": "time",
-    "accuracy": "accuracy",
-    "common bias": "the bias that all touches share",
-    "safety": "unintended contact and pressing",
-    "target": "the error at the target",
-    "entry": "the error at the entry",
-    "angle": "the angle",
-    "plunge": "drilling too deep",
-    "distance": "the distance to no-go structures",
-}
-"""The parts of the scores of touches and of procedures."""
-
-
 def title_of(assignment: Assignment) -> str:
     """Return the title of an assignment, such as "Task 3 by a trace over the skin"."""
     title = trial_title(assignment.task, assignment.mode, assignment.method, assignment.procedure)
@@ -227,6 +214,6 @@ def advice_of(standing: CurriculumStanding) -> str:
     task = title_of(best)
     if best.mean is None:
         return f"Next: {task}, which has not been played yet."
-    part = PARTS.get(best.weakest, "")
+    part = wording.PARTS.get(best.weakest, "")
     why = f"; most points are lost on {part}" if part else ""
     return f"Next: {task}, the weakest open one (latest mean {fixed(best.mean, 0)}){why}."

@@ -31,6 +31,16 @@ _BY_WORDS = {
     "full": "The study {0} cannot be written: the disk is full.",
     "disk i/o": "The study {0} cannot be read or written: the disk has errors.",
 }
+_PRAGMAS_OF_READERS = ("foreign_keys = ON", "trusted_schema = OFF")
+_PRAGMAS = (
+    *_PRAGMAS_OF_READERS,
+    # Deleted trainees leave no bytes behind in the file.
+    "secure_delete = ON",
+    # Also sync the folder: committed changes survive a power failure, since the simulator forgets a
+    # trial that we have acknowledged.
+    "synchronous = EXTRA",
+    "journal_mode = DELETE",
+)
 _DAMAGED = "The study {0} is damaged; restore it from a backup."
 
 
@@ -39,26 +49,27 @@ class SqliteDatabase(StudyDatabase):
 
     _connection: sqlite3.Connection
     _errors = sqlite3.Error
-    _pragmas: tuple[str, ...] = (
-        "foreign_keys = ON",
-        # Deleted trainees leave no bytes behind in the file.
-        "secure_delete = ON",
-        # Also sync the folder: committed changes survive a power failure, since the simulator
-        # forgets a trial that we have acknowledged.
-        "synchronous = EXTRA",
-        "journal_mode = DELETE",
-        "trusted_schema = OFF",
-    )
 
-    def __init__(self, path: str | os.PathLike[str], lock_wait: LockWait | None = None) -> None:
-        """Open the file, or create it with its tables."""
-        self.path = Path(path)
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        lock_wait: LockWait | None = None,
+        may_change: bool = True,
+    ) -> None:
+        """Open the file, or create it with its tables if it may be changed.
+
+        In a file that may not be changed, an incomplete transaction left by a crash is rolled back
+        first, as by any program that opens it; stored data remain.
+        """
+        self.path, self._may_change = Path(path), may_change
         if "\0" in str(self.path):
             raise InputError("The name of a study database must not contain a null character.")
         if self.path.is_dir():
             raise InputError(f"{self.path} is a folder; a study database is a file.")
         if not self.path.parent.is_dir():
             raise InputError(f"There is no folder {self.path.parent} for the study database.")
+        if not may_change and not self.path.is_file():
+            raise InputError(f"There is no file {self.path}.")
         super().__init__(self.path.stem, self.path, lock_wait)
 
     def version(self) -> int | None:
@@ -84,16 +95,26 @@ class SqliteDatabase(StudyDatabase):
             self._connection.execute("ROLLBACK")
 
     def _connect(self) -> sqlite3.Connection:
+        if not self._may_change:
+            journal = self.path.with_name(f"{self.path.name}-journal")
+            if journal.is_file() and journal.stat().st_size > 0:
+                with contextlib.closing(self._open(str(self.path))) as connection:
+                    connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
+            return self._open(read_only_uri(self.path))
         # Only a new file is opened: closing an existing one would release our other locks on it.
         with contextlib.suppress(OSError):
             os.close(open_private(self.path, os.O_RDWR | os.O_CREAT | os.O_EXCL))
         for suffix in ("", "-journal", "-wal", "-shm"):
             keep_others_out(f"{self.path}{suffix}")
+        return self._open(str(self.path))
+
+    def _open(self, name: str) -> sqlite3.Connection:
+        timeout_s, is_uri = self._lock_wait.timeout_s, name.startswith("file://")
         # Transactions are explicit: `isolation_level=None`.
-        return sqlite3.connect(self.path, timeout=self._lock_wait.timeout_s, isolation_level=None)
+        return sqlite3.connect(name, timeout=timeout_s, isolation_level=None, uri=is_uri)
 
     def _prepare(self) -> None:
-        for pragma in self._pragmas:
+        for pragma in _PRAGMAS if self._may_change else _PRAGMAS_OF_READERS:
             self._connection.execute(f"PRAGMA {pragma}")
         # In one transaction: another process may be creating the tables.
         with self.reading():
@@ -114,8 +135,12 @@ class SqliteDatabase(StudyDatabase):
         is_whole = self._connection.execute("PRAGMA integrity_check(1)").fetchone() == ("ok",)
         if not is_whole or self._connection.execute("PRAGMA foreign_key_check").fetchone():
             raise sqlite3.DatabaseError("malformed")
+        if not self._may_change:
+            self._connection.execute("PRAGMA query_only = ON")
 
     def _create_tables(self) -> None:
+        if not self._may_change:
+            raise InputError(f"{self.path} holds no study.")
         with self.writing():
             if self._number("user_version") == 0:  # Another process may have been faster.
                 for statement in STATEMENTS:
@@ -138,40 +163,6 @@ class SqliteDatabase(StudyDatabase):
             )
         sentence = next((said for words, said in _BY_WORDS.items() if words in text), _DAMAGED)
         return InputError(sentence.format(self.path))
-
-
-class ReadOnlySqliteDatabase(SqliteDatabase):
-    """A connection that cannot change the file.
-
-    An incomplete transaction left by a crash is rolled back first, as by any program that opens the
-    file; stored data remain.
-    """
-
-    _pragmas = ("foreign_keys = ON", "trusted_schema = OFF")
-
-    def _connect(self) -> sqlite3.Connection:
-        if not self.path.is_file():
-            raise InputError(f"There is no file {self.path}.")
-        journal = self.path.with_name(f"{self.path.name}-journal")
-        if journal.is_file() and journal.stat().st_size > 0:
-            connection = sqlite3.connect(self.path, timeout=self._lock_wait.timeout_s)
-            try:
-                connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
-            finally:
-                connection.close()
-        return sqlite3.connect(
-            read_only_uri(self.path),
-            timeout=self._lock_wait.timeout_s,
-            isolation_level=None,
-            uri=True,
-        )
-
-    def _prepare(self) -> None:
-        super()._prepare()
-        self._connection.execute("PRAGMA query_only = ON")
-
-    def _create_tables(self) -> None:
-        raise InputError(f"{self.path} holds no study.")
 
 
 def read_only_uri(path: Path) -> str:

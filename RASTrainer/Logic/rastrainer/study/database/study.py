@@ -27,7 +27,7 @@ from rastrainer.registration.target_error import TargetError
 from rastrainer.study.database.database import LockWait, PostgresAddress, StudyDatabase, study_place
 from rastrainer.study.database.postgres_database import PostgresDatabase
 from rastrainer.study.database.schema import TRAINEE_ID
-from rastrainer.study.database.sqlite_database import ReadOnlySqliteDatabase, SqliteDatabase
+from rastrainer.study.database.sqlite_database import SqliteDatabase
 from rastrainer.study.database.values import (
     PROCEDURE,
     RESULTS,
@@ -67,8 +67,9 @@ def _latest(column: str, kind: str) -> str:
     return f"(SELECT {column} FROM results {own} ORDER BY results.id DESC LIMIT 1)"
 
 
+_NAMES = ("trainee", "mode", "task", "trial_id", "started_utc", "scenario", "method")
 _ROWS = f"""
-    SELECT pseudonym, mode, task, trial_id, started_utc, scenario, method, completion_time_s,
+    SELECT pseudonym, {", ".join(_NAMES[1:])}, completion_time_s,
         {_latest("result_json", SCORE)}, {_latest("result_json", PROCEDURE)},
         {_latest("value", TRUTH)}
     FROM trials JOIN trainees ON trainees.id = trainee_id
@@ -121,7 +122,7 @@ class Study(AbstractContextManager["Study"]):
         place = study_place(place)
         if isinstance(place, PostgresAddress):
             return cls(PostgresDatabase(place, lock_wait, may_change=False))
-        return cls(ReadOnlySqliteDatabase(place, lock_wait))
+        return cls(SqliteDatabase(place, lock_wait, may_change=False))
 
     def __exit__(self, *_exception: object) -> None:
         self.close()
@@ -421,23 +422,16 @@ class Study(AbstractContextManager["Study"]):
         """Return the time, latest score and procedure, and the true error of trials."""
         rows = self.database.rows(f"{_ROWS} {condition} ORDER BY trials.id", *parameters)
         found = []
-        for who, mode, task, trial_id, utc, scenario, method, seconds, *results in rows:
-            scored, done, true_mm = results
+        for *known, seconds, scored, done, true_mm in rows:
             score = None if scored is None else result_of(SCORE, scored)
             values = {"completion_time_s": seconds}
             values |= {} if score is None else {"score": score.score}
             values |= {} if true_mm is None else {"true_tre_mm": true_mm}
             row = TrialRow(
-                who,
-                mode,
-                task,
+                **dict(zip(_NAMES, known, strict=True)),
                 values=values,
-                trial_id=trial_id,
-                started_utc=utc,
-                scenario=scenario,
                 acceptable=score is not None and score.acceptable,
                 procedure=None if done is None else result_of(PROCEDURE, done),
-                method=method,
                 parts={} if score is None else score.parts,
                 is_aborted=score is None and true_mm is not None,
             )

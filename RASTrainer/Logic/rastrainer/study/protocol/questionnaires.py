@@ -7,7 +7,7 @@ authors', and a lab shows it from its own licensed or printed form.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -63,16 +63,12 @@ class Questionnaire:
     def marks(self) -> range:
         return range(self.lowest, self.highest + 1, self.marks_apart)
 
-    def score(self, answers: Sequence[int] | Mapping[str, int]) -> dict[str, float]:
+    def score(self, answers: Sequence[int]) -> dict[str, float]:
         values = _SCORES[self.name](self.checked(answers))
         return {scale.name: value for scale, value in zip(self.scales, values, strict=True)}
 
-    def checked(self, answers: Sequence[int] | Mapping[str, int]) -> tuple[int, ...]:
+    def checked(self, answers: Sequence[int]) -> tuple[int, ...]:
         names = [item.name for item in self.items]
-        if isinstance(answers, Mapping):
-            if set(answers) != set(names):
-                raise InputError(f"{self.title} needs the answers {', '.join(names)}.")
-            answers = [answers[name] for name in names]
         if isinstance(answers, str) or len(answers) != len(names):
             raise InputError(f"{self.title} needs {len(names)} answers, one for each item.")
         for name, answer in zip(names, answers, strict=True):

@@ -9,19 +9,14 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from rastrainer.json_checks import list_of, whole_number
-from rastrainer.protocol import Guidance, Mode, RegistrationMethod, StepKind
+from rastrainer.protocol import Guidance, StepKind
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES, find_questionnaire
 from rastrainer.study_messages import StudyStep
+from rastrainer.trial import wording
 from rastrainer.trial.record import TrialRecord
 
 FIXED_GUIDANCE = tuple(each.value for each in Guidance if each is not Guidance.FADING)
 MAX_STEPS = 100_000
-_IN_MODE = {Mode.DESKTOP.value: "on the desktop screen", Mode.HMD.value: "with the headset"}
-_BY_METHOD = {
-    RegistrationMethod.LANDMARKS.value: " by landmarks of the face",
-    RegistrationMethod.SURFACE.value: " by a trace over the skin",
-    RegistrationMethod.LANDMARKS_SURFACE.value: " by landmarks and a trace",
-}
 
 
 def objections_to(step: StudyStep, record: TrialRecord) -> tuple[str, ...]:
@@ -41,20 +36,20 @@ def instruction(step: StudyStep) -> str:
     if step.kind == StepKind.BREAK:
         return f"Take a break of at least {step.minutes:g} minutes."
     if step.kind == StepKind.TRIAL_RUN:
-        where = f" {_IN_MODE[step.mode]}" if step.mode else ""
+        where = f" {wording.IN_MODE[step.mode]}" if step.mode else ""
         return f"Get to know the trial run{where} for {step.minutes:g} minutes."
     return f"Play {trial_title(step.task, step.mode, step.method, step.procedure)}."
 
 
 def trial_title(task: str, mode: str, method: str, procedure: str) -> str:
-    """Return the title of such a trial, such as "Task 3 by a trace over the skin"; "" is any.
-
-    Fiducials, the default method, are not mentioned.
-    """
-    name = task.replace("-", " ").capitalize()
-    then = f" with the procedure {procedure}" if procedure else ""
-    where = f" {_IN_MODE[mode]}" if mode else ""
-    return f"{name}{_BY_METHOD.get(method, '')}{then}{where}"
+    """Return the title of such a trial, such as "Task 3 by a trace over the skin"; "" is any."""
+    words = (
+        task.replace("-", " ").capitalize(),
+        wording.BY_METHOD.get(method),
+        f"with the procedure {procedure}" if procedure else "",
+        wording.IN_MODE.get(mode),
+    )
+    return " ".join(filter(None, words))
 
 
 @dataclass(frozen=True)
