@@ -123,9 +123,10 @@ def _procedure(now: SimulationState, pictures: Pictures) -> ProcedureNews | None
         return None
     seen = None
     if alignment is not None and line is not None and now.tool is Tool.GUIDE:
-        entry, target = aim(now.guide_axis, line, pictures)
+        (entry_x, entry_y), (target_x, target_y) = aim(now.guide_axis, line, pictures)
         seen = GuideAim(
-            *((round(MM_PER_M * x, 2), round(MM_PER_M * y, 2)) for x, y in (entry, target)),
+            (round(MM_PER_M * entry_x, 2), round(MM_PER_M * entry_y, 2)),
+            (round(MM_PER_M * target_x, 2), round(MM_PER_M * target_y, 2)),
             round(MM_PER_M * alignment.entry_distance, 2),
             round(math.degrees(alignment.angle), 2),
         )
