@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import Future
 from functools import partial
 
@@ -11,7 +11,6 @@ from rastrainer.errors import InputError
 from rastrainer.study.ratings import HIGHEST, LOWEST, MARKS, RatingDomain, RatingForm
 from rastrainer_simulator.flow.session.open_pages import OpenPages, Page, PageContent, PageRow
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.input.gamepads import w3c_gamepad_inputs
 from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_of
 from rastrainer_simulator.presentation.screen import Fact, Hint, Screen, ScreenMessage, Tone
@@ -21,7 +20,6 @@ from rastrainer_simulator.replay.replay_presenter import RATE, ReplayPresenter
 from rastrainer_simulator.state import StepResult
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label, pair_label
 
-_DOWN = 0.5
 _REPEATED = ("ArrowLeft", "ArrowRight")
 _IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlName.BACK}
 
@@ -45,7 +43,6 @@ class RatingPresenter(ReplayPresenter):
         self.leave = end
         self._load = load
         self._loading: Future[Playback] | None = None
-        self._inputs: dict[int, tuple[frozenset[int], frozenset[int]]] = {}
         self._keys: dict[int, set[str]] = {}
         self._problem = ""
         blinded = Texts(LANGUAGES[language]).say("rating.replay", **work.numbers)
@@ -93,7 +90,6 @@ class RatingPresenter(ReplayPresenter):
 
     def view_left(self, view: int) -> None:
         super().view_left(view)
-        self._inputs.pop(view, None)
         self._keys.pop(view, None)
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
@@ -105,34 +101,15 @@ class RatingPresenter(ReplayPresenter):
         keys = self._keys.setdefault(view, set())
         is_again = is_down and code in keys
         (keys.add if is_down else keys.discard)(code)
+        if not is_again or (self.pages.top is None and code in _REPEATED):
+            super().on_key(view, code, is_down, text)
+
+    def input_pressed(self, device: InputDevice, name: str) -> None:
+        """Process an input that is newly pressed: for the open page, else for the replay."""
         if self.pages.top is None:
-            if not is_again or code in _REPEATED:
-                super().on_key(view, code, is_down, text)
-        elif is_down and not is_again:
-            self._try(lambda: self._page_pressed(InputDevice.KEYBOARD, code))
-
-    def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
-        """Process a gamepad: newly pressed buttons are for the open page, else for the replay."""
-        now = _pressed(axes), _pressed(buttons)
-        before = self._inputs.get(view, (frozenset(), frozenset()))
-        self._inputs[view] = now
-        moved, tapped = (
-            [value * (number in new - old) for number, value in enumerate(values)]
-            for values, new, old in zip((axes, buttons), now, before, strict=True)
-        )
-        if self.pages.top is not None:
-            inputs = w3c_gamepad_inputs(moved, tapped)
-            names = [name for name, value in inputs.items() if value > _DOWN]
-
-            def press() -> None:
-                for name in names:
-                    self._page_pressed(InputDevice.GAMEPAD, name)
-
-            self._try(press)
-            return
-        # Released at once: a button that has led from the form back here is not pressed again.
-        super().on_pad(view, axes, tapped)
-        super().on_pad(view, axes, ())
+            super().input_pressed(device, name)
+        else:
+            self._try(lambda: self._page_pressed(device, name))
 
     def on_press(self, view: int, control: str) -> None:
         """Process a button of an XR controller, or of a touch screen."""
@@ -192,10 +169,6 @@ class RatingPresenter(ReplayPresenter):
     def _happened(self, what: FeedbackEvent) -> None:
         self._count += 1
         self.updates.publish(feedback_of(what, self._count))
-
-
-def _pressed(values: Sequence[float]) -> frozenset[int]:
-    return frozenset(number for number, value in enumerate(values) if abs(value) > _DOWN)
 
 
 _KEYS = {f"{key}{mark}": mark for key in ("Digit", "Numpad") for mark in MARKS}

@@ -9,7 +9,9 @@ from functools import reduce
 
 from rastrainer.number_text import clock
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.input.inputs import ControlName
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS, Bindings
+from rastrainer_simulator.input.gamepads import w3c_gamepad_inputs
+from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice
 from rastrainer_simulator.presentation.feedback_event import feedback_event, feedback_of
 from rastrainer_simulator.presentation.messages import InstructorOrder
 from rastrainer_simulator.presentation.presenter import Presenter
@@ -108,29 +110,20 @@ class Player:
         )
 
 
-_KEYS = {
-    "Space": PlayerAction.PLAY,
-    "Enter": PlayerAction.PLAY,
-    "ArrowLeft": PlayerAction.BACK,
-    "ArrowRight": PlayerAction.FORWARD,
-    "ArrowUp": PlayerAction.WORST,
-    "KeyT": PlayerAction.WORST,
-    "KeyC": PlayerAction.CAMERA,
-    "KeyM": PlayerAction.END,
-    "Escape": PlayerAction.END,
-}
-"""W3C `KeyboardEvent.code` → action."""
-_PAD = {
-    0: PlayerAction.PLAY,
-    1: PlayerAction.END,
-    2: PlayerAction.WORST,
-    3: PlayerAction.CAMERA,
-    9: PlayerAction.END,
-    12: PlayerAction.WORST,
-    14: PlayerAction.BACK,
-    15: PlayerAction.FORWARD,
-}
-"""Buttons of the W3C standard gamepad."""
+_WORST = {InputDevice.KEYBOARD: "KeyT", InputDevice.GAMEPAD: "x"}
+"""Additional inputs for the worst touch, which no control of the menus uses."""
+
+
+def player_action(bindings: Bindings, device: InputDevice, name: str) -> PlayerAction | None:
+    """Return what an input does during a replay: as in menus, and it may change the camera."""
+    control = bindings.control(device, name, ControlContext.MENU)
+    if control is not None:
+        return ACTIONS.get(control)
+    if name in bindings.table(device)[ControlName.CAMERA]:
+        return PlayerAction.CAMERA
+    return PlayerAction.WORST if name == _WORST[device] else None
+
+
 _PRESSES = {
     **{control.value: action for control, action in ACTIONS.items()},
     ControlName.TOUCH.value: PlayerAction.PLAY,
@@ -162,7 +155,7 @@ class ReplayPresenter(Presenter):
         self._language = language
         self._texts = Texts(LANGUAGES[language])
         self._count = 0
-        self._held: dict[int, frozenset[int]] = {}
+        self._held: dict[int, Sequence[str]] = {}
         self._key_names: Mapping[str, str] = {}
         self._end = end
         self.screen = Screen()
@@ -199,17 +192,19 @@ class ReplayPresenter(Presenter):
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:  # noqa: ARG002
         if is_down:
-            self._do(_KEYS.get(code))
+            self.input_pressed(InputDevice.KEYBOARD, code)
 
     def on_layout(self, view: int, keys: Mapping[str, str]) -> None:  # noqa: ARG002
         self._key_names = keys
         self._refresh()
 
-    def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:  # noqa: ARG002
-        held = frozenset(number for number, value in enumerate(buttons) if value > 0.5)
-        for number in held - self._held.get(view, frozenset()):
-            self._do(_PAD.get(number))
-        self._held[view] = held
+    def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
+        inputs = w3c_gamepad_inputs(axes, buttons)
+        before = self._held.get(view, ())
+        self._held[view] = held = [name for name, value in inputs.items() if value > 0.5]
+        for name in held:
+            if name not in before:
+                self.input_pressed(InputDevice.GAMEPAD, name)
 
     def on_press(self, view: int, control: str) -> None:  # noqa: ARG002
         self._do(_PRESSES.get(control))
@@ -220,6 +215,9 @@ class ReplayPresenter(Presenter):
 
     def on_silence(self, view: int) -> None:  # noqa: ARG002
         self._playback.pause(True)
+
+    def input_pressed(self, device: InputDevice, name: str) -> None:
+        self._do(player_action(DEFAULT_BINDINGS, device, name))
 
     def _do(self, action: PlayerAction | None) -> None:
         if action is None:

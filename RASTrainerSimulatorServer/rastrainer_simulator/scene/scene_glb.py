@@ -1,14 +1,13 @@
 """One scene as a GLB file, made of a scenario, a robot and a task.
 
-Run as a short-lived process, since VTK would stop the control loop's, it reads one JSON object from
-standard input: `scenario` and `robotMeshes` (folders, null for the meshes that come with
-RASTrainer), `task` (a name, or "" for none) and `path` (the file to write).
+Run as a short-lived process, since VTK would stop the control loop's, it has as arguments the
+folders of the scenario and of the robot's meshes ("" for those that come with RASTrainer), the name
+of a task ("" for none) and the file to write.
 """
 
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 import sys
 from collections.abc import Sequence
@@ -34,19 +33,15 @@ from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.robot.meshes import load_meshes
 from rastrainer_simulator.robot.model import RobotModel
 from rastrainer_simulator.scene.nodes import (
-    ARROW,
     AXIS,
     DRILL,
     ELECTRODE,
     GUIDE,
-    MARK_RIM,
     NO_GO,
-    NUMBER,
     SKIN,
     TIP_FREE,
     TIP_MARKER,
     TOOL,
-    WAITING,
     Material,
     Node,
     Surface,
@@ -56,7 +51,7 @@ from rastrainer_simulator.scene.nodes import (
     painted,
 )
 from rastrainer_simulator.scene.room_nodes import room_nodes, stand_node, table_node
-from rastrainer_simulator.scene.skin_marks import Shape, skin_marks
+from rastrainer_simulator.scene.skin_marks import skin_marks
 from rastrainer_simulator.scene.surfaces import shaded, turned
 
 
@@ -179,19 +174,13 @@ BASE_CREASE_DEG = 60.0
 def head_node(mesh: HeadMesh, task: Task | None) -> Node:
     """Return the head in its own frame: RAS, but in m; without a task, its skin alone."""
     skin = shaded(mesh.vertices / MM_PER_M, mesh.triangles, SKIN, BASE_CREASE_DEG)
-    marks = skin_marks(mesh, task.fiducials, task.labels) if task else []
-    rims = Node("rims", merged([_surface(mark.rim, MARK_RIM) for mark in marks]))
-    children = [Node("skin", (skin,)), *([rims] if marks else [])]
-    for mark in marks:
-        children.append(Node(f"fiducial_{mark.label}", (_surface(mark.dot, WAITING),)))
-        children.append(Node(f"number_{mark.label}", (_surface(mark.number, NUMBER),)))
-        if mark.arrow is not None:
-            children.append(Node(f"arrow_{mark.label}", (_surface(mark.arrow, ARROW),)))
+    children = [Node("skin", (skin,))]
+    if task:
+        marks = skin_marks(mesh, task.fiducials, task.labels)
+        children.append(Node("rims", merged([mark.pop("rim") for mark in marks])))
+        for label, mark in zip(task.labels, marks, strict=True):
+            children += [Node(f"{kind}_{label}", (surface,)) for kind, surface in mark.items()]
     return Node("head", children=tuple(children))
-
-
-def _surface(shape: Shape, material: Material) -> Surface:
-    return Surface(shape.points / MM_PER_M, shape.outward, shape.triangles, material)
 
 
 def scene_glb(scenario: Scenario, robot: RobotModel, task: Task | None) -> bytes:
@@ -224,12 +213,11 @@ def main() -> int:
     """Build the given scene; if that is impossible, print one sentence and return 2."""
     with contextlib.suppress(AttributeError, OSError):
         os.nice(10)  # The control loop of the parent comes first.
-    wanted = json.load(sys.stdin)
-    meshes, task = wanted["robotMeshes"], wanted["task"]
+    scenario, meshes, task, path = sys.argv[1:]
     try:
-        setup = load_setup(Path(wanted["scenario"]), robot_meshes=meshes and Path(meshes))
+        setup = load_setup(Path(scenario), robot_meshes=Path(meshes) if meshes else None)
         chosen = setup.scenario.task(task) if task else None
-        write_bytes(wanted["path"], scene_glb(setup.scenario, setup.robot, chosen))
+        write_bytes(path, scene_glb(setup.scenario, setup.robot, chosen))
     except InputError as error:
         print(error, file=sys.stderr)
         return 2

@@ -17,7 +17,12 @@ from rastrainer_simulator.input.inputs import ControlContext, ControlName, Input
 from rastrainer_simulator.presentation.screen import ErrorArrow, Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
-from rastrainer_simulator.replay.replay_presenter import ACTIONS, Player, PlayerAction
+from rastrainer_simulator.replay.replay_presenter import (
+    ACTIONS,
+    Player,
+    PlayerAction,
+    player_action,
+)
 from rastrainer_simulator.trial_state import PlannedLine
 from rastrainer_simulator.vectors import Vector, add, length, scale, subtract
 
@@ -100,10 +105,6 @@ def error_tone(error_mm: float) -> Tone:
     return Tone.GOOD if error_mm <= GOOD_MM else tone
 
 
-_WORST = {InputDevice.KEYBOARD: "KeyT", InputDevice.GAMEPAD: "x"}
-"""Additional inputs for the worst touch, which no control of the menus uses."""
-
-
 class ReplayPage(SessionPage):
     """Waits for the recorded trial, and replays it for the operator."""
 
@@ -158,9 +159,9 @@ class ReplayPage(SessionPage):
         bindings = self.session.controls.bindings
         if self._player is None or bindings.control(device, name, ControlContext.MENU) is not None:
             return False
-        is_camera = name in bindings.table(device)[ControlName.CAMERA]
-        if is_camera or name == _WORST[device]:
-            self._do(self._player, PlayerAction.CAMERA if is_camera else PlayerAction.WORST)
+        action = player_action(bindings, device, name)
+        if action is not None:
+            self._do(self._player, action)
         return True
 
     def _begin(self) -> None:
