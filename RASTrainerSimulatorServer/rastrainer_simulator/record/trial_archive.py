@@ -19,6 +19,7 @@ from rastrainer.journal.entries import (
     Acknowledged,
     Attempt,
     Continued,
+    Entry,
     FinalRegistration,
     JournalHeader,
     Line,
@@ -68,6 +69,7 @@ class ArchivedTrial:
     """
 
     record: TrialRecord | AbortedTrial
+    journal: Journal
     truth: Truth | None = None
     seed: int | None = None
     registration: Mapping[str, Any] | None = None
@@ -95,15 +97,20 @@ class ArchivedTrial:
         return self.truth.revealed(matrix, touches)
 
     def after(
-        self, command: str, arguments: Mapping[str, Any]
-    ) -> tuple[type[FinalRegistration | Scored] | None, ArchivedTrial]:
-        """Return the trial after a command, and its kind of entry; None if nothing changes.
+        self, command: str, arguments: Mapping[str, Any], sender: str
+    ) -> tuple[Entry | None, ArchivedTrial]:
+        """Return a command's entry, None if it changes nothing, and the trial after it.
 
         A registration is final, because it reveals the truth.
         """
-        if command == CommandName.SUBMIT_REGISTRATION:
+        if command == CommandName.ACKNOWLEDGE_TRIAL:
+            if not self.acknowledged:
+                return Acknowledged(sender), replace(self, acknowledged=True)
+        elif self.truth is None and command != CommandName.GET_TRIAL:
+            raise InputError(f"The trial {self.record.trial_id} was aborted; it has no score.")
+        elif command == CommandName.SUBMIT_REGISTRATION:
             if self.registration is None:
-                return FinalRegistration, replace(self, registration=arguments)
+                return FinalRegistration(sender, arguments), replace(self, registration=arguments)
             kept, given = map(UsedRegistration.from_arguments, (self.registration, arguments))
             if not kept.agrees_with(given):
                 raise InputError(say("registration is final"))
@@ -111,7 +118,7 @@ class ArchivedTrial:
             if self.registration is None:
                 raise InputError(say("no registration"))
             if self.scored != arguments:
-                return Scored, replace(self, scored=arguments)
+                return Scored(sender, arguments), replace(self, scored=arguments)
         return None, self
 
 
@@ -186,7 +193,7 @@ class TrialArchive:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._kept: dict[str, tuple[ArchivedTrial, Journal]] = {}
+        self._kept: dict[str, ArchivedTrial] = {}
         self.problems: list[str] = []
         self.arrivals = 0
         for path in find_unacknowledged(folder):
@@ -197,7 +204,7 @@ class TrialArchive:
 
         The oldest of each kind come first.
         """
-        waiting = [trial for trial, _ in list(self._kept.values()) if not trial.acknowledged]
+        waiting = [trial for trial in list(self._kept.values()) if not trial.acknowledged]
         waiting.sort(key=lambda trial: trial.truth is not None)
         return tuple(trial.record for trial in waiting)
 
@@ -205,8 +212,8 @@ class TrialArchive:
         revealed = f'"seed":{seed},'.encode()
         return any(revealed in _end(path) for path in self._folder.glob(f"*{SUFFIX}"))
 
-    def add(self, trial: ArchivedTrial, journal: Journal) -> None:
-        self._kept[trial.record.trial_id] = trial, journal
+    def add(self, trial: ArchivedTrial) -> None:
+        self._kept[trial.record.trial_id] = trial
         self.arrivals += 1
 
     def add_interrupted(self, path: Path) -> None:
@@ -226,7 +233,7 @@ class TrialArchive:
         except RASTrainerError as error:
             self.problems.append(str(error))
         else:
-            self.add(ArchivedTrial(record), journal)
+            self.add(ArchivedTrial(record, journal))
 
     def answer(
         self, command: str, arguments: Mapping[str, Any], at: Stamp, sender: str = ""
@@ -239,26 +246,17 @@ class TrialArchive:
             RecordError: its journal cannot be written.
         """
         trial_id = arguments["trialId"]
-        trial, journal = self._found(trial_id)
-        # As they are read from a journal, so that repeated arguments compare equal.
+        # The arguments as they are read from a journal, so that repeated ones compare equal.
         arguments = json.loads(json.dumps(arguments))
-        if command == CommandName.ACKNOWLEDGE_TRIAL:
-            if not trial.acknowledged:
-                journal.append(at, Acknowledged(sender))
-                trial = replace(trial, acknowledged=True)
-        elif trial.truth is not None:
-            kind, changed = trial.after(command, arguments)
-            if kind is not None:
-                journal.append(at, kind(sender, arguments))
-                trial = changed
-        elif command != CommandName.GET_TRIAL:
-            raise InputError(f"The trial {trial_id} was aborted; it has no score.")
+        entry, trial = self._found(trial_id).after(command, arguments, sender)
+        if entry is not None:
+            trial.journal.append(at, entry)
         # A trial is kept in memory until nothing more is expected.
         is_scored = trial.truth is None or trial.scored is not None
         if trial.acknowledged and is_scored:
             del self._kept[trial_id]
         else:
-            self._kept[trial_id] = trial, journal
+            self._kept[trial_id] = trial
         if command == CommandName.GET_TRIAL:
             return trial.summary()
         if command == CommandName.GET_JOURNAL:
@@ -281,7 +279,7 @@ class TrialArchive:
             raise InputError(f"{path.name} cannot be read: {error.strerror}.") from None
         return {"text": piece.decode("ascii"), "next": start + len(piece) if is_more else None}
 
-    def _found(self, trial_id: str) -> tuple[ArchivedTrial, Journal]:
+    def _found(self, trial_id: str) -> ArchivedTrial:
         if trial_id not in self._kept:
             for path in journals_of(self._folder, trial_id):
                 self._load(path)
@@ -291,13 +289,12 @@ class TrialArchive:
 
     def _load(self, path: Path) -> None:
         try:
-            reading = read_journal(path)
-            trial = archived_trial(reading)
+            trial = archived_trial(read_journal(path))
         except InputError as error:
             self.problems.append(str(error))
         else:
             if trial is not None:
-                self.add(trial, Journal.reopened(reading))
+                self.add(trial)
 
 
 def archived_trial(reading: JournalReading) -> ArchivedTrial | None:
@@ -306,17 +303,18 @@ def archived_trial(reading: JournalReading) -> ArchivedTrial | None:
         raise InputError(f"{reading.path} is {reading.sentence}; the trial is not delivered.")
     kinds = ("registered", "attempt", "registration", "scored")
     registered, aborted, registrations, scores = map(reading.of_kind, kinds)
-    acknowledged = bool(reading.of_kind("acknowledged"))
+    acknowledged, journal = bool(reading.of_kind("acknowledged")), Journal.reopened(reading)
     if not registered and not aborted:
         return None
     if not registered:
         attempt = record_from_json(AbortedTrial, aborted[-1].get("record"))
-        return ArchivedTrial(attempt, acknowledged=acknowledged)
+        return ArchivedTrial(attempt, journal, acknowledged=acknowledged)
     try:
         values = registered[-1]
         record = record_from_json(TrialRecord, values.get("record"))
         trial = ArchivedTrial(
             record=replace(record, journal_sha256=values["sha256"]),
+            journal=journal,
             truth=record_from_json(Truth, values.get("truth")),
             seed=values["seed"],
             registration=registrations[0]["arguments"] if registrations else None,

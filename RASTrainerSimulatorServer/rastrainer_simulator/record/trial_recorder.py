@@ -23,11 +23,7 @@ from rastrainer.journal.journal_file import JournalReading, file_stamp
 from rastrainer.json_records import record_to_json
 from rastrainer.protocol import AbortReason, Phase
 from rastrainer_simulator.record.journal_writer import Journal
-from rastrainer_simulator.record.trial_archive import (
-    SUFFIX,
-    ArchivedTrial,
-    TrialArchive,
-)
+from rastrainer_simulator.record.trial_archive import SUFFIX, ArchivedTrial, TrialArchive
 from rastrainer_simulator.record.trial_entries import MUST_LAST, TrialEntries
 from rastrainer_simulator.record.trial_records import UnmeasuredRecord, with_record
 from rastrainer_simulator.state import OperatorInput, SimulationState, StepResult
@@ -212,7 +208,7 @@ class TrialRecorder:
             journal.write_lines(with_record(lines, measured), sync=True)
             journal.close()
             sealed = replace(measured, journal_sha256=journal.last_hash)
-            self._archive.add(ArchivedTrial(sealed, truth, seed), journal)
+            self._archive.add(ArchivedTrial(sealed, journal, truth, seed))
 
         trial.registering = self._writer.submit(write)
         return Written(trial.registering, is_awaited=True)
@@ -239,7 +235,7 @@ class TrialRecorder:
             try:
                 journal.write_lines(lines, sync=True)
             finally:
-                self._archive.add(ArchivedTrial(record), journal)
+                self._archive.add(ArchivedTrial(record, journal))
 
         written = Written(self._writer.submit(write), is_awaited=False)
         self._end(trial.journal.close)

@@ -7,13 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from rastrainer.journal.entries import (
-    Continued,
-    Line,
-    PhaseChange,
-    Registered,
-    Sample,
-)
+from rastrainer.journal.entries import Continued, Line, PhaseChange, Registered, Sample
 from rastrainer.journal.folder import UNNUMBERED
 from rastrainer.json_records import record_to_json
 from rastrainer.motion.trajectory import Trajectory
@@ -32,11 +26,7 @@ from rastrainer.trial.how_played import PlayRecording, SeedSource
 from rastrainer.trial.record import AbortedTrial, TouchedPoint, TrialRecord
 from rastrainer_simulator.record.trial_context import DisplayUse, versions
 from rastrainer_simulator.state import SimulationState, TrainingState
-from rastrainer_simulator.trial_state import (
-    ProcedureState,
-    RegistrationAttempt,
-    TrajectoryState,
-)
+from rastrainer_simulator.trial_state import ProcedureState, RegistrationAttempt, TrajectoryState
 from rastrainer_simulator.vectors import in_millimeters, vector
 
 if TYPE_CHECKING:

@@ -30,12 +30,7 @@ from rastrainer_simulator.scene.nodes import Material
 from rastrainer_simulator.scene.scene_glb import scene_nodes
 from rastrainer_simulator.scene.surfaces import vtk_matrix
 from rastrainer_simulator.viewpoint.best_view import TouchViews
-from rastrainer_simulator.viewpoint.view_control import (
-    STILL,
-    ViewControl,
-    camera_pose,
-    orbit_to,
-)
+from rastrainer_simulator.viewpoint.view_control import STILL, ViewControl, camera_pose, orbit_to
 
 RATE_HZ = 25
 SIZE = (1280, 720)

@@ -32,12 +32,7 @@ from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.robot.kinematics import make_kinematics
-from rastrainer_simulator.state import (
-    Event,
-    Motion,
-    SimulationState,
-    TrainingState,
-)
+from rastrainer_simulator.state import Event, Motion, SimulationState, TrainingState
 from rastrainer_simulator.training.rules import TouchMoment, touch_stage
 from rastrainer_simulator.training.training import Training
 from rastrainer_simulator.trial_state import Tool

@@ -35,11 +35,7 @@ from rastrainer_simulator.core.interrupted_trial import (
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record.trial_entries import TrialEntries
-from rastrainer_simulator.state import (
-    NEUTRAL_STICKS,
-    OperatorCommand,
-    OperatorInput,
-)
+from rastrainer_simulator.state import NEUTRAL_STICKS, OperatorCommand, OperatorInput
 
 LONGEST_TRIAL_TICKS = 10_000_000
 """A journal that claims more (11 hours at 250 Hz) is not replayed."""

@@ -27,18 +27,17 @@ def setup_digest(setup: SimulationSetup) -> bytes:
 
     A file that cannot be read counts as empty: building the scene reports the error.
     """
-    whole = hashlib.sha256(f"{rastrainer.__version__} {setup.scenario_sha256}".encode())
-    for path in sorted(Path(__file__).parent.glob("*.[pj]*")):
-        whole.update(hashlib.sha256(_content(path)).digest())
     robot = setup.robot
     visuals = [part for part in robot.meshes if part.kind == "visual"]
     links = [(link.name, link.joint, link.offset.tolist()) for link in robot.links]
     parts = [
         (part.link, part.origin.tolist(), part.scale, part.color, part.replaced) for part in visuals
     ]
-    whole.update(repr((robot.tip.name, links, parts)).encode())
-    for part in visuals:
-        whole.update(hashlib.sha256(_content(part.path)).digest())
+    values = rastrainer.__version__, setup.scenario_sha256, robot.tip.name, links, parts
+    whole = hashlib.sha256(repr(values).encode())
+    code = sorted(Path(__file__).parent.glob("*.[pj]*"))
+    for path in (*code, *(part.path for part in visuals)):
+        whole.update(hashlib.sha256(_content(path)).digest())
     return whole.digest()
 
 

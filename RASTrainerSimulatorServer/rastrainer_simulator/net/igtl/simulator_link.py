@@ -37,11 +37,7 @@ from rastrainer.study.protocol.steps import StepAnswers
 from rastrainer.trial.record import AbortedTrial, TrialRecord
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
 from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher, told
-from rastrainer_simulator.net.igtl.registration_check import (
-    CHECKED,
-    SubmitCommand,
-    submit_checked,
-)
+from rastrainer_simulator.net.igtl.registration_check import CHECKED, SubmitCommand, submit_checked
 from rastrainer_simulator.net.igtl.server import ClientConnection, IgtlServer
 from rastrainer_simulator.net.limits import LinkLimits
 from rastrainer_simulator.state import Answer, SimulationState, answered

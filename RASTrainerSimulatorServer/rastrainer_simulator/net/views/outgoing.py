@@ -10,7 +10,7 @@ import numpy as np
 from rastrainer.number_text import with_units
 from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.transforms import MM_PER_M
+from rastrainer.transforms import MM_PER_M, inverse
 from rastrainer_simulator.loop.timing import Pacer
 from rastrainer_simulator.presentation.messages import (
     CoveringBodies,
@@ -28,7 +28,6 @@ from rastrainer_simulator.presentation.screen import Screen
 from rastrainer_simulator.scene.nodes import TOOL, link_node_name, no_go_name
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.teleoperation.steering import AxesChoice
-from rastrainer_simulator.training.head_pose import RegisteredPlan
 from rastrainer_simulator.trial_state import Tool, TracedPoint
 from rastrainer_simulator.vectors import Vector, in_meters, vector
 from rastrainer_simulator.viewpoint.view_control import CameraPose, Pictures, aim, camera_pose
@@ -78,11 +77,10 @@ def state_news(
     # Where the registration in use puts the MRI; else World's origin.
     procedure = now.training.procedure
     used = None if procedure is None else procedure.registration
-    plan = None if used is None else RegisteredPlan.of(used.matrix)
     plan_to_world = np.eye(4)
-    if plan is not None:
-        plan_to_world[:3, :3] = np.transpose(plan.rows)
-        plan_to_world[:3, 3] = plan.in_world((0.0, 0.0, 0.0))
+    if used is not None:
+        plan_to_world = inverse(np.reshape(used.matrix, (4, 4)))
+        plan_to_world[:3, 3] /= MM_PER_M
     matrices = (
         *now.link_to_world,
         now.tool_tip_to_world,
