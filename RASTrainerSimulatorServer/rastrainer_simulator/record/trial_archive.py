@@ -41,6 +41,7 @@ from rastrainer_simulator.core.interrupted_trial import (
     refusing_malformed,
 )
 from rastrainer_simulator.record.journal_writer import Journal
+from rastrainer_simulator.record.trial_records import of_header
 from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training.head_pose import Truth
 
@@ -158,11 +159,7 @@ def _aborted(header: JournalHeader, lines: tuple[Line, ...]) -> AbortedTrial:
         # Samples are taken while the trial's time runs.
         elapsed_s = float(trajectory.times_s[-1]) if len(trajectory.times_s) else 0.0
     record = AbortedTrial(
-        trial_id=header.trial_id,
-        trainee=header.trainee,
-        task=header.task,
-        mode=header.mode,
-        scenario=header.scenario.name,
+        **of_header(header),
         started_utc=lines[0].at.utc,
         aborted_utc=lines[-1].at.utc,
         elapsed_s=elapsed_s,
@@ -172,11 +169,7 @@ def _aborted(header: JournalHeader, lines: tuple[Line, ...]) -> AbortedTrial:
         rejected_touches=len(trajectory.refused),
         undone_touches=trajectory.undone,
         versions=header.versions,
-        touch_rule=header.settings["training"]["touchRule"],
-        method=header.registration_method,
         traced=len(trajectory.traced),
-        number=header.number,
-        series=header.series,
     )
     return record_from_json(AbortedTrial, record_to_json(record))
 
