@@ -62,11 +62,8 @@ _AFTER_THE_TRIAL = frozenset(
 class ArchivedTrial:
     """A registered or aborted trial.
 
-    Attributes:
-        truth: revealed with the registration, like the seed; None of an aborted trial, for which
-            they are never revealed.
-        registration: the arguments of SubmitRegistration, None before.
-        scored: the arguments of TrialScored, None before.
+    `truth` and `seed` are revealed with the registration, and None, never revealed, of an aborted
+    trial. `registration` and `scored` are the arguments of their commands, None before.
     """
 
     record: TrialRecord | AbortedTrial
@@ -177,11 +174,8 @@ def _aborted(header: JournalHeader, lines: tuple[Line, ...]) -> AbortedTrial:
 class TrialArchive:
     """The registered and aborted trials of a folder.
 
-    One thread changes it; any thread may call `unacknowledged`.
-
-    Attributes:
-        problems: sentences about unusable journals.
-        arrivals: how many trials have come to be delivered.
+    One thread changes it; any thread may call `unacknowledged`. `problems` are sentences about
+    unusable journals; `arrivals` counts the trials that have come to be delivered.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -233,10 +227,7 @@ class TrialArchive:
     ) -> dict[str, Any]:
         """Carry out a command about one of the trials and return the answer's data.
 
-        `at` is for the entry that is appended to the trial's journal.
-
-        Raises:
-            RecordError: its journal cannot be written.
+        `at` is for the entry that is appended to the trial's journal, or RecordError is raised.
         """
         trial_id = arguments["trialId"]
         # The arguments as they are read from a journal, so that repeated ones compare equal.

@@ -51,9 +51,8 @@ class Written:
 class _OpenTrial:
     """The trial that is recorded: its entries, and the journal that they are written to.
 
-    Attributes:
-        registering: the write of its registration; None before.
-        is_stuck: whether entries could not be written: they wait until the trainee resumes.
+    `registering` writes its registration, None before; if it `is_stuck`, entries that could not be
+    written wait until the trainee resumes.
     """
 
     entries: TrialEntries
@@ -126,7 +125,13 @@ class TrialRecorder:
             return None
         if trial.is_registered:
             # Nothing but the final registration or the score comes after the record.
-            return self._write_answer(operator_input, result) if is_lasting else None
+            if not is_lasting:
+                return None
+            ending = [c for c in operator_input.commands if c.name in ENDING_A_TRIAL][-1]
+            at = Stamp.now(result.state.tick, result.state.sim_time)
+            answer = self._archive.answer
+            future = self._writer.submit(answer, ending.name, ending.arguments, at, ending.sender)
+            return Written(future, is_awaited=True)
         record = trial.entries.add(simulation, operator_input, result)
         if record is not None:
             return self._register(trial, simulation, record)
@@ -240,14 +245,6 @@ class TrialRecorder:
         written = Written(self._writer.submit(write), is_awaited=False)
         self._end(trial.journal.close)
         return written
-
-    def _write_answer(self, operator_input: OperatorInput, result: StepResult) -> Written:
-        ending = [c for c in operator_input.commands if c.name in ENDING_A_TRIAL][-1]
-        at = Stamp.now(result.state.tick, result.state.sim_time)
-        future = self._writer.submit(
-            self._archive.answer, ending.name, ending.arguments, at, ending.sender
-        )
-        return Written(future, is_awaited=True)
 
     def _end(self, leave: Callable[[], None]) -> None:
         self._writer.submit(leave)

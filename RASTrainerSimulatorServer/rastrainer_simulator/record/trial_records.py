@@ -40,11 +40,7 @@ if TYPE_CHECKING:
 
 
 class TrialRecords:
-    """Makes the records of a trial from its state and its journal.
-
-    Attributes:
-        dates: when a point was touched or traced, by its simulated time.
-    """
+    """Makes the records of a trial from its state, its journal, and the `dates` of its points."""
 
     def __init__(self, simulation: Simulation, header: JournalHeader, started_utc: str) -> None:
         self.header = header

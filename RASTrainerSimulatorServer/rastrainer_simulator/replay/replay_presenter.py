@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
+from dataclasses import dataclass
 from enum import Enum
 from functools import reduce
 
@@ -57,14 +58,16 @@ ACTIONS: Mapping[ControlName, PlayerAction] = {
 """The actions of the controls during a replay."""
 
 
+@dataclass
 class Player:
-    """Carries out the viewer's actions."""
+    """Carries out the viewer's actions.
 
-    def __init__(self, playback: Playback, end: Callable[[], None], blinded: str = "") -> None:
-        """`end` is called when the viewer ends it; `blinded` as of `ReplayPresenter`."""
-        self.playback = playback
-        self._blinded = blinded
-        self._end = end
+    `end` is called when the viewer ends it; `blinded` as of `ReplayPresenter`.
+    """
+
+    playback: Playback
+    end: Callable[[], None]
+    blinded: str = ""
 
     def do(self, action: PlayerAction) -> None:
         playback = self.playback
@@ -79,8 +82,8 @@ class Player:
             place = names.index(playback.latest.camera) if playback.latest.camera in names else -1
             playback.use_camera(names[(place + 1) % len(names)])
         elif action is PlayerAction.END:
-            self._end()
-        elif playback.trial.worst is not None and not self._blinded:
+            self.end()
+        elif playback.trial.worst is not None and not self.blinded:
             _label, begin, end = playback.trial.worst
             playback.play_from(begin, end, SLOWLY)
 
@@ -90,8 +93,8 @@ class Player:
         trial = playback.trial
         task = playback.setup.scenario.task(trial.task)
         instruction: str = say("replay.title", task=task.title, trainee=trial.trainee)
-        if self._blinded:
-            instruction = self._blinded
+        if self.blinded:
+            instruction = self.blinded
         elif trial.worst is not None and playback.speed != 1.0:
             instruction = say("replay.worst", point=trial.worst[0])
         kept = len(playback.latest.training.touches)
@@ -144,12 +147,10 @@ class ReplayPresenter(Presenter):
     def __init__(
         self, playback: Playback, language: str, end: Callable[[], None], blinded: str = ""
     ) -> None:
-        """Play a trial; `end` is called when the user has seen enough.
+        """Play a trial; `end` is called when the user has seen enough; `language` is a BCP 47 tag.
 
-        Args:
-            language: BCP 47 tag.
-            blinded: what a rater reads in place of task and trainee, who also is not led to the
-                worst touch, which only the truth reveals; "" for everybody else.
+        `blinded` is what a rater reads in place of task and trainee, who also is not led to the
+        worst touch, which only the truth reveals; "" for everybody else.
         """
         super().__init__()
         self._language = language

@@ -50,10 +50,8 @@ _OF_THE_CLOCK = frozenset(
 class ReplayReport:
     """The result of a replay.
 
-    Attributes:
-        compared: how many entries of each kind were compared.
-        difference: the first difference in words; None if all is equal to the last bit.
-        changed_versions: name → (recorded, present), where they differ.
+    `compared` counts the entries of each kind; `difference` is the first one in words, None if all
+    is equal to the last bit; `changed_versions` are recorded and present, by name.
     """
 
     trial_id: str

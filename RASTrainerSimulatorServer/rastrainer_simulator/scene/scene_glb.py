@@ -8,8 +8,10 @@ of a task ("" for none) and the file to write.
 from __future__ import annotations
 
 import contextlib
+import functools
 import os
 import sys
+from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -60,26 +62,25 @@ def robot_nodes(robot: RobotModel) -> list[Node]:
 
     All links fixed behind the flange make the tool; its node's origin is the tool's tip.
     """
-    first = robot.moving_links
-    surfaces: dict[str, list[Surface]] = {link_node_name(link.joint): [] for link in first}
-    surfaces[TOOL] = []
-    marker: list[Surface] = []
-    links = {link.name: link for link in robot.links}
+    first, links = robot.moving_links, {link.name: link for link in robot.links}
+    surfaces: dict[str, list[Surface]] = defaultdict(list)
     for name, parts in load_meshes(robot).items():
         link = links[name]
         is_tool = link.joint == len(robot.joints) and link is not first[link.joint]
         frame = robot.tip.offset if is_tool else first[link.joint].offset
-        to_node = np.linalg.inv(frame) @ link.offset
+        node = TOOL if is_tool else link_node_name(link.joint)
         for mesh, color in parts:
-            mesh.apply_transform(to_node)
+            mesh.apply_transform(np.linalg.inv(frame) @ link.offset)
             is_marker = name == robot.tip.name
             material = TIP_FREE if is_marker else painted(color)
             surface = shaded(mesh.vertices, mesh.faces, material)
-            place = surfaces[TOOL] if is_tool else surfaces[link_node_name(link.joint)]
-            (marker if is_marker else place).append(surface)
-    nodes = [Node(name, merged(group)) for name, group in surfaces.items() if name != TOOL]
-    tip_marker = Node(TIP_MARKER, merged(marker))
-    return [*nodes, Node(TOOL, merged(surfaces[TOOL]), (tip_marker, *_instrument_nodes()))]
+            surfaces[TIP_MARKER if is_marker else node].append(surface)
+    arm = (link_node_name(link.joint) for link in first)
+    parts_of_tool = (Node(TIP_MARKER, merged(surfaces[TIP_MARKER])), *_instrument_nodes())
+    return [
+        *(Node(name, merged(surfaces[name])) for name in arm),
+        Node(TOOL, merged(surfaces[TOOL]), parts_of_tool),
+    ]
 
 
 PLAN = "plan"
@@ -129,30 +130,31 @@ WORLD = "world"
 WORLD_TO_GLTF = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], dtype=float)
 
 
-def _add(
-    scene: trimesh.Scene, parent: str, node: Node, materials: dict[Material, PBRMaterial]
-) -> None:
+@functools.cache
+def _material(material: Material) -> PBRMaterial:
+    color = np.array(material.linear_color)
+    # A glowing surface is black to lamps: it has its own color in any light.
+    base, glow = (np.zeros(3), color) if material.glowing else (color, np.zeros(3))
+    return PBRMaterial(
+        name=material.name,
+        alphaMode="OPAQUE" if material.opacity == 1.0 else "BLEND",
+        baseColorFactor=[*base, material.opacity],
+        metallicFactor=material.metallic,
+        roughnessFactor=material.roughness,
+        emissiveFactor=glow,
+    )
+
+
+def _add(scene: trimesh.Scene, parent: str, node: Node) -> None:
     is_single = len(node.surfaces) == 1
     if not is_single:
         scene.graph.update(frame_from=parent, frame_to=node.name, matrix=np.eye(4))
     for surface in node.surfaces:
-        if surface.material not in materials:
-            color = np.array(surface.material.linear_color)
-            # A glowing surface is black to lamps: it has its own color in any light.
-            base, glow = (np.zeros(3), color) if surface.material.glowing else (color, np.zeros(3))
-            materials[surface.material] = PBRMaterial(
-                name=surface.material.name,
-                alphaMode="OPAQUE" if surface.material.opacity == 1.0 else "BLEND",
-                baseColorFactor=[*base, surface.material.opacity],
-                metallicFactor=surface.material.metallic,
-                roughnessFactor=surface.material.roughness,
-                emissiveFactor=glow,
-            )
         mesh = trimesh.Trimesh(
             surface.vertices,
             surface.triangles,
             vertex_normals=surface.normals,
-            visual=TextureVisuals(material=materials[surface.material]),
+            visual=TextureVisuals(material=_material(surface.material)),
             process=False,
         )
         name = node.name if is_single else f"{node.name}_{surface.material.name}"
@@ -164,7 +166,7 @@ def _add(
             transform=np.eye(4),
         )
     for child in node.children:
-        _add(scene, node.name, child, materials)
+        _add(scene, node.name, child)
 
 
 BASE_CREASE_DEG = 60.0
@@ -188,9 +190,8 @@ def scene_glb(scenario: Scenario, robot: RobotModel, task: Task | None) -> bytes
     nodes = scene_nodes(scenario, robot, read_head_mesh(scenario.head), task)
     scene = trimesh.Scene(base_frame=ROOT)
     scene.graph.update(frame_from=ROOT, frame_to=WORLD, matrix=WORLD_TO_GLTF)
-    materials: dict[Material, PBRMaterial] = {}
     for node in nodes:
-        _add(scene, WORLD, node, materials)
+        _add(scene, WORLD, node)
     return scene.export(file_type="glb", include_normals=True)
 
 
