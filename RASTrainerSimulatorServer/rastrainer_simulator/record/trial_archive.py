@@ -21,8 +21,6 @@ from rastrainer.journal.entries import (
     Continued,
     Entry,
     FinalRegistration,
-    JournalHeader,
-    Line,
     PhaseChange,
     Scored,
     Stamp,
@@ -120,6 +118,7 @@ class ArchivedTrial:
         return None, self
 
 
+@refusing_malformed(MALFORMED)
 def interrupted_attempt(reading: JournalReading) -> AbortedTrial | None:
     """Return the record of the trial of an open journal; None if the trial is over.
 
@@ -129,12 +128,7 @@ def interrupted_attempt(reading: JournalReading) -> AbortedTrial | None:
     lines = tuple(reading.lines())
     if not lines or InterruptedTrial.of(lines) is None:
         return None
-    with refusing_malformed(MALFORMED):
-        return _aborted(reading.header, lines)
-
-
-def _aborted(header: JournalHeader, lines: tuple[Line, ...]) -> AbortedTrial:
-    trajectory = WholeRecording.of(lines).trajectory()
+    header, trajectory = reading.header, WholeRecording.of(lines).trajectory()
     touches = {entry.label: (at, entry) for at, entry in lines if isinstance(entry, AcceptedTouch)}
     points = tuple(
         TouchedPoint(
@@ -321,13 +315,12 @@ def find_unacknowledged(folder: Path) -> list[Path]:
 
     Only the end of each file is read: a lab's folder holds thousands.
     """
-    paths = sorted(folder.glob(f"*{SUFFIX}"))
-    last_kinds = {path: set(_KIND.findall(_end(path))) for path in paths}
-    return [
-        path
-        for path, kinds in last_kinds.items()
-        if kinds & {b"registered", b"attempt"} and b"acknowledged" not in kinds
-    ]
+    found = []
+    for path in sorted(folder.glob(f"*{SUFFIX}")):
+        kinds = set(_KIND.findall(_end(path)))
+        if kinds & {b"registered", b"attempt"} and b"acknowledged" not in kinds:
+            found.append(path)
+    return found
 
 
 def _end(path: Path) -> bytes:
