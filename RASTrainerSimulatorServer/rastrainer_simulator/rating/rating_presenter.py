@@ -16,12 +16,11 @@ from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feed
 from rastrainer_simulator.presentation.screen import Fact, Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.rating.rating_work import RatingWork
 from rastrainer_simulator.replay.playback import Playback, PlaybackSwitch
-from rastrainer_simulator.replay.replay_presenter import RATE, ReplayPresenter
+from rastrainer_simulator.replay.replay_presenter import IN_MENUS, RATE, ReplayPresenter
 from rastrainer_simulator.state import StepResult
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label, pair_label
 
 _REPEATED = ("ArrowLeft", "ArrowRight")
-_IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlName.BACK}
 
 
 class RatingPresenter(ReplayPresenter):
@@ -117,7 +116,7 @@ class RatingPresenter(ReplayPresenter):
             super().on_press(view, control)
         elif control in ControlName._value2member_map_:
             name = ControlName(control)
-            self._try(lambda: self.pages.pressed(_IN_MENUS.get(name, name)))
+            self._try(lambda: self.pages.pressed(IN_MENUS.get(name, name)))
 
     def on_item(self, view: int, name: str) -> None:  # noqa: ARG002
         """Process a click on an item of the page, or on the hint that leads to the form."""

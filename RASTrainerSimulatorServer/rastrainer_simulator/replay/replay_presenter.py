@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
-from enum import Enum
 from functools import reduce
 
 from rastrainer.number_text import clock
@@ -34,30 +33,6 @@ SLOWLY = 0.5
 """Speed at which the worst touch is shown."""
 
 
-class PlayerAction(str, Enum):
-    """Actions of a viewer of a replay."""
-
-    PLAY = "play"
-    BACK = "back"
-    FORWARD = "forward"
-    WORST = "worst"
-    CAMERA = "camera"
-    END = "end"
-
-
-ACTIONS: Mapping[ControlName, PlayerAction] = {
-    ControlName.ACCEPT: PlayerAction.PLAY,
-    ControlName.PAUSE: PlayerAction.PLAY,
-    ControlName.LEFT: PlayerAction.BACK,
-    ControlName.RIGHT: PlayerAction.FORWARD,
-    ControlName.UP: PlayerAction.WORST,
-    ControlName.CAMERA: PlayerAction.CAMERA,
-    ControlName.BACK: PlayerAction.END,
-    ControlName.MENU: PlayerAction.END,
-}
-"""The actions of the controls during a replay."""
-
-
 @dataclass
 class Player:
     """Carries out the viewer's actions.
@@ -69,23 +44,25 @@ class Player:
     end: Callable[[], None]
     blinded: str = ""
 
-    def do(self, action: PlayerAction) -> None:
+    def do(self, control: ControlName) -> None:
+        """Do what a control of the menus does during a replay; others do nothing."""
         playback = self.playback
-        if action is PlayerAction.PLAY:
-            playback.pause(playback.is_playing)
-        elif action is PlayerAction.BACK:
-            playback.play_from(playback.time_s - STEP_S)
-        elif action is PlayerAction.FORWARD:
-            playback.play_from(playback.time_s + STEP_S)
-        elif action is PlayerAction.CAMERA:
-            names = tuple(playback.setup.scenario.cameras)
-            place = names.index(playback.latest.camera) if playback.latest.camera in names else -1
-            playback.use_camera(names[(place + 1) % len(names)])
-        elif action is PlayerAction.END:
-            self.end()
-        elif playback.trial.worst is not None and not self.blinded:
-            _label, begin, end = playback.trial.worst
-            playback.play_from(begin, end, SLOWLY)
+        match control:
+            case ControlName.ACCEPT | ControlName.PAUSE:
+                playback.pause(playback.is_playing)
+            case ControlName.LEFT:
+                playback.play_from(playback.time_s - STEP_S)
+            case ControlName.RIGHT:
+                playback.play_from(playback.time_s + STEP_S)
+            case ControlName.CAMERA:
+                names, shown = tuple(playback.setup.scenario.cameras), playback.latest.camera
+                place = names.index(shown) if shown in names else -1
+                playback.use_camera(names[(place + 1) % len(names)])
+            case ControlName.BACK | ControlName.MENU:
+                self.end()
+            case ControlName.UP if playback.trial.worst is not None and not self.blinded:
+                _label, begin, end = playback.trial.worst
+                playback.play_from(begin, end, SLOWLY)
 
     def screen(self, texts: Texts, hints: tuple[Hint, ...], language: str) -> Screen:
         """Return the present screen; `language` is the BCP 47 tag of the texts."""
@@ -117,21 +94,16 @@ _WORST = {InputDevice.KEYBOARD: "KeyT", InputDevice.GAMEPAD: "x"}
 """Additional inputs for the worst touch, which no control of the menus uses."""
 
 
-def player_action(bindings: Bindings, device: InputDevice, name: str) -> PlayerAction | None:
-    """Return what an input does during a replay: as in menus, and it may change the camera."""
+def replay_control(bindings: Bindings, device: InputDevice, name: str) -> ControlName | None:
+    """Return what an input works during a replay: as in menus, and it may change the camera."""
     control = bindings.control(device, name, ControlContext.MENU)
-    if control is not None:
-        return ACTIONS.get(control)
-    if name in bindings.table(device)[ControlName.CAMERA]:
-        return PlayerAction.CAMERA
-    return PlayerAction.WORST if name == _WORST[device] else None
+    if control is None and name in bindings.table(device)[ControlName.CAMERA]:
+        return ControlName.CAMERA
+    return ControlName.UP if control is None and name == _WORST[device] else control
 
 
-_PRESSES = {
-    **{control.value: action for control, action in ACTIONS.items()},
-    ControlName.TOUCH.value: PlayerAction.PLAY,
-    ControlName.UNDO.value: PlayerAction.END,
-}
+IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlName.BACK}
+"""What the controls of the work do there, pressed by name."""
 RATE = "rate"
 """The item of the hint by which a rater who clicks leaves the replay."""
 _PLAY, _CAMERA = (("Space",), "hint.play"), (("KeyC",), "hint.camera")
@@ -208,7 +180,9 @@ class ReplayPresenter(Presenter):
                 self.input_pressed(InputDevice.GAMEPAD, name)
 
     def on_press(self, view: int, control: str) -> None:  # noqa: ARG002
-        self._do(_PRESSES.get(control))
+        if control in ControlName._value2member_map_:
+            name = ControlName(control)
+            self._do(IN_MENUS.get(name, name))
 
     def on_visibility(self, view: int, is_visible: bool) -> None:  # noqa: ARG002
         if not is_visible:
@@ -218,14 +192,14 @@ class ReplayPresenter(Presenter):
         self._playback.pause(True)
 
     def input_pressed(self, device: InputDevice, name: str) -> None:
-        self._do(player_action(DEFAULT_BINDINGS, device, name))
+        control = replay_control(DEFAULT_BINDINGS, device, name)
+        if control is not None:
+            self._do(control)
 
-    def _do(self, action: PlayerAction | None) -> None:
-        if action is None:
-            return
-        self._player.do(action)
-        if action in (PlayerAction.WORST, PlayerAction.CAMERA):
-            self._wants_worst = action is PlayerAction.WORST and not self._blinded
+    def _do(self, control: ControlName) -> None:
+        self._player.do(control)
+        if control in (ControlName.UP, ControlName.CAMERA):
+            self._wants_worst = control is ControlName.UP and not self._blinded
         playback = self._playback
         now, worst = playback.latest, playback.trial.worst
         if worst is None or not self._wants_worst:

@@ -17,12 +17,7 @@ from rastrainer_simulator.input.inputs import ControlContext, ControlName, Input
 from rastrainer_simulator.presentation.screen import ErrorArrow, Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
-from rastrainer_simulator.replay.replay_presenter import (
-    ACTIONS,
-    Player,
-    PlayerAction,
-    player_action,
-)
+from rastrainer_simulator.replay.replay_presenter import Player, replay_control
 from rastrainer_simulator.trial_state import PlannedLine
 from rastrainer_simulator.vectors import Vector, add, length, scale, subtract
 
@@ -151,17 +146,16 @@ class ReplayPage(SessionPage):
     def pressed(self, control: ControlName) -> bool:
         if self._player is None:
             return False
-        if control in ACTIONS:
-            self._do(self._player, ACTIONS[control])
+        self._do(self._player, control)
         return True
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
         bindings = self.session.controls.bindings
         if self._player is None or bindings.control(device, name, ControlContext.MENU) is not None:
             return False
-        action = player_action(bindings, device, name)
-        if action is not None:
-            self._do(self._player, action)
+        control = replay_control(bindings, device, name)
+        if control is not None:
+            self._do(self._player, control)
         return True
 
     def _begin(self) -> None:
@@ -178,11 +172,11 @@ class ReplayPage(SessionPage):
         if self._begins_at_worst and trial.worst is None:
             session.complain(self.say("replay.no worst"))
         elif self._begins_at_worst:
-            self._do(self._player, PlayerAction.WORST)
+            self._do(self._player, ControlName.UP)
 
-    def _do(self, player: Player, action: PlayerAction) -> None:
-        player.do(action)
-        if action is PlayerAction.WORST and player.playback.trial.worst is not None:
+    def _do(self, player: Player, control: ControlName) -> None:
+        player.do(control)
+        if control is ControlName.UP and player.playback.trial.worst is not None:
             self.session.view.is_best_wanted = True
 
 
