@@ -10,8 +10,9 @@ import contextlib
 import itertools
 import json
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
@@ -265,35 +266,30 @@ class SimulatorLink:
         return Answer(0, True, data={**spoken, **requested})
 
 
+@dataclass
 class TrialOffers:
-    """Offers the trials that no client has acknowledged to the clients that score.
+    """Offers the trials that no client has acknowledged, oldest first, to the clients that score.
 
     Clients keep trials by their UUID, so an offer that arrives twice does no harm.
     """
 
-    def __init__(
-        self,
-        unacknowledged: Callable[[], Sequence[AbortedTrial | TrialRecord]],
-        clients: Callable[[], Iterable[ClientConnection]],
-    ):
-        """`unacknowledged` returns the waiting records, oldest first; `clients` the connections."""
-        self._unacknowledged = unacknowledged
-        self._clients = clients
-        self._numbers = itertools.count(1)
-        self._start = 0
+    unacknowledged: Callable[[], Sequence[AbortedTrial | TrialRecord]]
+    clients: Callable[[], Iterable[ClientConnection]]
+    _numbers: Iterator[int] = field(default_factory=lambda: itertools.count(1))
+    _start: int = 0
 
     def offer_newest(self) -> None:
         """Offer the aborted trials, then the last registered trial.
 
         In a study, a client counts a repeat only if it knows which trials were aborted before.
         """
-        records = self._unacknowledged()
+        records = self.unacknowledged()
         aborted = [record for record in records[:-1] if isinstance(record, AbortedTrial)]
         self._offer((*aborted[-OFFERS_AT_ONCE:], *records[-1:]))
 
     def repeat(self) -> None:
         """Offer some again, others in the next round, so that none delays the rest."""
-        records = tuple(self._unacknowledged())
+        records = tuple(self.unacknowledged())
         start = self._start if self._start < len(records) else 0
         self._offer((records[start:] + records[:start])[:OFFERS_AT_ONCE])
         self._start = start + OFFERS_AT_ONCE if len(records) > OFFERS_AT_ONCE else 0
@@ -306,7 +302,7 @@ class TrialOffers:
             name = CommandName.TRIAL_ABORTED if is_aborted else CommandName.TRIAL_COMPLETED
             command = Command(number, name, body)
             offer = Outgoing(Message(DeviceName.COMMAND, command))
-            for connection in self._clients():
+            for connection in self.clients():
                 if connection.scores:
                     connection.offered.add(record.trial_id)
                     connection.send(offer)
