@@ -187,27 +187,19 @@ def _draw_pictures(
     head_to_world: np.ndarray,
 ) -> None:
     """Draw the arm and the head at the last touch, and the procedure's lines in the head."""
-    from rastrainer_simulator.rendering.picture import SceneMoment, render_picture
+    from rastrainer_simulator.rendering.picture import looks_of, posed, render_picture
     from rastrainer_simulator.rendering.procedure_picture import draw_procedure, procedure_lines
-    from rastrainer_simulator.robot.kinematics import make_kinematics
     from rastrainer_simulator.robot.model import load_robot
     from rastrainer_simulator.scene.scene_glb import scene_nodes
 
     robot = load_robot()
     task = scenario.task(record.task)
     head = read_head_mesh(scenario.head)
-    moment = SceneMoment(
-        link_to_world=make_kinematics(robot).links(state["q"]),
-        head_to_world=head_to_world,
-        head_base=head.base,
-        touched=frozenset(task.labels),
-        proximity=Proximity(state["proximity"]),
-    )
     render_picture(
         output / "robot.png",
         scene_nodes(scenario, robot, head, task),
-        robot,
-        moment,
+        posed(robot, state["q"], head_to_world, head),
+        looks_of(task.labels, proximity=Proximity(state["proximity"])),
         scenario.cameras["far"],
         inset=scenario.cameras["close-up"],
     )

@@ -78,8 +78,7 @@ class Journal:
     def write(self, entries: Sequence[Mapping[str, Any]], sync: bool) -> None:
         """Append entries; with `sync` they are on the disk when this returns.
 
-        Raises:
-            RecordError: they could not be written. They are kept for the next `write`.
+        Those that cannot be written raise RecordError, and are kept for the next `write`.
         """
         self._unwritten.extend(entries)
         try:

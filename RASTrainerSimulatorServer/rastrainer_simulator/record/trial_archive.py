@@ -19,9 +19,8 @@ from rastrainer.journal.entries import (
     Acknowledged,
     Attempt,
     Continued,
+    Entry,
     FinalRegistration,
-    JournalHeader,
-    Line,
     PhaseChange,
     Scored,
     Stamp,
@@ -40,6 +39,7 @@ from rastrainer_simulator.core.interrupted_trial import (
     refusing_malformed,
 )
 from rastrainer_simulator.record.journal_writer import Journal
+from rastrainer_simulator.record.trial_records import of_header
 from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training.head_pose import Truth
 
@@ -60,14 +60,12 @@ _AFTER_THE_TRIAL = frozenset(
 class ArchivedTrial:
     """A registered or aborted trial.
 
-    Attributes:
-        truth: revealed with the registration, like the seed; None of an aborted trial, for which
-            they are never revealed.
-        registration: the arguments of SubmitRegistration, None before.
-        scored: the arguments of TrialScored, None before.
+    `truth` and `seed` are revealed with the registration, and None, never revealed, of an aborted
+    trial. `registration` and `scored` are the arguments of their commands, None before.
     """
 
     record: TrialRecord | AbortedTrial
+    journal: Journal
     truth: Truth | None = None
     seed: int | None = None
     registration: Mapping[str, Any] | None = None
@@ -95,15 +93,20 @@ class ArchivedTrial:
         return self.truth.revealed(matrix, touches)
 
     def after(
-        self, command: str, arguments: Mapping[str, Any]
-    ) -> tuple[type[FinalRegistration | Scored] | None, ArchivedTrial]:
-        """Return the trial after a command, and its kind of entry; None if nothing changes.
+        self, command: str, arguments: Mapping[str, Any], sender: str
+    ) -> tuple[Entry | None, ArchivedTrial]:
+        """Return a command's entry, None if it changes nothing, and the trial after it.
 
         A registration is final, because it reveals the truth.
         """
-        if command == CommandName.SUBMIT_REGISTRATION:
+        if command == CommandName.ACKNOWLEDGE_TRIAL:
+            if not self.acknowledged:
+                return Acknowledged(sender), replace(self, acknowledged=True)
+        elif self.truth is None and command != CommandName.GET_TRIAL:
+            raise InputError(f"The trial {self.record.trial_id} was aborted; it has no score.")
+        elif command == CommandName.SUBMIT_REGISTRATION:
             if self.registration is None:
-                return FinalRegistration, replace(self, registration=arguments)
+                return FinalRegistration(sender, arguments), replace(self, registration=arguments)
             kept, given = map(UsedRegistration.from_arguments, (self.registration, arguments))
             if not kept.agrees_with(given):
                 raise InputError(say("registration is final"))
@@ -111,10 +114,11 @@ class ArchivedTrial:
             if self.registration is None:
                 raise InputError(say("no registration"))
             if self.scored != arguments:
-                return Scored, replace(self, scored=arguments)
+                return Scored(sender, arguments), replace(self, scored=arguments)
         return None, self
 
 
+@refusing_malformed(MALFORMED)
 def interrupted_attempt(reading: JournalReading) -> AbortedTrial | None:
     """Return the record of the trial of an open journal; None if the trial is over.
 
@@ -124,12 +128,7 @@ def interrupted_attempt(reading: JournalReading) -> AbortedTrial | None:
     lines = tuple(reading.lines())
     if not lines or InterruptedTrial.of(lines) is None:
         return None
-    with refusing_malformed(MALFORMED):
-        return _aborted(reading.header, lines)
-
-
-def _aborted(header: JournalHeader, lines: tuple[Line, ...]) -> AbortedTrial:
-    trajectory = WholeRecording.of(lines).trajectory()
+    header, trajectory = reading.header, WholeRecording.of(lines).trajectory()
     touches = {entry.label: (at, entry) for at, entry in lines if isinstance(entry, AcceptedTouch)}
     points = tuple(
         TouchedPoint(
@@ -151,11 +150,7 @@ def _aborted(header: JournalHeader, lines: tuple[Line, ...]) -> AbortedTrial:
         # Samples are taken while the trial's time runs.
         elapsed_s = float(trajectory.times_s[-1]) if len(trajectory.times_s) else 0.0
     record = AbortedTrial(
-        trial_id=header.trial_id,
-        trainee=header.trainee,
-        task=header.task,
-        mode=header.mode,
-        scenario=header.scenario.name,
+        **of_header(header),
         started_utc=lines[0].at.utc,
         aborted_utc=lines[-1].at.utc,
         elapsed_s=elapsed_s,
@@ -165,11 +160,7 @@ def _aborted(header: JournalHeader, lines: tuple[Line, ...]) -> AbortedTrial:
         rejected_touches=len(trajectory.refused),
         undone_touches=trajectory.undone,
         versions=header.versions,
-        touch_rule=header.settings["training"]["touchRule"],
-        method=header.registration_method,
         traced=len(trajectory.traced),
-        number=header.number,
-        series=header.series,
     )
     return record_from_json(AbortedTrial, record_to_json(record))
 
@@ -177,16 +168,13 @@ def _aborted(header: JournalHeader, lines: tuple[Line, ...]) -> AbortedTrial:
 class TrialArchive:
     """The registered and aborted trials of a folder.
 
-    One thread changes it; any thread may call `unacknowledged`.
-
-    Attributes:
-        problems: sentences about unusable journals.
-        arrivals: how many trials have come to be delivered.
+    One thread changes it; any thread may call `unacknowledged`. `problems` are sentences about
+    unusable journals; `arrivals` counts the trials that have come to be delivered.
     """
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._kept: dict[str, tuple[ArchivedTrial, Journal]] = {}
+        self._kept: dict[str, ArchivedTrial] = {}
         self.problems: list[str] = []
         self.arrivals = 0
         for path in find_unacknowledged(folder):
@@ -197,7 +185,7 @@ class TrialArchive:
 
         The oldest of each kind come first.
         """
-        waiting = [trial for trial, _ in list(self._kept.values()) if not trial.acknowledged]
+        waiting = [trial for trial in list(self._kept.values()) if not trial.acknowledged]
         waiting.sort(key=lambda trial: trial.truth is not None)
         return tuple(trial.record for trial in waiting)
 
@@ -205,8 +193,8 @@ class TrialArchive:
         revealed = f'"seed":{seed},'.encode()
         return any(revealed in _end(path) for path in self._folder.glob(f"*{SUFFIX}"))
 
-    def add(self, trial: ArchivedTrial, journal: Journal) -> None:
-        self._kept[trial.record.trial_id] = trial, journal
+    def add(self, trial: ArchivedTrial) -> None:
+        self._kept[trial.record.trial_id] = trial
         self.arrivals += 1
 
     def add_interrupted(self, path: Path) -> None:
@@ -226,39 +214,27 @@ class TrialArchive:
         except RASTrainerError as error:
             self.problems.append(str(error))
         else:
-            self.add(ArchivedTrial(record), journal)
+            self.add(ArchivedTrial(record, journal))
 
     def answer(
         self, command: str, arguments: Mapping[str, Any], at: Stamp, sender: str = ""
     ) -> dict[str, Any]:
         """Carry out a command about one of the trials and return the answer's data.
 
-        `at` is for the entry that is appended to the trial's journal.
-
-        Raises:
-            RecordError: its journal cannot be written.
+        `at` is for the entry that is appended to the trial's journal, or RecordError is raised.
         """
         trial_id = arguments["trialId"]
-        trial, journal = self._found(trial_id)
-        # As they are read from a journal, so that repeated arguments compare equal.
+        # The arguments as they are read from a journal, so that repeated ones compare equal.
         arguments = json.loads(json.dumps(arguments))
-        if command == CommandName.ACKNOWLEDGE_TRIAL:
-            if not trial.acknowledged:
-                journal.append(at, Acknowledged(sender))
-                trial = replace(trial, acknowledged=True)
-        elif trial.truth is not None:
-            kind, changed = trial.after(command, arguments)
-            if kind is not None:
-                journal.append(at, kind(sender, arguments))
-                trial = changed
-        elif command != CommandName.GET_TRIAL:
-            raise InputError(f"The trial {trial_id} was aborted; it has no score.")
+        entry, trial = self._found(trial_id).after(command, arguments, sender)
+        if entry is not None:
+            trial.journal.append(at, entry)
         # A trial is kept in memory until nothing more is expected.
         is_scored = trial.truth is None or trial.scored is not None
         if trial.acknowledged and is_scored:
             del self._kept[trial_id]
         else:
-            self._kept[trial_id] = trial, journal
+            self._kept[trial_id] = trial
         if command == CommandName.GET_TRIAL:
             return trial.summary()
         if command == CommandName.GET_JOURNAL:
@@ -281,7 +257,7 @@ class TrialArchive:
             raise InputError(f"{path.name} cannot be read: {error.strerror}.") from None
         return {"text": piece.decode("ascii"), "next": start + len(piece) if is_more else None}
 
-    def _found(self, trial_id: str) -> tuple[ArchivedTrial, Journal]:
+    def _found(self, trial_id: str) -> ArchivedTrial:
         if trial_id not in self._kept:
             for path in journals_of(self._folder, trial_id):
                 self._load(path)
@@ -291,13 +267,12 @@ class TrialArchive:
 
     def _load(self, path: Path) -> None:
         try:
-            reading = read_journal(path)
-            trial = archived_trial(reading)
+            trial = archived_trial(read_journal(path))
         except InputError as error:
             self.problems.append(str(error))
         else:
             if trial is not None:
-                self.add(trial, Journal.reopened(reading))
+                self.add(trial)
 
 
 def archived_trial(reading: JournalReading) -> ArchivedTrial | None:
@@ -306,17 +281,18 @@ def archived_trial(reading: JournalReading) -> ArchivedTrial | None:
         raise InputError(f"{reading.path} is {reading.sentence}; the trial is not delivered.")
     kinds = ("registered", "attempt", "registration", "scored")
     registered, aborted, registrations, scores = map(reading.of_kind, kinds)
-    acknowledged = bool(reading.of_kind("acknowledged"))
+    acknowledged, journal = bool(reading.of_kind("acknowledged")), Journal.reopened(reading)
     if not registered and not aborted:
         return None
     if not registered:
         attempt = record_from_json(AbortedTrial, aborted[-1].get("record"))
-        return ArchivedTrial(attempt, acknowledged=acknowledged)
+        return ArchivedTrial(attempt, journal, acknowledged=acknowledged)
     try:
         values = registered[-1]
         record = record_from_json(TrialRecord, values.get("record"))
         trial = ArchivedTrial(
             record=replace(record, journal_sha256=values["sha256"]),
+            journal=journal,
             truth=record_from_json(Truth, values.get("truth")),
             seed=values["seed"],
             registration=registrations[0]["arguments"] if registrations else None,
@@ -339,13 +315,12 @@ def find_unacknowledged(folder: Path) -> list[Path]:
 
     Only the end of each file is read: a lab's folder holds thousands.
     """
-    paths = sorted(folder.glob(f"*{SUFFIX}"))
-    last_kinds = {path: set(_KIND.findall(_end(path))) for path in paths}
-    return [
-        path
-        for path, kinds in last_kinds.items()
-        if kinds & {b"registered", b"attempt"} and b"acknowledged" not in kinds
-    ]
+    found = []
+    for path in sorted(folder.glob(f"*{SUFFIX}")):
+        kinds = set(_KIND.findall(_end(path)))
+        if kinds & {b"registered", b"attempt"} and b"acknowledged" not in kinds:
+            found.append(path)
+    return found
 
 
 def _end(path: Path) -> bytes:

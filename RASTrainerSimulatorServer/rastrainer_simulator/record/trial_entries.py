@@ -42,7 +42,7 @@ from rastrainer.scenario.scenario import method_of, task_by_method
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.how_played import MovedBy
 from rastrainer_simulator.record.trial_context import TutorialOutcome
-from rastrainer_simulator.record.trial_records import TrialRecords, UnmeasuredRecord
+from rastrainer_simulator.record.trial_records import TrialRecords, UnmeasuredRecord, versions_of
 from rastrainer_simulator.state import (
     Motion,
     OperatorCommand,
@@ -76,11 +76,13 @@ _COUNTS = ("", *dict.fromkeys(_MOVED_BY.values()))
 class TrialEntries:
     """The entries of one trial; those that are `pending` are not submitted to the writer yet."""
 
-    def __init__(self, simulation: Simulation, trial_id: str, started_utc: str, dt: float) -> None:
+    def __init__(
+        self, simulation: Simulation, header: JournalHeader, started_utc: str, dt: float
+    ) -> None:
         """Prepare the entries of the simulation's trial; use `started` or `resumed` instead."""
-        self.trial_id = trial_id
+        self.trial_id = header.trial_id
         self._seed = simulation.trial_seed
-        self.records = TrialRecords(simulation, started_utc)
+        self.records = TrialRecords(simulation, header, started_utc)
         self._every = max(1, round(1.0 / (SAMPLE_HZ * dt)))
         self._sticks: tuple[Any, ...] | None = None
         self._trajectory = hashlib.sha256()
@@ -106,8 +108,6 @@ class TrialEntries:
         training = state.training
         task = task_by_method(simulation.setup.scenario, training.task, training.method)
         at = Stamp.now(state.tick, state.sim_time)
-        entries = cls(simulation, training.trial_id, at.utc, dt)
-        entries.records.number = number
         procedure = "" if training.procedure is None else training.procedure.name
         header = JournalHeader(
             format=FORMAT,
@@ -122,9 +122,10 @@ class TrialEntries:
             tick_s=dt,
             session=session,
             before=before.starting_point,
-            versions=entries.records.versions,
+            versions=versions_of(simulation),
             **vars(simulation.setup.recorded(procedure, training.method)),
         )
+        entries = cls(simulation, header, at.utc, dt)
         entries._append(at, header)
         return entries
 
@@ -145,9 +146,8 @@ class TrialEntries:
         """
         training, header = state.training, earlier[0].entry
         assert isinstance(header, JournalHeader), "a journal begins with one"
-        entries = cls(simulation, training.trial_id, earlier[0].at.utc, dt)
+        entries = cls(simulation, header, earlier[0].at.utc, dt)
         records = entries.records
-        records.number = JournalNumber(header.number, header.series)
         for line in earlier:
             entries._collect(line)
             if isinstance(line.entry, AcceptedTouch | AcceptedCheckpoint):

@@ -23,11 +23,7 @@ from rastrainer.journal.journal_file import JournalReading, file_stamp
 from rastrainer.json_records import record_to_json
 from rastrainer.protocol import AbortReason, Phase
 from rastrainer_simulator.record.journal_writer import Journal
-from rastrainer_simulator.record.trial_archive import (
-    SUFFIX,
-    ArchivedTrial,
-    TrialArchive,
-)
+from rastrainer_simulator.record.trial_archive import SUFFIX, ArchivedTrial, TrialArchive
 from rastrainer_simulator.record.trial_entries import MUST_LAST, TrialEntries
 from rastrainer_simulator.record.trial_records import UnmeasuredRecord, with_record
 from rastrainer_simulator.state import OperatorInput, SimulationState, StepResult
@@ -55,9 +51,8 @@ class Written:
 class _OpenTrial:
     """The trial that is recorded: its entries, and the journal that they are written to.
 
-    Attributes:
-        registering: the write of its registration; None before.
-        is_stuck: whether entries could not be written: they wait until the trainee resumes.
+    `registering` writes its registration, None before; if it `is_stuck`, entries that could not be
+    written wait until the trainee resumes.
     """
 
     entries: TrialEntries
@@ -130,7 +125,13 @@ class TrialRecorder:
             return None
         if trial.is_registered:
             # Nothing but the final registration or the score comes after the record.
-            return self._write_answer(operator_input, result) if is_lasting else None
+            if not is_lasting:
+                return None
+            ending = [c for c in operator_input.commands if c.name in ENDING_A_TRIAL][-1]
+            at = Stamp.now(result.state.tick, result.state.sim_time)
+            answer = self._archive.answer
+            future = self._writer.submit(answer, ending.name, ending.arguments, at, ending.sender)
+            return Written(future, is_awaited=True)
         record = trial.entries.add(simulation, operator_input, result)
         if record is not None:
             return self._register(trial, simulation, record)
@@ -212,7 +213,7 @@ class TrialRecorder:
             journal.write_lines(with_record(lines, measured), sync=True)
             journal.close()
             sealed = replace(measured, journal_sha256=journal.last_hash)
-            self._archive.add(ArchivedTrial(sealed, truth, seed), journal)
+            self._archive.add(ArchivedTrial(sealed, journal, truth, seed))
 
         trial.registering = self._writer.submit(write)
         return Written(trial.registering, is_awaited=True)
@@ -239,19 +240,11 @@ class TrialRecorder:
             try:
                 journal.write_lines(lines, sync=True)
             finally:
-                self._archive.add(ArchivedTrial(record), journal)
+                self._archive.add(ArchivedTrial(record, journal))
 
         written = Written(self._writer.submit(write), is_awaited=False)
         self._end(trial.journal.close)
         return written
-
-    def _write_answer(self, operator_input: OperatorInput, result: StepResult) -> Written:
-        ending = [c for c in operator_input.commands if c.name in ENDING_A_TRIAL][-1]
-        at = Stamp.now(result.state.tick, result.state.sim_time)
-        future = self._writer.submit(
-            self._archive.answer, ending.name, ending.arguments, at, ending.sender
-        )
-        return Written(future, is_awaited=True)
 
     def _end(self, leave: Callable[[], None]) -> None:
         self._writer.submit(leave)

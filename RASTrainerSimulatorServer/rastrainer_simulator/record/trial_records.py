@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.journal.entries import (
     Continued,
+    JournalHeader,
     Line,
     PhaseChange,
     Registered,
     Sample,
 )
-from rastrainer.journal.folder import UNNUMBERED
 from rastrainer.json_records import record_to_json
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.motion.trial_motion import trial_motion
@@ -32,11 +32,7 @@ from rastrainer.trial.how_played import PlayRecording, SeedSource
 from rastrainer.trial.record import AbortedTrial, TouchedPoint, TrialRecord
 from rastrainer_simulator.record.trial_context import DisplayUse, versions
 from rastrainer_simulator.state import SimulationState, TrainingState
-from rastrainer_simulator.trial_state import (
-    ProcedureState,
-    RegistrationAttempt,
-    TrajectoryState,
-)
+from rastrainer_simulator.trial_state import ProcedureState, RegistrationAttempt, TrajectoryState
 from rastrainer_simulator.vectors import in_millimeters, vector
 
 if TYPE_CHECKING:
@@ -44,19 +40,15 @@ if TYPE_CHECKING:
 
 
 class TrialRecords:
-    """Makes the records of a trial from its state and its journal.
+    """Makes the records of a trial from its state, its journal, and the `dates` of its points."""
 
-    Attributes:
-        dates: when a point was touched or traced, by its simulated time.
-    """
-
-    def __init__(self, simulation: Simulation, started_utc: str) -> None:
+    def __init__(self, simulation: Simulation, header: JournalHeader, started_utc: str) -> None:
+        self.header = header
         self.started_utc = started_utc
-        self.versions = versions() | {"kinematics": simulation.kinematics_name}
+        self.versions = versions_of(simulation)
         self.display = DisplayUse()
         self.feeds = FeedRecording()
         self.play = PlayRecording()
-        self.number = UNNUMBERED
         self._setup = simulation.setup
         # Its seed is revealed with the truth.
         self._skin = replace(simulation.truth.skin, seed=0)
@@ -97,11 +89,7 @@ class TrialRecords:
 
     def _in_both(self, training: TrainingState) -> dict[str, Any]:
         return {
-            "trial_id": training.trial_id,
-            "trainee": training.trainee,
-            "task": training.task,
-            "mode": training.mode,
-            "scenario": self._setup.scenario.name,
+            **of_header(self.header),
             "started_utc": self.started_utc,
             "points": tuple(
                 TouchedPoint(
@@ -115,10 +103,26 @@ class TrialRecords:
             "rejected_touches": training.rejected,
             "undone_touches": training.undone,
             "versions": self.versions,
-            "touch_rule": self._setup.settings.training.touch_rule.value,
-            "method": training.method,
-            **asdict(self.number),
         }
+
+
+def versions_of(simulation: Simulation) -> dict[str, str]:
+    return versions() | {"kinematics": simulation.kinematics_name}
+
+
+def of_header(header: JournalHeader) -> dict[str, Any]:
+    """Return what the record of a trial repeats of its journal's header."""
+    return {
+        "trial_id": header.trial_id,
+        "trainee": header.trainee,
+        "task": header.task,
+        "mode": header.mode,
+        "scenario": header.scenario.name,
+        "touch_rule": header.settings["training"]["touchRule"],
+        "method": header.registration_method,
+        "number": header.number,
+        "series": header.series,
+    }
 
 
 @dataclass(frozen=True)

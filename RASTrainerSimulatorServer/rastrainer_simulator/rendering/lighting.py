@@ -7,12 +7,7 @@ from enum import Enum
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
-from vtkmodules.vtkRenderingCore import (
-    vtkLight,
-    vtkRenderer,
-    vtkRenderPass,
-    vtkTexture,
-)
+from vtkmodules.vtkRenderingCore import vtkLight, vtkRenderer, vtkRenderPass, vtkTexture
 from vtkmodules.vtkRenderingOpenGL2 import (
     vtkCameraPass,
     vtkOpenGLFXAAPass,

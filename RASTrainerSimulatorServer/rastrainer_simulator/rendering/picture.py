@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +24,7 @@ from rastrainer.head.mesh import HeadMesh
 from rastrainer.protocol import Proximity
 from rastrainer.scenario.scenario import Camera, Scenario
 from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.collision.collision import stand_pose
 from rastrainer_simulator.core.arm import start_joints
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.rendering.lighting import Shadows, light_room
@@ -98,42 +98,30 @@ def write_png(pixels: np.ndarray, path: Path) -> None:
     write_bytes(path, vtk_to_numpy(writer.GetResult()).tobytes())
 
 
-@dataclass(frozen=True)
-class SceneMoment:
-    """The moment of a simulation that a picture shows.
+def posed(
+    robot: RobotModel, q: Sequence[float], head_to_world: np.ndarray, head: HeadMesh
+) -> dict[str, np.ndarray]:
+    """Return the poses of the moving nodes in World, m, for joint angles `q`, rad.
 
-    Attributes:
-        link_to_world: a (4, 4) float pose in m for every link, as `Kinematics.links` gives them.
-        head_to_world: (4, 4) float, mm, from the MRI's RAS to World.
-        head_base: (3,) float, RAS mm, the center of the head's base, on the stand.
-        proximity: the tip is blue while free, and light blue near and on the head.
+    `head_to_world` is (4, 4) float, mm, from the MRI's RAS to World.
     """
+    links = make_kinematics(robot).links(tuple(q))
+    pose = np.array(head_to_world, dtype=float)
+    pose[:3, 3] /= MM_PER_M
+    poses = {link_node_name(link.joint): links[link.name] for link in robot.moving_links}
+    stand = stand_pose(pose, head.base / MM_PER_M)
+    return {**poses, TOOL: links[robot.tip.name], "head": pose, "stand": stand}
 
-    link_to_world: Mapping[str, np.ndarray]
-    head_to_world: np.ndarray
-    head_base: np.ndarray
-    touched: frozenset[str] = frozenset()
-    next_point: str | None = None
-    proximity: Proximity = Proximity.FREE
 
-    def poses(self, robot: RobotModel) -> dict[str, np.ndarray]:
-        first = {
-            link_node_name(link.joint): self.link_to_world[link.name]
-            for link in reversed(robot.links)
-        }
-        head = np.array(self.head_to_world, dtype=float)
-        head[:3, 3] /= MM_PER_M
-        stand = np.eye(4)
-        stand[:3, 3] = head[:3, :3] @ self.head_base / MM_PER_M + head[:3, 3]
-        tool = self.link_to_world[robot.tip.name]
-        return {**first, TOOL: tool, "head": head, "stand": stand}
-
-    def looks(self) -> dict[str, Material]:
-        colors = {f"fiducial_{label}": TOUCHED for label in self.touched}
-        if self.next_point is not None:
-            colors[f"fiducial_{self.next_point}"] = NEXT
-        colors[TIP_MARKER] = TIP_FREE if self.proximity is Proximity.FREE else TIP_NEAR
-        return colors
+def looks_of(
+    touched: Iterable[str], next_point: str | None = None, proximity: Proximity = Proximity.FREE
+) -> dict[str, Material]:
+    """Return the materials of fiducials and tip, which is light blue near and on the head."""
+    looks = {f"fiducial_{label}": TOUCHED for label in touched}
+    if next_point is not None:
+        looks[f"fiducial_{next_point}"] = NEXT
+    looks[TIP_MARKER] = TIP_FREE if proximity is Proximity.FREE else TIP_NEAR
+    return looks
 
 
 def node_actors(
@@ -182,8 +170,8 @@ FRAME_SHARE = 0.006
 def render_picture(
     path: Path,
     nodes: Sequence[Node],
-    robot: RobotModel,
-    moment: SceneMoment,
+    poses: Mapping[str, np.ndarray],
+    looks: Mapping[str, Material],
     camera: Camera,
     inset: Camera | None = None,
     size: tuple[int, int] = (1600, 900),
@@ -191,13 +179,12 @@ def render_picture(
 ) -> None:
     """Write a PNG of a scene at one moment, in place of an older one.
 
-    `nodes` are the scene's, as `scene_nodes` gives them, and `robot` is among them; the
-    cameras are a scenario's; `inset` is a second view in the upper right corner; `size` is the
-    picture's width and height in pixels. Software rendering takes some seconds, half as many with
-    small shadows.
+    `nodes`, `poses` and `looks` are as of `node_actors`; the cameras are a scenario's; `inset` is
+    a second view in the upper right corner; `size` is the picture's width and height in pixels.
+    Software rendering takes some seconds, half as many with small shadows.
     """
     renderer = vtkRenderer()
-    for actor in node_actors(nodes, moment.poses(robot), moment.looks()):
+    for actor in node_actors(nodes, poses, looks):
         renderer.AddActor(actor)
     light_room(renderer, shadows)
     shots = [(camera, size)]
@@ -228,12 +215,8 @@ def draw_preview(path: Path, scenario: Scenario, head: HeadMesh) -> None:
     """Draw the head as a trainee first sees it, with the first task if there is one."""
     robot = load_robot()
     q = start_joints(robot, scenario, SimulationSettings().start_height)
-    moment = SceneMoment(
-        link_to_world=make_kinematics(robot).links(q),
-        head_to_world=scenario.head_to_world,
-        head_base=head.base,
-    )
+    poses = posed(robot, q, scenario.head_to_world, head)
     task = scenario.tasks[0] if scenario.tasks else None
     nodes = scene_nodes(scenario, robot, head, task)
     camera = scenario.cameras["close-up"]
-    render_picture(path, nodes, robot, moment, camera, size=SIZE, shadows=Shadows.SMALL)
+    render_picture(path, nodes, poses, looks_of(()), camera, size=SIZE, shadows=Shadows.SMALL)

@@ -19,12 +19,7 @@ from rastrainer.procedure.record import ProcedureRecord
 from rastrainer.scenario.scenario import Camera
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.rendering.lighting import Shadows, light_room
-from rastrainer_simulator.rendering.picture import (
-    frames,
-    lay_in_corner,
-    node_actors,
-    write_png,
-)
+from rastrainer_simulator.rendering.picture import frames, lay_in_corner, node_actors, write_png
 from rastrainer_simulator.scene.nodes import NO_GO, SKIN, Material, Node
 from rastrainer_simulator.scene.scene_glb import plan_node
 from rastrainer_simulator.scene.surfaces import shaded, turned

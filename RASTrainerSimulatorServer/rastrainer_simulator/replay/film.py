@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterator, Sequence
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -11,30 +12,25 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.number_text import clock
+from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Camera, task_by_method
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.net.views.outgoing import BODIES
 from rastrainer_simulator.rendering.lighting import Shadows, light_room
 from rastrainer_simulator.rendering.picture import (
     INSET_SHARE,
-    SceneMoment,
     frames,
     lay_in_corner,
+    looks_of,
     node_actors,
 )
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial
-from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.scene.nodes import Material
 from rastrainer_simulator.scene.scene_glb import scene_nodes
 from rastrainer_simulator.scene.surfaces import vtk_matrix
-from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.viewpoint.best_view import TouchViews
-from rastrainer_simulator.viewpoint.view_control import (
-    STILL,
-    ViewControl,
-    camera_pose,
-    orbit_to,
-)
+from rastrainer_simulator.viewpoint.view_control import STILL, ViewControl, camera_pose, orbit_to
 
 RATE_HZ = 25
 SIZE = (1280, 720)
@@ -66,7 +62,7 @@ def write_film(
     if not encoder.isOpened():
         raise InputError(f"The film {path} cannot be written: is its folder there and writable?")
     count = max(1, round(trial.duration_s / speed * RATE_HZ))
-    shown = filmed(trial, setup, (number * speed / RATE_HZ for number in range(count)))
+    shown = filmed(trial, setup, [number * speed / RATE_HZ for number in range(count)])
     try:
         for number, pixels in enumerate(shown, start=1):
             encoder.write(pixels[..., ::-1])
@@ -80,7 +76,7 @@ def write_film(
 
 
 def filmed(
-    trial: RecordedTrial, setup: SimulationSetup, times_s: Iterable[float]
+    trial: RecordedTrial, setup: SimulationSetup, times_s: Sequence[float]
 ) -> Generator[np.ndarray]:
     """Yield pictures of a trial with touches and clock, (height, width, 3) uint8.
 
@@ -88,13 +84,17 @@ def filmed(
     """
     import cv2
 
-    scene = _FilmedScene(trial, setup)
-    shown = frames(scene.renderer, scene.shots(map(trial.state_at, times_s)))
+    method = trial.state_at(0.0).training.method
+    task = task_by_method(setup.scenario, trial.task, method)
+    renderer = vtkRenderer()
+    light_room(renderer, Shadows.NONE)
+    shown = frames(renderer, _shots(renderer, setup, task, trial, times_s))
     try:
-        for pixels in shown:
+        for time_s in times_s:
+            pixels, state = next(shown), trial.state_at(time_s)
             lay_in_corner(pixels, next(shown))
-            state = scene.state
-            text = f"{len(state.training.touches)}/{scene.count}   {clock(state.completion_time)}"
+            touched = f"{len(state.training.touches)}/{len(task.labels)}"
+            text = f"{touched}   {clock(state.completion_time)}"
             for color, width in (((20, 20, 20), 6), ((255, 255, 255), 2)):
                 cv2.putText(
                     pixels, text, (32, 58), cv2.FONT_HERSHEY_DUPLEX, 1.2, color, width, cv2.LINE_AA
@@ -104,64 +104,50 @@ def filmed(
         shown.close()
 
 
-class _FilmedScene:
-    """The scene of a trial, whose moving parts follow `state` from frame to frame."""
-
-    def __init__(self, trial: RecordedTrial, setup: SimulationSetup) -> None:
-        scenario = setup.scenario
-        head = read_head_mesh(scenario.head)
-        self.state = first = trial.state_at(0.0)
-        task = task_by_method(scenario, trial.task, first.training.method)
-        self.count = len(task.labels)
-        self._scenario, self._robot, self._head_base = scenario, setup.robot, head.base
-        self._kinematics = make_kinematics(setup.robot)
-        self._nodes = scene_nodes(scenario, setup.robot, head, task)
-        self._views = TouchViews(setup, head)
-        self._head_to_world = first.head_to_world.copy()
-        self._head_to_world[:3, 3] *= MM_PER_M
-        self._views.begin(task, self._head_to_world)
-        self._control = ViewControl()
-        self._next_point: str | None = None
-        self._looks: dict[str, Material] = {}
-        self._actors: dict[str, list[vtkActor]] = {}
-        self.renderer = vtkRenderer()
-        light_room(self.renderer, Shadows.NONE)
-
-    def shots(self, states: Iterable[SimulationState]) -> Iterator[tuple[Camera, tuple[int, int]]]:
-        """Show each state in turn; yield its camera and the corner's, each with its size."""
-        inset = tuple(round(INSET_SHARE * length) for length in SIZE)
-        for state in states:
-            self.state, training = state, state.training
-            moment = SceneMoment(
-                self._kinematics.links(state.q),
-                self._head_to_world,
-                self._head_base,
-                frozenset(touch.label for touch in training.touches),
-                training.next_point,
-                state.proximity,
-            )
-            poses, looks = moment.poses(self._robot), moment.looks()
-            if looks != self._looks:
-                self._looks = looks
-                self.renderer.RemoveAllViewProps()
-                for node in self._nodes:
-                    self._actors[node.name] = node_actors([node], poses, looks)
-                    for actor in self._actors[node.name]:
-                        self.renderer.AddActor(actor)
-            for name, pose in poses.items():
-                for actor in self._actors.get(name, ()):
-                    actor.SetUserMatrix(vtk_matrix(pose))
-            # The camera is on its way to the best view of the next fiducial.
-            camera, next_point = self._scenario.cameras[CLOSE_UP], training.next_point
-            if next_point is not None and next_point != self._next_point:
-                self._next_point = next_point
-                best = self._views.best(next_point, state.q)
-                if best is not None:
-                    self._control.go(orbit_to(camera, best.eye, best.fiducial))
-            self._control.advance(1.0 / RATE_HZ, camera, STILL, is_arm_still=True)
-            view = camera_pose(camera, self._control.orbit)
-            position, focal_point = (
-                MM_PER_M * np.array(place) for place in (view.position, view.focal_point)
-            )
-            yield Camera(position, focal_point, np.array(view.view_up), view.view_angle_deg), SIZE
-            yield self._scenario.cameras[FAR], (inset[0], inset[1])
+def _shots(
+    renderer: vtkRenderer,
+    setup: SimulationSetup,
+    task: Task,
+    trial: RecordedTrial,
+    times_s: Sequence[float],
+) -> Iterator[tuple[Camera, tuple[int, int]]]:
+    """Show the trial at each time; yield its camera and the corner's, each with its size."""
+    scenario = setup.scenario
+    camera, corner = scenario.cameras[CLOSE_UP], (round(INSET_SHARE * each) for each in SIZE)
+    far = scenario.cameras[FAR], (next(corner), next(corner))
+    head = read_head_mesh(scenario.head)
+    nodes = scene_nodes(scenario, setup.robot, head, task)
+    best_views, view, point_in_view = TouchViews(setup, head), ViewControl(), None
+    head_to_world = trial.state_at(0.0).head_to_world.copy()
+    head_to_world[:3, 3] *= MM_PER_M
+    best_views.begin(task, head_to_world)
+    shown_looks: dict[str, Material] = {}
+    actors: dict[str, list[vtkActor]] = {}
+    for state in map(trial.state_at, times_s):
+        training = state.training
+        places = state.tool_tip_to_world, state.head_to_world, state.stand_to_world
+        poses = dict(zip(BODIES, (*state.link_to_world, *places), strict=False))
+        touched = (touch.label for touch in training.touches)
+        looks = looks_of(touched, training.next_point, state.proximity)
+        if looks != shown_looks:
+            shown_looks = looks
+            renderer.RemoveAllViewProps()
+            actors = {node.name: node_actors([node], poses, looks) for node in nodes}
+            for actor in chain.from_iterable(actors.values()):
+                renderer.AddActor(actor)
+        for name, pose in poses.items():
+            for actor in actors.get(name, ()):
+                actor.SetUserMatrix(vtk_matrix(pose))
+        # The camera is on its way to the best view of the next fiducial.
+        if training.next_point is not None and training.next_point != point_in_view:
+            point_in_view = training.next_point
+            best = best_views.best(point_in_view, state.q)
+            if best is not None:
+                view.go(orbit_to(camera, best.eye, best.fiducial))
+        view.advance(1.0 / RATE_HZ, camera, STILL, is_arm_still=True)
+        seen = camera_pose(camera, view.orbit)
+        position, focal_point = (
+            MM_PER_M * np.array(place) for place in (seen.position, seen.focal_point)
+        )
+        yield Camera(position, focal_point, np.array(seen.view_up), seen.view_angle_deg), SIZE
+        yield far

@@ -61,11 +61,7 @@ _SHOWN = (Phase.RUNNING, Phase.PAUSED)
 
 
 class TrialGhost:
-    """Loads the ghost of a trial, and shows it by the trial's time.
-
-    Attributes:
-        rule: which trial it is; `GhostRule.OFF` until one is shown.
-    """
+    """Loads the ghost of a trial by a `rule`, OFF until one is shown, and shows it by its time."""
 
     def __init__(self) -> None:
         self.rule = GhostRule.OFF

@@ -21,9 +21,7 @@ PERIOD_S = 1.0 / 60.0
 class Playback:
     """Plays a recorded trial, in the event loop's thread.
 
-    Attributes:
-        speed: seconds of the trial per second.
-        changed: called whenever any of this has changed.
+    `speed` is in seconds of the trial per second; `changed` is called whenever any of this has.
     """
 
     statistics = LoopStatistics()
@@ -97,10 +95,8 @@ class PlaybackSwitch:
     The other, such as the control loop, runs on unchanged. Subscribers are called in its or the
     playback's thread.
 
-    Attributes:
-        alter: changes a state of the other before it is shown, in any thread; None shows it as it
-            is.
-        playback: the playback that is shown; None for the other source.
+    `alter` changes a state of the other before it is shown, in any thread, if it is not None;
+    `playback` is the playback that is shown, None for the other source.
     """
 
     def __init__(self, source: ControlLoop | Playback) -> None:

@@ -7,7 +7,6 @@ import threading
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Generic, TypeVar
 
@@ -32,12 +31,7 @@ from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.robot.kinematics import make_kinematics
-from rastrainer_simulator.state import (
-    Event,
-    Motion,
-    SimulationState,
-    TrainingState,
-)
+from rastrainer_simulator.state import Event, Motion, SimulationState, TrainingState
 from rastrainer_simulator.training.rules import TouchMoment, touch_stage
 from rastrainer_simulator.training.training import Training
 from rastrainer_simulator.trial_state import Tool
@@ -46,13 +40,8 @@ AFTER_S = 0.25
 """How long after the worst touch its replay ends."""
 
 
-@dataclass(frozen=True)
-class _Situation:
-    """The visible state besides the arm, from one event to the next."""
-
-    training: TrainingState
-    proximity: Proximity
-    camera: str
+Situation = tuple[TrainingState, Proximity, str]
+"""The visible state besides the arm: trial, proximity and camera, from one event to the next."""
 
 
 class RecordedTrial:
@@ -61,9 +50,8 @@ class RecordedTrial:
     Joint angles and clearance are interpolated linearly between the journal's 50 samples a second;
     touches, phases, contact, camera and planned target are as recorded.
 
-    Attributes:
-        worst: label of the touch with the largest error, and from when to when it was approached,
-            in s; None for a trial that was not registered.
+    `worst` is the label of the touch with the largest error, and from when to when it was
+    approached, in s; None for a trial that was not registered.
     """
 
     def __init__(self, track: ReplayTrack, setup: SimulationSetup) -> None:
@@ -104,11 +92,12 @@ class RecordedTrial:
         poses = self._kinematics.links(q)
         depth = trajectory.depth_mm
         # What happened in the first tick is visible from the beginning.
-        now = self._situations[max(0, bisect.bisect_right(self._event_times, time_s) - 1)]
+        place = max(0, bisect.bisect_right(self._event_times, time_s) - 1)
+        training, proximity, camera = self._situations[place]
         clearance = float(track.at(time_s, trajectory.clearance_mm)) / MM_PER_M
         depth_m = 0.0 if depth is None else float(track.at(time_s, depth)) / MM_PER_M
         tip = tuple(poses[self._tip][:3, 3].tolist())
-        training, procedure = now.training, now.training.procedure
+        procedure = training.procedure
         is_fed = procedure is not None and procedure.tool in (Tool.DRILL, Tool.ELECTRODE)
         elapsed = time_s
         if training.phase is Phase.IDLE:
@@ -123,20 +112,20 @@ class RecordedTrial:
             link_to_world=tuple(poses[name] for name in self._links),
             head_to_world=self._head_to_world,
             stand_to_world=self._stand_to_world,
-            proximity=now.proximity,
+            proximity=proximity,
             clearance=clearance,
             training=training,
             elapsed=elapsed,
             motion=Motion.NONE,
             operator="",
-            camera=now.camera,
+            camera=camera,
             planned_target=None,
             depth=depth_m,
             feed=float(track.at(time_s, track.feed_mm)) / MM_PER_M if is_fed else 0.0,
             # The journal has one clearance for the whole tool: a contact counts as the tip's.
             touch=touch_stage(
                 TouchMoment(time_s, tip, clearance, depth_m),
-                now.proximity,
+                proximity,
                 "",
                 training,
                 self._goals.get(training.next_point or ""),
@@ -156,11 +145,7 @@ T = TypeVar("T")
 
 
 class JournalLoading(Generic[T]):
-    """Reads journals in a thread while the control loop runs.
-
-    Attributes:
-        loaded: the result of `load`, or its `InputError`.
-    """
+    """Reads journals in a thread while the control loop runs; `loaded` is what comes of it."""
 
     def __init__(self, load: Callable[[Callable[[], None]], T]) -> None:
         """Start; `load` is given a function that raises InputError as soon as it is canceled."""
@@ -193,7 +178,7 @@ def load_trial(journal: Path, setup: SimulationSetup) -> TrialLoading:
 
 def _situations(
     track: ReplayTrack, scenario: Scenario, settings: SimulationSettings
-) -> list[_Situation]:
+) -> list[Situation]:
     """Return the situation after each event; the trial's state machine repeats the commands."""
     header, training = track.header, Training(scenario, 0, settings.training, settings.procedure)
     lines = [Line(event.at, event.entry) for event in track.events]
@@ -209,7 +194,7 @@ def _situations(
                 proximity = line.entry.to
             case CameraChange():
                 camera = line.entry.camera
-        situations.append(_Situation(training.state, proximity, camera))
+        situations.append((training.state, proximity, camera))
     return situations
 
 

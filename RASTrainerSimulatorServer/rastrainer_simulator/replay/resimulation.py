@@ -35,11 +35,7 @@ from rastrainer_simulator.core.interrupted_trial import (
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record.trial_entries import TrialEntries
-from rastrainer_simulator.state import (
-    NEUTRAL_STICKS,
-    OperatorCommand,
-    OperatorInput,
-)
+from rastrainer_simulator.state import NEUTRAL_STICKS, OperatorCommand, OperatorInput
 
 LONGEST_TRIAL_TICKS = 10_000_000
 """A journal that claims more (11 hours at 250 Hz) is not replayed."""
@@ -54,10 +50,8 @@ _OF_THE_CLOCK = frozenset(
 class ReplayReport:
     """The result of a replay.
 
-    Attributes:
-        compared: how many entries of each kind were compared.
-        difference: the first difference in words; None if all is equal to the last bit.
-        changed_versions: name → (recorded, present), where they differ.
+    `compared` counts the entries of each kind; `difference` is the first one in words, None if all
+    is equal to the last bit; `changed_versions` are recorded and present, by name.
     """
 
     trial_id: str

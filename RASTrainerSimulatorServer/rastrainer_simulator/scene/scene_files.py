@@ -7,11 +7,8 @@ import contextlib
 import functools
 import gzip
 import hashlib
-import json
-import os
 import struct
 import subprocess
-import sys
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -19,10 +16,10 @@ from pathlib import Path
 
 import rastrainer
 from rastrainer.errors import InputError
-from rastrainer.home_folder import home_folder
 from rastrainer.python_environment import python_command
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.ops.processes import BELOW_NORMAL
+from rastrainer_simulator.ops.system_paths import cache_folder
 
 
 def setup_digest(setup: SimulationSetup) -> bytes:
@@ -30,18 +27,17 @@ def setup_digest(setup: SimulationSetup) -> bytes:
 
     A file that cannot be read counts as empty: building the scene reports the error.
     """
-    whole = hashlib.sha256(f"{rastrainer.__version__} {setup.scenario_sha256}".encode())
-    for path in sorted(Path(__file__).parent.glob("*.[pj]*")):
-        whole.update(hashlib.sha256(_content(path)).digest())
     robot = setup.robot
     visuals = [part for part in robot.meshes if part.kind == "visual"]
     links = [(link.name, link.joint, link.offset.tolist()) for link in robot.links]
     parts = [
         (part.link, part.origin.tolist(), part.scale, part.color, part.replaced) for part in visuals
     ]
-    whole.update(repr((robot.tip.name, links, parts)).encode())
-    for part in visuals:
-        whole.update(hashlib.sha256(_content(part.path)).digest())
+    values = rastrainer.__version__, setup.scenario_sha256, robot.tip.name, links, parts
+    whole = hashlib.sha256(repr(values).encode())
+    code = sorted(Path(__file__).parent.glob("*.[pj]*"))
+    for path in (*code, *(part.path for part in visuals)):
+        whole.update(hashlib.sha256(_content(path)).digest())
     return whole.digest()
 
 
@@ -59,16 +55,10 @@ def _content(path: Path) -> bytes:
 KEPT_FILES = 60
 
 
-def cache_folder() -> Path:
+def scenes_folder() -> Path:
     """Return the user's cache folder for scenes, made if needed; a temporary one if impossible."""
     try:
-        if sys.platform == "win32":
-            caches = Path(os.environ.get("LOCALAPPDATA") or home_folder() / "AppData" / "Local")
-        elif sys.platform == "darwin":
-            caches = home_folder() / "Library" / "Caches"
-        else:
-            caches = Path(os.environ.get("XDG_CACHE_HOME") or home_folder() / ".cache")
-        folder = caches / "rastrainer" / "scenes"
+        folder = cache_folder() / "scenes"
         folder.mkdir(parents=True, exist_ok=True)
         (folder / ".writable").touch()
     except (OSError, InputError):
@@ -153,16 +143,11 @@ class SceneFiles:
 
     async def _build(self, setup: SimulationSetup, task: str, path: Path) -> None:
         meshes = self._robot_meshes
-        wanted = {
-            "scenario": str(setup.scenario.folder),
-            "robotMeshes": None if meshes is None else str(meshes),
-            "task": task,
-            "path": str(path),
-        }
+        wanted = setup.scenario.folder, "" if meshes is None else meshes, task, path
         try:
             process = await asyncio.create_subprocess_exec(
-                *python_command("rastrainer_simulator.scene.scene_glb"),
-                stdin=subprocess.PIPE,
+                *python_command("rastrainer_simulator.scene.scene_glb", *map(str, wanted)),
+                stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.PIPE,
                 creationflags=BELOW_NORMAL,
@@ -170,7 +155,7 @@ class SceneFiles:
         except OSError as error:
             raise InputError(f"The scene cannot be built: {error}.") from error
         try:
-            _, errors = await process.communicate(json.dumps(wanted).encode())
+            _, errors = await process.communicate()
         finally:
             # The waiting task may have been canceled.
             if process.returncode is None:
@@ -181,19 +166,13 @@ class SceneFiles:
             raise InputError(f"The scene could not be built: {sentence}")
 
 
-def read_scene(file: SceneFile) -> bytes | None:
-    """Return the content of a scene's file; None if it was changed or is missing."""
-    content = _content(file.path)
-    return content if hashlib.sha256(content).hexdigest() == file.sha256 else None
-
-
 @functools.lru_cache(maxsize=2)
 def gzipped_scene(file: SceneFile) -> tuple[bytes, int]:
     """Return the content compressed, half as large, and how large it was; takes 0.2 s at first.
 
     Raises LookupError if the file has changed.
     """
-    content = read_scene(file)
-    if content is None:
+    content = _content(file.path)
+    if hashlib.sha256(content).hexdigest() != file.sha256:
         raise LookupError(file.path)
     return gzip.compress(content, GZIP_LEVEL, mtime=0), len(content)

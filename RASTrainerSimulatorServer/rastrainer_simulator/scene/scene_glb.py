@@ -1,16 +1,17 @@
 """One scene as a GLB file, made of a scenario, a robot and a task.
 
-Run as a short-lived process, since VTK would stop the control loop's, it reads one JSON object from
-standard input: `scenario` and `robotMeshes` (folders, null for the meshes that come with
-RASTrainer), `task` (a name, or "" for none) and `path` (the file to write).
+Run as a short-lived process, since VTK would stop the control loop's, it has as arguments the
+folders of the scenario and of the robot's meshes ("" for those that come with RASTrainer), the name
+of a task ("" for none) and the file to write.
 """
 
 from __future__ import annotations
 
 import contextlib
-import json
+import functools
 import os
 import sys
+from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -34,19 +35,15 @@ from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.robot.meshes import load_meshes
 from rastrainer_simulator.robot.model import RobotModel
 from rastrainer_simulator.scene.nodes import (
-    ARROW,
     AXIS,
     DRILL,
     ELECTRODE,
     GUIDE,
-    MARK_RIM,
     NO_GO,
-    NUMBER,
     SKIN,
     TIP_FREE,
     TIP_MARKER,
     TOOL,
-    WAITING,
     Material,
     Node,
     Surface,
@@ -56,7 +53,7 @@ from rastrainer_simulator.scene.nodes import (
     painted,
 )
 from rastrainer_simulator.scene.room_nodes import room_nodes, stand_node, table_node
-from rastrainer_simulator.scene.skin_marks import Shape, skin_marks
+from rastrainer_simulator.scene.skin_marks import skin_marks
 from rastrainer_simulator.scene.surfaces import shaded, turned
 
 
@@ -65,26 +62,25 @@ def robot_nodes(robot: RobotModel) -> list[Node]:
 
     All links fixed behind the flange make the tool; its node's origin is the tool's tip.
     """
-    first = robot.moving_links
-    surfaces: dict[str, list[Surface]] = {link_node_name(link.joint): [] for link in first}
-    surfaces[TOOL] = []
-    marker: list[Surface] = []
-    links = {link.name: link for link in robot.links}
+    first, links = robot.moving_links, {link.name: link for link in robot.links}
+    surfaces: dict[str, list[Surface]] = defaultdict(list)
     for name, parts in load_meshes(robot).items():
         link = links[name]
         is_tool = link.joint == len(robot.joints) and link is not first[link.joint]
         frame = robot.tip.offset if is_tool else first[link.joint].offset
-        to_node = np.linalg.inv(frame) @ link.offset
+        node = TOOL if is_tool else link_node_name(link.joint)
         for mesh, color in parts:
-            mesh.apply_transform(to_node)
+            mesh.apply_transform(np.linalg.inv(frame) @ link.offset)
             is_marker = name == robot.tip.name
             material = TIP_FREE if is_marker else painted(color)
             surface = shaded(mesh.vertices, mesh.faces, material)
-            place = surfaces[TOOL] if is_tool else surfaces[link_node_name(link.joint)]
-            (marker if is_marker else place).append(surface)
-    nodes = [Node(name, merged(group)) for name, group in surfaces.items() if name != TOOL]
-    tip_marker = Node(TIP_MARKER, merged(marker))
-    return [*nodes, Node(TOOL, merged(surfaces[TOOL]), (tip_marker, *_instrument_nodes()))]
+            surfaces[TIP_MARKER if is_marker else node].append(surface)
+    arm = (link_node_name(link.joint) for link in first)
+    parts_of_tool = (Node(TIP_MARKER, merged(surfaces[TIP_MARKER])), *_instrument_nodes())
+    return [
+        *(Node(name, merged(surfaces[name])) for name in arm),
+        Node(TOOL, merged(surfaces[TOOL]), parts_of_tool),
+    ]
 
 
 PLAN = "plan"
@@ -134,30 +130,31 @@ WORLD = "world"
 WORLD_TO_GLTF = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], dtype=float)
 
 
-def _add(
-    scene: trimesh.Scene, parent: str, node: Node, materials: dict[Material, PBRMaterial]
-) -> None:
+@functools.cache
+def _material(material: Material) -> PBRMaterial:
+    color = np.array(material.linear_color)
+    # A glowing surface is black to lamps: it has its own color in any light.
+    base, glow = (np.zeros(3), color) if material.glowing else (color, np.zeros(3))
+    return PBRMaterial(
+        name=material.name,
+        alphaMode="OPAQUE" if material.opacity == 1.0 else "BLEND",
+        baseColorFactor=[*base, material.opacity],
+        metallicFactor=material.metallic,
+        roughnessFactor=material.roughness,
+        emissiveFactor=glow,
+    )
+
+
+def _add(scene: trimesh.Scene, parent: str, node: Node) -> None:
     is_single = len(node.surfaces) == 1
     if not is_single:
         scene.graph.update(frame_from=parent, frame_to=node.name, matrix=np.eye(4))
     for surface in node.surfaces:
-        if surface.material not in materials:
-            color = np.array(surface.material.linear_color)
-            # A glowing surface is black to lamps: it has its own color in any light.
-            base, glow = (np.zeros(3), color) if surface.material.glowing else (color, np.zeros(3))
-            materials[surface.material] = PBRMaterial(
-                name=surface.material.name,
-                alphaMode="OPAQUE" if surface.material.opacity == 1.0 else "BLEND",
-                baseColorFactor=[*base, surface.material.opacity],
-                metallicFactor=surface.material.metallic,
-                roughnessFactor=surface.material.roughness,
-                emissiveFactor=glow,
-            )
         mesh = trimesh.Trimesh(
             surface.vertices,
             surface.triangles,
             vertex_normals=surface.normals,
-            visual=TextureVisuals(material=materials[surface.material]),
+            visual=TextureVisuals(material=_material(surface.material)),
             process=False,
         )
         name = node.name if is_single else f"{node.name}_{surface.material.name}"
@@ -169,7 +166,7 @@ def _add(
             transform=np.eye(4),
         )
     for child in node.children:
-        _add(scene, node.name, child, materials)
+        _add(scene, node.name, child)
 
 
 BASE_CREASE_DEG = 60.0
@@ -179,19 +176,13 @@ BASE_CREASE_DEG = 60.0
 def head_node(mesh: HeadMesh, task: Task | None) -> Node:
     """Return the head in its own frame: RAS, but in m; without a task, its skin alone."""
     skin = shaded(mesh.vertices / MM_PER_M, mesh.triangles, SKIN, BASE_CREASE_DEG)
-    marks = skin_marks(mesh, task.fiducials, task.labels) if task else []
-    rims = Node("rims", merged([_surface(mark.rim, MARK_RIM) for mark in marks]))
-    children = [Node("skin", (skin,)), *([rims] if marks else [])]
-    for mark in marks:
-        children.append(Node(f"fiducial_{mark.label}", (_surface(mark.dot, WAITING),)))
-        children.append(Node(f"number_{mark.label}", (_surface(mark.number, NUMBER),)))
-        if mark.arrow is not None:
-            children.append(Node(f"arrow_{mark.label}", (_surface(mark.arrow, ARROW),)))
+    children = [Node("skin", (skin,))]
+    if task:
+        marks = skin_marks(mesh, task.fiducials, task.labels)
+        children.append(Node("rims", merged([mark.pop("rim") for mark in marks])))
+        for label, mark in zip(task.labels, marks, strict=True):
+            children += [Node(f"{kind}_{label}", (surface,)) for kind, surface in mark.items()]
     return Node("head", children=tuple(children))
-
-
-def _surface(shape: Shape, material: Material) -> Surface:
-    return Surface(shape.points / MM_PER_M, shape.outward, shape.triangles, material)
 
 
 def scene_glb(scenario: Scenario, robot: RobotModel, task: Task | None) -> bytes:
@@ -199,9 +190,8 @@ def scene_glb(scenario: Scenario, robot: RobotModel, task: Task | None) -> bytes
     nodes = scene_nodes(scenario, robot, read_head_mesh(scenario.head), task)
     scene = trimesh.Scene(base_frame=ROOT)
     scene.graph.update(frame_from=ROOT, frame_to=WORLD, matrix=WORLD_TO_GLTF)
-    materials: dict[Material, PBRMaterial] = {}
     for node in nodes:
-        _add(scene, WORLD, node, materials)
+        _add(scene, WORLD, node)
     return scene.export(file_type="glb", include_normals=True)
 
 
@@ -224,12 +214,11 @@ def main() -> int:
     """Build the given scene; if that is impossible, print one sentence and return 2."""
     with contextlib.suppress(AttributeError, OSError):
         os.nice(10)  # The control loop of the parent comes first.
-    wanted = json.load(sys.stdin)
-    meshes, task = wanted["robotMeshes"], wanted["task"]
+    scenario, meshes, task, path = sys.argv[1:]
     try:
-        setup = load_setup(Path(wanted["scenario"]), robot_meshes=meshes and Path(meshes))
+        setup = load_setup(Path(scenario), robot_meshes=Path(meshes) if meshes else None)
         chosen = setup.scenario.task(task) if task else None
-        write_bytes(wanted["path"], scene_glb(setup.scenario, setup.robot, chosen))
+        write_bytes(path, scene_glb(setup.scenario, setup.robot, chosen))
     except InputError as error:
         print(error, file=sys.stderr)
         return 2

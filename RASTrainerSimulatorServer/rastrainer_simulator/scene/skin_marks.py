@@ -15,22 +15,12 @@ from vtkmodules.vtkFiltersSources import vtkDiskSource
 from vtkmodules.vtkRenderingFreeType import vtkVectorText
 
 from rastrainer.head.mesh import HeadMesh
+from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.scene.nodes import ARROW, MARK_RIM, NUMBER, WAITING, Material, Surface
 from rastrainer_simulator.scene.surfaces import surface, triangles_of
 
 REACH = 25.0
 PATCH_RADIUS = 10.0
-
-
-@dataclass(frozen=True)
-class Shape:
-    """Triangles (m, 3) in the head's frame, RAS mm, counterclockwise seen from outside.
-
-    `points` are (n, 3) float, and `outward` (n, 3) the unit normals of the skin below them.
-    """
-
-    points: np.ndarray
-    triangles: np.ndarray
-    outward: np.ndarray
 
 
 class Skin:
@@ -84,11 +74,6 @@ class Skin:
         """Project flat points (n, 2) float around a point of the skin; return (n, 3) float."""
         frame = self.frame(point)
         return self.onto(point + flat @ frame[:2], frame[2])
-
-    def lay_shape(self, points: np.ndarray, triangles: np.ndarray, at: np.ndarray) -> Shape:
-        """Project a flat shape, (n, 2) float points and (m, 3) int triangles, around a point."""
-        outward = self.frame(at)[2]
-        return Shape(self.lay(points, at), triangles, np.tile(outward, (len(points), 1)))
 
 
 DOT_RADIUS = 4.0
@@ -220,7 +205,7 @@ def arrows(skin: Skin, points: np.ndarray, longest: float = LENGTHS[0]) -> list[
                 made[longer] = Arrow(arrow.path, arrow.outward, arrow.start, end)
 
 
-def arrow_shape(skin: Skin, arrow: Arrow) -> Shape:
+def _ribbon(skin: Skin, arrow: Arrow) -> Surface:
     """Return the arrow as a ribbon on the skin: a shaft, and a head that comes to a point."""
     neck = max(arrow.start, arrow.end - HEAD_LENGTH)
     shaft = np.linspace(arrow.start, neck, max(2, round((neck - arrow.start) / STEP) + 1))
@@ -241,7 +226,7 @@ def arrow_shape(skin: Skin, arrow: Arrow) -> Shape:
     left, ahead = right + 1, right + columns
     halves = [np.column_stack([right, ahead, left]), np.column_stack([left, ahead, ahead + 1])]
     outward = np.repeat(outward, columns, axis=0)
-    return Shape(np.concatenate(rows), np.concatenate(halves), outward)
+    return _raised(np.concatenate(rows), outward, np.concatenate(halves), ARROW)
 
 
 def _between(
@@ -450,19 +435,8 @@ def _apart(first: Place, second: Place) -> float:
     return float(np.linalg.norm(first.covers[:, None] - second.covers[None], axis=2).min())
 
 
-ARROW_LIFT, RIM_LIFT, NUMBER_LIFT, DOT_LIFT = 0.5, 0.5, 0.6, 0.8
+LIFTS = {ARROW: 0.5, MARK_RIM: 0.5, NUMBER: 0.6, WAITING: 0.8}
 """How far each is above the skin, mm, so that no wrinkle hides it."""
-
-
-@dataclass(frozen=True)
-class SkinMark:
-    """One fiducial's marks, in the head's frame, RAS mm; the last has no arrow."""
-
-    label: str
-    dot: Shape
-    rim: Shape
-    number: Shape
-    arrow: Shape | None
 
 
 @dataclass(frozen=True)
@@ -490,28 +464,38 @@ def place_marks(skin: Skin, points: np.ndarray, labels: Sequence[str]) -> Placem
     return Placement(numbers, places, placed_arrows, has_room)
 
 
-def skin_marks(head: HeadMesh, points: np.ndarray, labels: Sequence[str]) -> list[SkinMark]:
-    """Return the marks of fiducials at `points` (n, 3) float, RAS mm, in the order to touch."""
+def skin_marks(
+    head: HeadMesh, points: np.ndarray, labels: Sequence[str]
+) -> list[dict[str, Surface]]:
+    """Return the marks of fiducials at `points` (n, 3) float, RAS mm, in the order to touch.
+
+    Each has a `rim`, a `fiducial` that fills it, a `number`, and an `arrow` to the next one, if
+    there is room for it; RAS, but in m.
+    """
     skin = Skin(head)
     placed = place_marks(skin, points, labels)
-    ribbons: list[Shape | None] = [
-        _lifted(arrow_shape(skin, arrow), ARROW_LIFT) if arrow.end > arrow.start else None
-        for arrow in placed.arrows
+    marks = [
+        {
+            "rim": _laid(skin, disk(DOT_RADIUS - 0.4, RIM_RADIUS), point, MARK_RIM),
+            "fiducial": _laid(skin, disk(0.0, DOT_RADIUS), point, WAITING),
+            "number": _laid(skin, flat, place, NUMBER),
+        }
+        for point, flat, place in zip(points, placed.numbers, placed.places, strict=True)
     ]
-    numbers = zip(placed.numbers, placed.places, strict=True)
-    return [
-        SkinMark(
-            label,
-            _lifted(skin.lay_shape(*disk(0.0, DOT_RADIUS), point), DOT_LIFT),
-            _lifted(skin.lay_shape(*disk(DOT_RADIUS - 0.4, RIM_RADIUS), point), RIM_LIFT),
-            _lifted(skin.lay_shape(*flat, place), NUMBER_LIFT),
-            ribbon,
-        )
-        for point, label, (flat, place), ribbon in zip(
-            points, labels, numbers, [*ribbons, None], strict=True
-        )
-    ]
+    for mark, arrow in zip(marks, placed.arrows, strict=False):
+        if arrow.end > arrow.start:
+            mark["arrow"] = _ribbon(skin, arrow)
+    return marks
 
 
-def _lifted(shape: Shape, lift: float) -> Shape:
-    return Shape(shape.points + lift * shape.outward, shape.triangles, shape.outward)
+def _laid(skin: Skin, flat: Flat, at: np.ndarray, material: Material) -> Surface:
+    """Project a flat shape onto the skin around a point."""
+    points, triangles = flat
+    outward = np.tile(skin.frame(at)[2], (len(points), 1))
+    return _raised(skin.lay(points, at), outward, triangles, material)
+
+
+def _raised(
+    points: np.ndarray, outward: np.ndarray, triangles: np.ndarray, material: Material
+) -> Surface:
+    return Surface((points + LIFTS[material] * outward) / MM_PER_M, outward, triangles, material)

@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from rastrainer.errors import InputError
@@ -108,23 +109,23 @@ def trials_to_show(study: Study, records: Path) -> tuple[str, ...]:
     return found
 
 
+@dataclass
 class ReplayLoader:
     """Loads the replays of trials; trials of one set-up share it, and views load its scene once."""
 
-    def __init__(self, records: Path, scenario: Path | None) -> None:
-        self._records = records
-        self._scenario = scenario
-        self._setups: dict[str, SimulationSetup] = {}
+    records: Path
+    scenario: Path | None
+    _setups: dict[str, SimulationSetup] = field(default_factory=dict)
 
     def load(self, trial_id: str) -> Playback:
         """Return the playback of a trial; takes seconds. Never in two threads at once."""
         try:
-            track = find_track(self._records, trial_id)
+            track = find_track(self.records, trial_id)
             header = track.header
             same = header.scenario, header.robot, header.settings, header.procedure, header.method
             key = repr(same)
             if key not in self._setups:
-                self._setups[key] = setup_of(track.header, self._scenario)
+                self._setups[key] = setup_of(track.header, self.scenario)
             setup = self._setups[key]
             return Playback(RecordedTrial(track, setup), setup)
         except InputError as error:

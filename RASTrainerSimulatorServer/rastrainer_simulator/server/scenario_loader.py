@@ -62,14 +62,14 @@ class ScenarioLoader:
         present = self._control_loop.setup.scenario
         if name in ("", present.name):
             return present
-        for entry in list_scenarios([asset_path("scenarios"), self._library]):
-            if entry.name == name:
-                return load_scenario(entry.folder)
+        known = self._known()
+        if name in known:
+            return load_scenario(known[name].folder)
         raise InputError(f"There is no scenario {name} here, in which the trial was played.")
 
     def listed(self) -> Future[list[ListedScenario]]:
         """Return the scenarios that can be loaded by their names, and those with a problem."""
-        return self._worker.submit(self._listed)
+        return self._worker.submit(lambda: list(self._known().values()))
 
     def close(self) -> None:
         """Wait for the scenario that is being loaded, and load no other."""
@@ -106,18 +106,19 @@ class ScenarioLoader:
         finally:
             self._control_loop.end_replacement()
 
-    def _listed(self) -> list[ListedScenario]:
+    def _known(self) -> dict[str, ListedScenario]:
         found = list_scenarios([asset_path("scenarios"), self._library])
         self.pictures = {entry.name: entry.preview for entry in found if entry.preview}
-        return found
+        return {entry.name: entry for entry in found}
 
     def _found(self, folder: str) -> Path:
-        if is_identifier(folder):
-            known = {entry.name: entry for entry in self._listed()}
-            if folder in known:
-                return known[folder].folder
+        if self._may_be_anywhere and not is_identifier(folder):
+            return Path(folder)
+        known = self._known()
+        if folder in known:
+            return known[folder].folder
         if not self._may_be_anywhere:
-            names = ", ".join(entry.name for entry in self._listed() if not entry.problem)
+            names = ", ".join(name for name, entry in known.items() if not entry.problem)
             raise InputError(
                 f"The scenarios here are {names}; a simulator that listens beyond its own "
                 "computer loads no other folder."

@@ -142,10 +142,8 @@ class SimulatorServer:
         self._control_loop.subscribe(trial_log(loop))
         tasks = [loop.create_task(link.beat())]
         stop = asyncio.Event()
-        presenter = self._make_presenter(link, stop) if self._options.has_views else None
-        self._presenter = presenter
-        views = None if presenter is None else self._make_view_server(presenter, on_ready)
-        window = None
+        views = self._make_views(link, stop, on_ready) if self._options.has_views else None
+        presenter, window = self._presenter, None
         # Garbage collection between two ticks stays short if it skips everything loaded so far.
         gc.collect()
         gc.freeze()
@@ -211,9 +209,14 @@ class SimulatorServer:
             "resume or abort it"
         )
 
-    def _make_presenter(self, link: SimulatorLink, stop: asyncio.Event) -> RunningPresenter:
+    def _make_views(
+        self, link: SimulatorLink, stop: asyncio.Event, announce: Callable[[str], None]
+    ) -> ViewServer:
+        """Make the presenter, and the server that shows it."""
+        # Before the control loop ticks: the import of aiohttp would make ticks late.
         from rastrainer_simulator.flow.running_presenter import RunningPresenter
         from rastrainer_simulator.flow.session.services import FlowServices
+        from rastrainer_simulator.net.views.view_server import ViewServer
 
         services = FlowServices(
             config=self._config,
@@ -230,18 +233,7 @@ class SimulatorServer:
         running = RunningPresenter(self._control_loop, services, self._options.has_gamepad)
         guidance, loop = running.presenter.trace_guidance, self._control_loop
         link.publisher.is_guided = lambda: guidance(loop.latest).covered_mm > 0.0
-        return running
-
-    def _use_settings(self, settings: SimulationSettings) -> Future[Answer]:
-        self._settings = settings
-        return self._scenarios.reload()
-
-    def _make_view_server(
-        self, running: RunningPresenter, announce: Callable[[str], None]
-    ) -> ViewServer:
-        # Before the control loop ticks: the import of aiohttp would make ticks late.
-        from rastrainer_simulator.net.views.view_server import ViewServer
-
+        self._presenter = running
         return ViewServer(
             running.presenter.shown,
             running.presenter,
@@ -252,6 +244,10 @@ class SimulatorServer:
             self._config,
             self._pin,
         )
+
+    def _use_settings(self, settings: SimulationSettings) -> Future[Answer]:
+        self._settings = settings
+        return self._scenarios.reload()
 
     def _make_simulation(self, scenario: Path | None) -> Simulation:
         setup = load_setup(scenario, self._settings, robot_meshes=self._options.robot_meshes)

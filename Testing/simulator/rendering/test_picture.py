@@ -13,7 +13,7 @@ from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Camera, OperatingTable, Stand
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.rendering.lighting import Shadows
-from rastrainer_simulator.rendering.picture import SceneMoment, render_picture, write_png
+from rastrainer_simulator.rendering.picture import looks_of, posed, render_picture, write_png
 from rastrainer_simulator.rendering.procedure_picture import INK, bar_mm, paint_scale
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import load_robot
@@ -55,7 +55,7 @@ def picture(tmp_path_factory, ball, head_to_world):
     One point is done, one is next, one waits.
     """
     robot = load_robot()
-    links = make_kinematics(robot).links(np.array(robot.home))
+    poses = posed(robot, robot.home, head_to_world, ball)
     base = (head_to_world @ np.append(ball.base, 1.0))[:3] / MM_PER_M
     nodes = [
         *robot_nodes(robot),
@@ -67,10 +67,9 @@ def picture(tmp_path_factory, ball, head_to_world):
 
     def render(proximity=Proximity.FREE, **arguments) -> np.ndarray:
         path = tmp_path_factory.mktemp("pictures") / "robot.png"
-        done = frozenset({"1"})
-        moment = SceneMoment(links, head_to_world, ball.base, done, "2", proximity)
+        looks = looks_of(["1"], "2", proximity)
         arguments.setdefault("shadows", Shadows.SMALL)
-        render_picture(path, nodes, robot, moment, size=SIZE, **arguments)
+        render_picture(path, nodes, poses, looks, size=SIZE, **arguments)
         return read_png(path).astype(int)
 
     return render

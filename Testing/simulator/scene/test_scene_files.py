@@ -10,10 +10,10 @@ from rastrainer_simulator.scene import scene_files as scene_files_module
 from rastrainer_simulator.scene.scene_files import (
     KEPT_FILES,
     SceneFiles,
-    cache_folder,
     forget_oldest,
-    read_scene,
+    gzipped_scene,
     scene_key,
+    scenes_folder,
     setup_digest,
 )
 from Testing.simulator.scene.glb_reader import Glb
@@ -37,7 +37,7 @@ def no_process(monkeypatch):
 def test_a_scene_is_built_in_a_separate_process_and_named_after_its_content(built):
     folder, file = built
     assert [path.suffix for path in folder.iterdir()] == [".glb"]
-    content = read_scene(file)
+    content = file.path.read_bytes()
     assert Glb(content).children("head") == ["skin"]
 
 
@@ -51,14 +51,15 @@ def test_a_scene_built_once_is_available_the_next_time(built, setup):
 
 def test_a_broken_file_in_the_cache_is_rebuilt(built, setup, monkeypatch):
     folder, file = built
-    content = read_scene(file)
+    content = file.path.read_bytes()
 
     async def build(_files, _setup, _task, path):
         path.write_bytes(content)
 
     monkeypatch.setattr(SceneFiles, "_build", build)
     file.path.write_bytes(content[:-1])
-    assert read_scene(file) is None
+    with pytest.raises(LookupError):
+        gzipped_scene(file)
     assert asyncio.run(SceneFiles(folder).scene(setup, "")) == file
 
 
@@ -99,7 +100,7 @@ def test_an_unwritable_cache_is_temporarily_replaced(tmp_path, monkeypatch):
     for variable in ("XDG_CACHE_HOME", "LOCALAPPDATA"):
         monkeypatch.setenv(variable, str(tmp_path))
     monkeypatch.setattr(Path, "home", lambda: tmp_path)
-    folder = cache_folder()
+    folder = scenes_folder()
     assert folder.is_dir()
     assert not folder.is_relative_to(tmp_path)
     folder.rmdir()

@@ -5,8 +5,9 @@ from scipy.spatial import cKDTree
 
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, read_head_mesh
 from rastrainer_simulator.authoring.task_set import smooth_places
+from rastrainer_simulator.scene.nodes import ARROW
 from rastrainer_simulator.scene.skin_marks import (
-    ARROW_LIFT,
+    LIFTS,
     NUMBER_HEIGHT,
     RIM_RADIUS,
     skin_marks,
@@ -26,7 +27,7 @@ def ball() -> HeadMesh:
 
 
 def test_a_number_is_readable_from_outside_with_the_patients_superior_up(ball):
-    points = skin_marks(ball, FRONT[:1], ("1L",))[0].number.points
+    points = 1000.0 * skin_marks(ball, FRONT[:1], ("1L",))[0]["number"].vertices
     assert np.ptp(points[:, 2]) == pytest.approx(NUMBER_HEIGHT, rel=0.05)
     # Seen from in front of the face, the patient's right (+x) is on the left.
     foot = points[points[:, 2] < points[:, 2].min() + 0.15 * NUMBER_HEIGHT]
@@ -38,7 +39,7 @@ def test_overlapping_fiducials_get_no_arrow_between_them(ball):
     turn = 2 * RIM_RADIUS / RADIUS
     close = RADIUS * np.array([[0.0, 1.0, 0.0], [np.sin(turn), np.cos(turn), 0.0]])
     marks = skin_marks(ball, close, ("1", "2"))
-    assert [mark.arrow for mark in marks] == [None, None]
+    assert not any("arrow" in mark for mark in marks)
 
 
 @pytest.fixture(scope="module")
@@ -78,42 +79,44 @@ def apart(first: np.ndarray, second: np.ndarray) -> float:
 
 
 def places_on(shape) -> np.ndarray:
-    """Return the vertices and the middles of the triangles: less than 1.5 mm between them."""
-    return np.concatenate([shape.points, shape.points[shape.triangles].mean(axis=1)])
+    """Return the vertices and the middles of the triangles, mm: less than 1.5 between them."""
+    points = 1000.0 * shape.vertices
+    return np.concatenate([points, points[shape.triangles].mean(axis=1)])
 
 
 def test_no_number_touches_an_arrow_a_fiducial_or_another_number(marks):
-    arrows = np.concatenate([places_on(mark.arrow) for mark in marks if mark.arrow])
-    rims = np.concatenate([places_on(mark.rim) for mark in marks])
-    for mark in marks:
-        own = places_on(mark.number)
+    arrows = np.concatenate([places_on(mark["arrow"]) for mark in marks if "arrow" in mark])
+    rims = np.concatenate([places_on(mark["rim"]) for mark in marks])
+    for number, mark in enumerate(marks):
+        own = places_on(mark["number"])
         assert apart(own, arrows) > 1.0
         assert apart(own, rims) > 1.0
-        for other in marks[: marks.index(mark)]:
-            assert apart(own, places_on(other.number)) > 4.0
+        for other in marks[:number]:
+            assert apart(own, places_on(other["number"])) > 4.0
 
 
 def test_arrows_touch_no_fiducials_and_are_clear_of_each_other(marks):
-    arrows = [mark.arrow for mark in marks if mark.arrow]
+    arrows = [mark["arrow"] for mark in marks if "arrow" in mark]
     for index, arrow in enumerate(arrows):
         for mark in marks:
-            assert apart(places_on(arrow), places_on(mark.rim)) > 0.7
+            assert apart(places_on(arrow), places_on(mark["rim"])) > 0.7
         for other in arrows[:index]:
             assert apart(places_on(arrow), places_on(other)) > 3.0
 
 
 def test_every_arrow_starts_at_its_fiducial_and_points_to_the_next(marks, points):
-    assert marks[-1].arrow is None
+    assert "arrow" not in marks[-1]
     for start, goal, mark in zip(points, points[1:], marks, strict=False):
-        ribbon = mark.arrow.points.reshape(-1, 5, 3).mean(axis=1)
+        places = 1000.0 * mark["arrow"].vertices
+        ribbon = places.reshape(-1, 5, 3).mean(axis=1)
         assert np.linalg.norm(ribbon[0] - start) < RIM_RADIUS + 2.0
         assert np.linalg.norm(ribbon[-1] - ribbon[0]) >= 5.0
         assert np.linalg.norm(goal - ribbon[-1]) < np.linalg.norm(goal - ribbon[0])
-        tip_width = np.linalg.norm(mark.arrow.points[-1] - mark.arrow.points[-5])
+        tip_width = np.linalg.norm(places[-1] - places[-5])
         assert tip_width < 0.1, "it comes to a point"
 
 
 def test_arrows_lie_on_the_skin(marks, head):
     for mark in marks[:-1:3]:
-        for place in mark.arrow.points[::12]:
-            assert nearest_on_mesh(head, place).distance < ARROW_LIFT + 0.5
+        for place in 1000.0 * mark["arrow"].vertices[::12]:
+            assert nearest_on_mesh(head, place).distance < LIFTS[ARROW] + 0.5

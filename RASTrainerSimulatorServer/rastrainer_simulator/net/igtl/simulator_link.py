@@ -10,7 +10,7 @@ import contextlib
 import itertools
 import json
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
@@ -37,11 +37,7 @@ from rastrainer.study.protocol.steps import StepAnswers
 from rastrainer.trial.record import AbortedTrial, TrialRecord
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
 from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher, told
-from rastrainer_simulator.net.igtl.registration_check import (
-    CHECKED,
-    SubmitCommand,
-    submit_checked,
-)
+from rastrainer_simulator.net.igtl.registration_check import CHECKED, SubmitCommand, submit_checked
 from rastrainer_simulator.net.igtl.server import ClientConnection, IgtlServer
 from rastrainer_simulator.net.limits import LinkLimits
 from rastrainer_simulator.state import Answer, SimulationState, answered
@@ -60,80 +56,63 @@ OFFERS_AT_ONCE = 8
 _NUMBERS = 2**32
 
 
-@dataclass
-class _CommandQueue:
-    """One client's commands: how many the simulation has, and which are waiting.
+class ClientCommands:
+    """Answers every COMMAND of a client with an RTS_COMMAND, and never waits for one itself.
 
-    While a registration is being checked, the commands after it wait.
+    The commands are carried out in order. Only a few of them are submitted at a time, so that no
+    client can crowd the others out of a tick. While a registration is being checked, the commands
+    after it wait.
     """
 
-    running: int = 0
-    is_checking: bool = False
-    waiting: deque[tuple[Command, Mapping[str, Any]]] = field(default_factory=deque)
-    waiting_bytes: int = 0
-
-
-class CommandHandler:
-    """Answers every COMMAND with an RTS_COMMAND, and never waits for one itself.
-
-    A client's commands are carried out in order. Only a few of them are submitted at a time, so
-    that no client can crowd the others out of a tick.
-    """
-
-    def __init__(self, submit: Submit):
+    def __init__(self, connection: ClientConnection, submit: Submit):
         """`submit` takes checked arguments and returns the answer's future immediately."""
+        self._connection = connection
         self._submit = submit
         self._loop = asyncio.get_running_loop()
-        self._queues: dict[ClientConnection, _CommandQueue] = {}
+        self._running = 0
+        self._is_checking = False
+        self._waiting: deque[tuple[Command, Mapping[str, Any]]] = deque()
+        self._waiting_bytes = 0
 
-    def handle(self, connection: ClientConnection, command: Command) -> None:
+    def handle(self, command: Command) -> None:
         """Check a command and carry it out in its turn."""
         try:
             arguments = check_arguments(command.name, decode_json_object(command.body))
+            is_full = len(self._waiting) >= WAITING_COMMANDS
+            if is_full or self._waiting_bytes > WAITING_COMMAND_BYTES:
+                raise InputError("Too many commands wait: wait for their answers.")
         except InputError as error:
-            self._reply(connection, command, Answer(0, False, str(error)))
+            self._reply(command, Answer(0, False, str(error)))
             return
-        queue = self._queues.setdefault(connection, _CommandQueue())
-        is_full = len(queue.waiting) >= WAITING_COMMANDS
-        if is_full or queue.waiting_bytes > WAITING_COMMAND_BYTES:
-            sentence = "Too many commands wait: wait for their answers."
-            self._reply(connection, command, Answer(0, False, sentence))
-            return
-        queue.waiting.append((command, arguments))
-        queue.waiting_bytes += len(command.body)
-        self._submit_waiting(connection, queue)
+        self._waiting.append((command, arguments))
+        self._waiting_bytes += len(command.body)
+        self._submit_waiting()
 
-    def forget(self, connection: ClientConnection) -> None:
-        self._queues.pop(connection, None)
-
-    def _submit_waiting(self, connection: ClientConnection, queue: _CommandQueue) -> None:
-        while queue.waiting and queue.running < COMMANDS_AT_ONCE:
-            is_checked = queue.waiting[0][0].name in CHECKED
-            if queue.is_checking or (is_checked and queue.running):
+    def _submit_waiting(self) -> None:
+        while self._waiting and self._running < COMMANDS_AT_ONCE:
+            is_checked = self._waiting[0][0].name in CHECKED
+            if self._is_checking or (is_checked and self._running):
                 return
-            queue.is_checking = is_checked
-            command, arguments = queue.waiting.popleft()
-            queue.waiting_bytes -= len(command.body)
-            queue.running += 1
-            answered = partial(self._answered, connection, command)
-            future = self._submit(connection, command.name, arguments)
+            self._is_checking = is_checked
+            command, arguments = self._waiting.popleft()
+            self._waiting_bytes -= len(command.body)
+            self._running += 1
+            answered = partial(self._answered, command)
+            future = self._submit(self._connection, command.name, arguments)
             future.add_done_callback(partial(self._loop.call_soon_threadsafe, answered))
 
-    def _answered(
-        self, connection: ClientConnection, command: Command, done: Future[Answer]
-    ) -> None:
-        queue = self._queues.get(connection)
-        if queue is None:
+    def _answered(self, command: Command, done: Future[Answer]) -> None:
+        if self._connection.closed.is_set():
             return
-        queue.running -= 1
-        queue.is_checking = False
+        self._running -= 1
+        self._is_checking = False
         answer = Answer(0, False, "The simulator could not carry the command out.")
         if not done.cancelled() and done.exception() is None:
             answer = done.result()
-        self._reply(connection, command, answer)
-        self._submit_waiting(connection, queue)
+        self._reply(command, answer)
+        self._submit_waiting()
 
-    def _reply(self, connection: ClientConnection, command: Command, answer: Answer) -> None:
+    def _reply(self, command: Command, answer: Answer) -> None:
         """Send an answer; its body repeats the sentence for clients that read no metadata.
 
         A refusal by the rules of a trial has a code and values besides the sentence.
@@ -147,7 +126,7 @@ class CommandHandler:
         name = command.name if command.name.isascii() and command.name.isprintable() else ""
         body = json.dumps(data, allow_nan=False)
         reply = CommandReply(command.command_id, name, body)
-        connection.send(Outgoing(Message(DeviceName.COMMAND, reply, metadata)))
+        self._connection.send(Outgoing(Message(DeviceName.COMMAND, reply, metadata)))
 
 
 class SimulatorLink:
@@ -189,16 +168,17 @@ class SimulatorLink:
         self._health = health
         self._answers = answers
         self._slicer_left = slicer_left
-        self._commands = CommandHandler(self._submit)
+        self._commands: dict[ClientConnection, ClientCommands] = {}
 
     def connected(self, connection: ClientConnection) -> None:
+        self._commands[connection] = ClientCommands(connection, self._submit)
         connection.send_latest(self._heartbeat())
         self.publisher.subscribe(connection, PoseSubscription())
 
     def received(self, connection: ClientConnection, message: Message) -> None:
         content = message.content
         if type(content) is Command:
-            self._commands.handle(connection, content)
+            self._commands[connection].handle(content)
         elif type(content) is Transform and message.device not in _OWN_DEVICES:
             # A name that cannot be sent back, as one without ASCII, gets no echo.
             with contextlib.suppress(InputError):
@@ -206,7 +186,7 @@ class SimulatorLink:
 
     def disconnected(self, connection: ClientConnection) -> None:
         self.publisher.unsubscribe(connection)
-        self._commands.forget(connection)
+        del self._commands[connection]
         if connection.scores and not self.is_slicer_connected:
             self._slicer_left()
 
@@ -286,35 +266,30 @@ class SimulatorLink:
         return Answer(0, True, data={**spoken, **requested})
 
 
+@dataclass
 class TrialOffers:
-    """Offers the trials that no client has acknowledged to the clients that score.
+    """Offers the trials that no client has acknowledged, oldest first, to the clients that score.
 
     Clients keep trials by their UUID, so an offer that arrives twice does no harm.
     """
 
-    def __init__(
-        self,
-        unacknowledged: Callable[[], Sequence[AbortedTrial | TrialRecord]],
-        clients: Callable[[], Iterable[ClientConnection]],
-    ):
-        """`unacknowledged` returns the waiting records, oldest first; `clients` the connections."""
-        self._unacknowledged = unacknowledged
-        self._clients = clients
-        self._numbers = itertools.count(1)
-        self._start = 0
+    unacknowledged: Callable[[], Sequence[AbortedTrial | TrialRecord]]
+    clients: Callable[[], Iterable[ClientConnection]]
+    _numbers: Iterator[int] = field(default_factory=lambda: itertools.count(1))
+    _start: int = 0
 
     def offer_newest(self) -> None:
         """Offer the aborted trials, then the last registered trial.
 
         In a study, a client counts a repeat only if it knows which trials were aborted before.
         """
-        records = self._unacknowledged()
+        records = self.unacknowledged()
         aborted = [record for record in records[:-1] if isinstance(record, AbortedTrial)]
         self._offer((*aborted[-OFFERS_AT_ONCE:], *records[-1:]))
 
     def repeat(self) -> None:
         """Offer some again, others in the next round, so that none delays the rest."""
-        records = tuple(self._unacknowledged())
+        records = tuple(self.unacknowledged())
         start = self._start if self._start < len(records) else 0
         self._offer((records[start:] + records[:start])[:OFFERS_AT_ONCE])
         self._start = start + OFFERS_AT_ONCE if len(records) > OFFERS_AT_ONCE else 0
@@ -327,7 +302,7 @@ class TrialOffers:
             name = CommandName.TRIAL_ABORTED if is_aborted else CommandName.TRIAL_COMPLETED
             command = Command(number, name, body)
             offer = Outgoing(Message(DeviceName.COMMAND, command))
-            for connection in self._clients():
+            for connection in self.clients():
                 if connection.scores:
                     connection.offered.add(record.trial_id)
                     connection.send(offer)

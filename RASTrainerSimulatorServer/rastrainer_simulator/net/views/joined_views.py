@@ -86,29 +86,27 @@ class JoinedViews:
     async def serve(self, stream: web.WebSocketResponse, hello: Hello, is_local: bool) -> None:
         """Have a view take part, or a spectator or a board watch, until it leaves."""
         view = ViewSocket(next(self._numbers), stream, hello, self._presenter, is_local)
-        if hello.kind == "board":
+        is_board = hello.kind == "board"
+        if is_board:
             # First the others: then all know the same, and the new one receives nothing twice.
             self._tell_boards(self._source.latest)
-            self._boards[view.number] = view
-            try:
-                welcome = WelcomeNews(PROTOCOL, view.number, ())
-                view.outbox.put_latest(WelcomeNews.type, message_text(welcome))
-                view.outbox.put_latest(SeatNews.type, self._seat)
-                await view.serve()
-            finally:
-                del self._boards[view.number]
-            return
-        self._views[view.number] = view
+        joined = self._boards if is_board else self._views
+        joined[view.number] = view
         try:
             if not view.is_spectator:
                 self._presenter.view_joined(view.number, hello)
-            self._send_all(view)
+            welcome = WelcomeNews(PROTOCOL, view.number, () if is_board else BODIES)
+            view.outbox.put_latest(WelcomeNews.type, message_text(welcome))
+            if is_board:
+                view.outbox.put_latest(SeatNews.type, self._seat)
+            else:
+                self._send_all(view)
             if self._watching is None:
                 self._watching = asyncio.create_task(self._release_silent())
             await view.serve()
         finally:
             view.held.release()
-            del self._views[view.number]
+            del joined[view.number]
             if not view.is_spectator:
                 self._presenter.view_left(view.number)
 
@@ -155,10 +153,8 @@ class JoinedViews:
     def _send_all(self, view: ViewSocket) -> None:
         now = self._source.latest
         self._look_for_scene(now)
-        put = view.outbox.put_latest
-        put(WelcomeNews.type, message_text(WelcomeNews(PROTOCOL, view.number, BODIES)))
         if self._scene:
-            put(SceneNews.type, self._scene)
+            view.outbox.put_latest(SceneNews.type, self._scene)
         _put_control(view, self._presenter.control)
         self._send_screen(self._presenter.screen, (view,))
         self._send_state(now, (view,))

@@ -39,7 +39,7 @@ from rastrainer_simulator.presentation.messages import (
     read_view_input,
 )
 from rastrainer_simulator.presentation.presenter import Presenter
-from rastrainer_simulator.scene.scene_files import SceneFiles, cache_folder, gzipped_scene
+from rastrainer_simulator.scene.scene_files import SceneFiles, gzipped_scene, scenes_folder
 
 FOREVER = "private, max-age=31536000, immutable"
 FULL_SIZE = "X-File-Size"
@@ -86,7 +86,7 @@ class ViewServer:
         self.addresses: list[str] = []
         self.sessions = Sessions(None if config is None else config / BOARDS_FILE)
         self.port = 0
-        self._scenes = SceneFiles(cache_folder(), robot_meshes)
+        self._scenes = SceneFiles(scenes_folder(), robot_meshes)
         self._views = JoinedViews(source, presenter, self._scenes, self._limits)
         self._streams: Counter[ViewRole] = Counter()
         self._page = page_folder()

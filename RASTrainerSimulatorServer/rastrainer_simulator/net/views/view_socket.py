@@ -44,7 +44,8 @@ NOT_TEXT = "Messages must be text."
 ONLY_WATCHES = f"A spectator drives nothing: it may send {Alive.type} and nothing else."
 MESSAGES_PER_S = 500.0
 """That a view may send on average, and at most that many at once."""
-MAX_KEYS = 32
+MAX_HELD = 32
+"""Keys, pads and sticks that one view holds at a time; further keys are ignored."""
 SHIFT_KEYS = frozenset(("ShiftLeft", "ShiftRight"))
 """Held with others: the slow motion, by default."""
 MAX_WAITING_EVENTS = 256
@@ -156,10 +157,9 @@ class HeldInput:
 
     def __init__(self, view: int, presenter: Presenter) -> None:
         self._receive = partial(presenter.receive, view)
-        self._keys: dict[str, None] = {}
         self._held_in_silence: set[str] = set()
-        # What held sticks, or a pad, send once they are let go.
-        self._released: dict[str, tuple[Any, ...]] = {}
+        # What each held key, a pad or sticks send once they are let go, by kind and key.
+        self._released: dict[tuple[str, str], tuple[Any, ...]] = {}
 
     def take(self, kind: str, *values: Any) -> None:
         """Process a message of a pad, of sticks, or of a key.
@@ -169,37 +169,32 @@ class HeldInput:
         move the arm fast because a computer draws slowly.
         """
         if kind == KeyInput.type:
-            code, is_down, _text = values
+            code, is_held, _text = values
             self._held_in_silence.discard(code)
-            if is_down and self._held_in_silence:
+            if is_held and self._held_in_silence:
                 self.take(kind, self._held_in_silence.pop(), True, "")
-            if not is_down:
-                self._keys.pop(code, None)
-            elif code in self._keys or len(self._keys) < MAX_KEYS:
-                self._keys[code] = None
-            else:
+            released: tuple[Any, ...] = code, False, ""
+            if is_held and (kind, code) not in self._released and len(self._released) >= MAX_HELD:
                 return
         else:
+            code = ""
             # The angle at which a headset looks holds nothing.
-            held = (any(each) if isinstance(each, tuple) else each for each in values[:3])
-            self._released.pop(kind, None)
-            if any(held):
-                self._released[kind] = tuple(
-                    (0.0,) * len(each) if isinstance(each, tuple) else type(each)()
-                    for each in values
-                )
+            is_held = any(any(each) if isinstance(each, tuple) else each for each in values[:3])
+            zeros = (((0.0,) * len(x) if isinstance(x, tuple) else type(x)()) for x in values)
+            released = tuple(zeros)
+        self._released.pop((kind, code), None)
+        if is_held:
+            self._released[kind, code] = released
         self._receive(kind, *values)
 
     def release(self, is_silent: bool = False) -> None:
         """Release everything that is held, since the view has left or is silent."""
-        if not (self._keys or self._released):
+        if not self._released:
             return
-        shifts = set(SHIFT_KEYS.intersection(self._keys)) if is_silent else set()
-        for code in tuple(self._keys):
-            self.take(KeyInput.type, code, False, "")
-        self._held_in_silence = shifts
-        for kind, values in tuple(self._released.items()):
+        held = {code for kind, code in self._released if kind == KeyInput.type}
+        for (kind, _code), values in tuple(self._released.items()):
             self.take(kind, *values)
+        self._held_in_silence = held & SHIFT_KEYS if is_silent else set()
 
 
 class Outbox:

@@ -10,7 +10,7 @@ from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.views import view_server as view_server_module
 from rastrainer_simulator.presentation.messages import ViewRole
-from rastrainer_simulator.scene.scene_files import NO_TASK, SceneFiles, cache_folder
+from rastrainer_simulator.scene.scene_files import NO_TASK, SceneFiles, scenes_folder
 from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.simulator.net.views.served import ServedViews, ViewClient
 
@@ -20,7 +20,7 @@ def own_cache(tmp_path_factory, setup):
     """Keep the scenes of the tests out of the user's cache; the one without a task is there."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
-        asyncio.run(SceneFiles(cache_folder()).scene(setup, NO_TASK))
+        asyncio.run(SceneFiles(scenes_folder()).scene(setup, NO_TASK))
         yield
 
 
