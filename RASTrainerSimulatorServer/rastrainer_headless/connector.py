@@ -32,7 +32,7 @@ from rastrainer.igtl.message import (
     read_header,
     unpack,
 )
-from rastrainer.slicer.link.connection import ConnectorKit
+from rastrainer.slicer.link.link import ConnectorKit
 from rastrainer.slicer.scene.nodes import ORIGINAL_NAME, decodedText
 from rastrainer_headless.scene import NODE_CLASS, adoptOrCreateNode, asSlicerHas, updateNode
 
