@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, fields
+from collections.abc import Collection, Mapping
+from dataclasses import InitVar, dataclass, field, fields
 from typing import Annotated, Any, Literal, cast
 
 from rastrainer.errors import InputError
@@ -228,47 +228,36 @@ class GetJournalArguments:
     start: Annotated[int, whole_number(0, MAX_JOURNAL_BYTES), "in bytes"] = 0
 
 
+@dataclass(eq=False, repr=False)
 class CommandEntry(str):
     """A command that clients may send: its name, and all that both sides have to know about it.
 
-    Effect, answer and texts in the annotations of the arguments are for docs/openigtlink.md.
+    `about` is the record of its arguments, with the effect as docstring, or the effect. Effect,
+    answer and texts in the annotations of the arguments are for docs/openigtlink.md.
     """
 
-    effect: str
-    arguments: type[Any]
-    answer: str
-    refused: Mapping[Phase, str] | None
+    name: str
+    about: InitVar[type[Any] | str]
+    answer: str = ""
+    effect: str = field(init=False)
+    arguments: type[Any] = field(default=NoArguments, kw_only=True)
+    refused: Mapping[Phase, str] | None = field(default=None, kw_only=True)
     """Code of the refusal in each phase in which it is wrong; None if it does not go to the
     simulation."""
-    entries: frozenset[str]
+    entries: Collection[str] = field(default=(), kw_only=True)
     """Kinds of journal entries that show that it was carried out: by them a trial is resumed."""
-    is_stateless: bool
+    is_stateless: bool = field(default=False, kw_only=True)
     """Whether it does not change the trial. All others are carried out one at a time."""
-    is_for_past_trials: bool
-    is_for_scorers: bool
+    is_for_past_trials: bool = field(default=False, kw_only=True)
+    is_for_scorers: bool = field(default=False, kw_only=True)
     """Whether only clients that register and score trials may send it."""
 
-    def __new__(
-        cls,
-        name: str,
-        about: type[Any] | str,
-        answer: str = "",
-        *,
-        arguments: type[Any] = NoArguments,
-        refused: Mapping[Phase, str] | None = None,
-        entries: Iterable[str] = (),
-        is_stateless: bool = False,
-        is_for_past_trials: bool = False,
-        is_for_scorers: bool = False,
-    ) -> CommandEntry:
-        """`about` is the record of its arguments, with the effect as docstring, or the effect."""
-        self = super().__new__(cls, name)
-        self.arguments = arguments if isinstance(about, str) else about
+    def __new__(cls, name: str, *_values: Any, **_named: Any) -> CommandEntry:
+        return super().__new__(cls, name)
+
+    def __post_init__(self, about: type[Any] | str) -> None:
+        self.arguments = self.arguments if isinstance(about, str) else about
         self.effect = about if isinstance(about, str) else " ".join(str(about.__doc__).split())
-        self.answer, self.refused, self.entries = answer, refused, frozenset(entries)
-        self.is_stateless, self.is_for_past_trials = is_stateless, is_for_past_trials
-        self.is_for_scorers = is_for_scorers
-        return self
 
     def __reduce__(self) -> tuple[type[str], tuple[str]]:
         """Have copies be plain names."""
