@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping, Set
 from dataclasses import InitVar, dataclass, field, fields
 from typing import Annotated, Any, Literal, cast
 
@@ -244,7 +244,7 @@ class CommandEntry(str):
     refused: Mapping[Phase, str] | None = field(default=None, kw_only=True)
     """Code of the refusal in each phase in which it is wrong; None if it does not go to the
     simulation."""
-    entries: Collection[str] = field(default=(), kw_only=True)
+    entries: Set[str] = field(default=frozenset(), kw_only=True)
     """Kinds of journal entries that show that it was carried out: by them a trial is resumed."""
     is_stateless: bool = field(default=False, kw_only=True)
     """Whether it does not change the trial. All others are carried out one at a time."""
@@ -292,7 +292,7 @@ _STATE = "the state of the trial"
 
 def _step(name: str, effect: str, phase: Phase) -> CommandEntry:
     """Return a command that leads a procedure on from a phase."""
-    return CommandEntry(name, effect, _STATE, refused=_but_in(phase), entries=("phase",))
+    return CommandEntry(name, effect, _STATE, refused=_but_in(phase), entries={"phase"})
 
 
 class CommandName:
@@ -321,7 +321,7 @@ class CommandName:
             **dict.fromkeys(OPEN_PHASES, "trial is open"),
             **dict.fromkeys(PROCEDURE_PHASES, "procedure is open"),
         },
-        entries=("phase",),
+        entries={"phase"},
     )
     JOG = CommandEntry("Jog", JogArguments, refused=_ARM_IS_HELD, is_stateless=True)
     MOVE_TIP_TO = CommandEntry(
@@ -337,35 +337,35 @@ class CommandName:
             Phase.COMPLETE: "all touched",
             **{p: code for p, code in _AT_THE_PROCEDURE.items() if p is not Phase.VERIFYING},
         },
-        entries=("touch", "checkpoint", "rejected"),
+        entries={"touch", "checkpoint", "rejected"},
     )
     TRACE = CommandEntry(
         "Trace",
         TraceArguments,
         "`on`, `kept` (points so far), `strokes`",
         refused=AFTER_THE_TOUCHES,
-        entries=("stroke",),
+        entries={"stroke"},
     )
     UNDO = CommandEntry(
         "Undo",
         "Removes the last touch or stroke.",
         _STATE,
         refused=AFTER_THE_TOUCHES,
-        entries=("undo", "stroke"),
+        entries={"undo", "stroke"},
     )
     REGISTER = CommandEntry(
         "Register",
         "Ends the touches.",
         _STATE,
         refused={**AFTER_THE_TOUCHES, Phase.RUNNING: "not all touched"},
-        entries=("phase",),
+        entries={"phase"},
     )
     USE_REGISTRATION = CommandEntry(
         "UseRegistration",
         UseRegistrationArguments,
         f"{_STATE}, `registration`; never the truth",
         refused=_but_in(Phase.VERIFYING),
-        entries=("phase",),
+        entries={"phase"},
         is_for_scorers=True,
     )
     ACCEPT_REGISTRATION = _step(
@@ -398,7 +398,7 @@ class CommandName:
         "Stops the trial's time, and the arm.",
         _STATE,
         refused={**_OUTSIDE_A_TRIAL, Phase.PAUSED: "already paused", Phase.COMPLETE: "all touched"},
-        entries=("phase",),
+        entries={"phase"},
     )
     RESUME = CommandEntry(
         "Resume",
@@ -410,7 +410,7 @@ class CommandName:
             Phase.RUNNING: "not paused",
             Phase.COMPLETE: "all touched",
         },
-        entries=("phase",),
+        entries={"phase"},
     )
     SET_CAMERA = CommandEntry("SetCamera", SetCameraArguments, refused={}, is_stateless=True)
     SUBMIT_REGISTRATION = CommandEntry(
