@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Set
-from dataclasses import InitVar, dataclass, field, fields
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, fields
 from typing import Annotated, Any, Literal, cast
 
 from rastrainer.errors import InputError
@@ -228,36 +228,47 @@ class GetJournalArguments:
     start: Annotated[int, whole_number(0, MAX_JOURNAL_BYTES), "in bytes"] = 0
 
 
-@dataclass(eq=False, repr=False)
 class CommandEntry(str):
     """A command that clients may send: its name, and all that both sides have to know about it.
 
-    `about` is the record of its arguments, with the effect as docstring, or the effect. Effect,
-    answer and texts in the annotations of the arguments are for docs/openigtlink.md.
+    Effect, answer and texts in the annotations of the arguments are for docs/openigtlink.md.
     """
 
-    name: str
-    about: InitVar[type[Any] | str]
-    answer: str = ""
-    effect: str = field(init=False)
-    arguments: type[Any] = field(default=NoArguments, kw_only=True)
-    refused: Mapping[Phase, str] | None = field(default=None, kw_only=True)
+    effect: str
+    arguments: type[Any]
+    answer: str
+    refused: Mapping[Phase, str] | None
     """Code of the refusal in each phase in which it is wrong; None if it does not go to the
     simulation."""
-    entries: Set[str] = field(default=frozenset(), kw_only=True)
+    entries: frozenset[str]
     """Kinds of journal entries that show that it was carried out: by them a trial is resumed."""
-    is_stateless: bool = field(default=False, kw_only=True)
+    is_stateless: bool
     """Whether it does not change the trial. All others are carried out one at a time."""
-    is_for_past_trials: bool = field(default=False, kw_only=True)
-    is_for_scorers: bool = field(default=False, kw_only=True)
+    is_for_past_trials: bool
+    is_for_scorers: bool
     """Whether only clients that register and score trials may send it."""
 
-    def __new__(cls, name: str, *_values: Any, **_named: Any) -> CommandEntry:
-        return super().__new__(cls, name)
-
-    def __post_init__(self, about: type[Any] | str) -> None:
-        self.arguments = self.arguments if isinstance(about, str) else about
+    def __new__(
+        cls,
+        name: str,
+        about: type[Any] | str,
+        answer: str = "",
+        *,
+        arguments: type[Any] = NoArguments,
+        refused: Mapping[Phase, str] | None = None,
+        entries: Iterable[str] = (),
+        is_stateless: bool = False,
+        is_for_past_trials: bool = False,
+        is_for_scorers: bool = False,
+    ) -> CommandEntry:
+        """`about` is the record of its arguments, with the effect as docstring, or the effect."""
+        self = super().__new__(cls, name)
+        self.arguments = arguments if isinstance(about, str) else about
         self.effect = about if isinstance(about, str) else " ".join(str(about.__doc__).split())
+        self.answer, self.refused, self.entries = answer, refused, frozenset(entries)
+        self.is_stateless, self.is_for_past_trials = is_stateless, is_for_past_trials
+        self.is_for_scorers = is_for_scorers
+        return self
 
     def __reduce__(self) -> tuple[type[str], tuple[str]]:
         """Have copies be plain names."""
@@ -292,7 +303,7 @@ _STATE = "the state of the trial"
 
 def _step(name: str, effect: str, phase: Phase) -> CommandEntry:
     """Return a command that leads a procedure on from a phase."""
-    return CommandEntry(name, effect, _STATE, refused=_but_in(phase), entries={"phase"})
+    return CommandEntry(name, effect, _STATE, refused=_but_in(phase), entries=("phase",))
 
 
 class CommandName:
@@ -321,7 +332,7 @@ class CommandName:
             **dict.fromkeys(OPEN_PHASES, "trial is open"),
             **dict.fromkeys(PROCEDURE_PHASES, "procedure is open"),
         },
-        entries={"phase"},
+        entries=("phase",),
     )
     JOG = CommandEntry("Jog", JogArguments, refused=_ARM_IS_HELD, is_stateless=True)
     MOVE_TIP_TO = CommandEntry(
@@ -337,35 +348,35 @@ class CommandName:
             Phase.COMPLETE: "all touched",
             **{p: code for p, code in _AT_THE_PROCEDURE.items() if p is not Phase.VERIFYING},
         },
-        entries={"touch", "checkpoint", "rejected"},
+        entries=("touch", "checkpoint", "rejected"),
     )
     TRACE = CommandEntry(
         "Trace",
         TraceArguments,
         "`on`, `kept` (points so far), `strokes`",
         refused=AFTER_THE_TOUCHES,
-        entries={"stroke"},
+        entries=("stroke",),
     )
     UNDO = CommandEntry(
         "Undo",
         "Removes the last touch or stroke.",
         _STATE,
         refused=AFTER_THE_TOUCHES,
-        entries={"undo", "stroke"},
+        entries=("undo", "stroke"),
     )
     REGISTER = CommandEntry(
         "Register",
         "Ends the touches.",
         _STATE,
         refused={**AFTER_THE_TOUCHES, Phase.RUNNING: "not all touched"},
-        entries={"phase"},
+        entries=("phase",),
     )
     USE_REGISTRATION = CommandEntry(
         "UseRegistration",
         UseRegistrationArguments,
         f"{_STATE}, `registration`; never the truth",
         refused=_but_in(Phase.VERIFYING),
-        entries={"phase"},
+        entries=("phase",),
         is_for_scorers=True,
     )
     ACCEPT_REGISTRATION = _step(
@@ -398,7 +409,7 @@ class CommandName:
         "Stops the trial's time, and the arm.",
         _STATE,
         refused={**_OUTSIDE_A_TRIAL, Phase.PAUSED: "already paused", Phase.COMPLETE: "all touched"},
-        entries={"phase"},
+        entries=("phase",),
     )
     RESUME = CommandEntry(
         "Resume",
@@ -410,7 +421,7 @@ class CommandName:
             Phase.RUNNING: "not paused",
             Phase.COMPLETE: "all touched",
         },
-        entries={"phase"},
+        entries=("phase",),
     )
     SET_CAMERA = CommandEntry("SetCamera", SetCameraArguments, refused={}, is_stateless=True)
     SUBMIT_REGISTRATION = CommandEntry(

@@ -10,7 +10,7 @@ from __future__ import annotations
 import contextlib
 import itertools
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -112,7 +112,7 @@ def meters(value_mm: float) -> float:
     return next((each for each in candidates if MM_PER_M * each == value_mm), near)
 
 
-_EFFECTS: Mapping[str, Set[str]] = {
+_EFFECTS: Mapping[str, frozenset[str]] = {
     **{each: each.entries for each in COMMANDS.values() if each.entries},
     CommandName.ABORT: frozenset({"phase"}),
     RECORDING_FAILED: frozenset({"phase"}),
