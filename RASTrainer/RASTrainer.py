@@ -253,7 +253,7 @@ class RASTrainerLogic(ScriptedLoadableModuleLogic):
 
     def __init__(self) -> None:
         from rastrainer.sections.application import callSoon, findPlaces
-        from rastrainer.slicer.link.connection import desktopKit
+        from rastrainer.slicer.link.link import desktopKit
         from rastrainer.sections.module_session import ModuleSession
         from rastrainer.slicer.settings import Settings
 

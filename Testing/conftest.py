@@ -69,7 +69,7 @@ def contained_failures():
 def _slicer_survives():
     """Fail a test in which a part of Slicer would have ended the program."""
     yield
-    crash = sys.modules.get("rastrainer_headless.peer_socket")
+    crash = sys.modules.get("rastrainer_headless.connector")
     crashes = crash.crashes[:] if crash else []
     if crash:
         crash.crashes.clear()

@@ -2,37 +2,63 @@
 
 The connector makes the very nodes that the real one makes, and has its oddities: the latest message
 of a device wins, the order across devices is lost, time stamps are dropped, and a lost connection
-is reported only after the next one.
+is reported only after the next one. What would crash Slicer is recorded.
 """
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import re
+import socket
 import threading
 import time
 import weakref
 from collections import deque
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, BinaryIO
 
 import slicer
 import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.igtl.content import ERROR_KEY, STATUS_KEY, SUCCESS, Command, CommandReply, Status
-from rastrainer.igtl.message import Header, Message, crc64, pack, unpack
-from rastrainer.slicer.link.connection import ConnectorKit
+from rastrainer.igtl.message import (
+    HEADER_BYTES,
+    Header,
+    Message,
+    crc64,
+    pack,
+    read_header,
+    unpack,
+)
+from rastrainer.slicer.link.link import ConnectorKit
 from rastrainer.slicer.scene.nodes import ORIGINAL_NAME, decodedText
-from rastrainer_headless.peer_socket import PeerSocket, recordCrash
 from rastrainer_headless.scene import NODE_CLASS, adoptOrCreateNode, asSlicerHas, updateNode
 
+RETRY_PERIOD_S = 0.1
+CRASHING_BODY = 2**31
+_VERSIONS = (b"\0\1", b"\0\2")
 _INCOMING = "incoming"
 _CRASHING_TYPE = re.compile(r"(GET|STT|STP|RTS)_")
 _DEVICE_NAME_FIELD = slice(14, 34)
 
 Raw = tuple[Header, bytes]
 WireText = str | bytes
+
+crashes: list[str] = []
+"""What would have crashed Slicer, one sentence each."""
+
+
+class CrashError(RuntimeError):
+    """Slicer would have crashed."""
+
+
+def recordCrash(sentence: str) -> CrashError:
+    """Record a crash, from any thread; the caller may raise the error."""
+    crashes.append(sentence)
+    logging.critical("Slicer would not have survived: %s", sentence)
+    return CrashError(sentence)
 
 
 class HeadlessCommand(vtk.vtkObject):
@@ -114,7 +140,9 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
     def __init__(self) -> None:
         self.SetSaveWithScene(False)
         self._address = ("", 0)
-        self._socket: PeerSocket | None = None
+        self._thread: threading.Thread | None = None
+        self._stopped = threading.Event()
+        self._peer: socket.socket | None = None
         self._state = self.StateOff
         self._nextCommandId = 1
         self._outgoing: dict[int, tuple[float, weakref.ref[HeadlessCommand]]] = {}
@@ -133,24 +161,29 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
     def SetServerPort(self, port: int) -> None:
         """Change the port; a client that runs connects there the next time it has no server."""
         self._address = (self._address[0], port)
-        if self._socket is not None:
-            self._socket.port = port
 
     def GetState(self) -> int:
         return self._state
 
     def Start(self) -> int:
-        if self._socket is not None:
+        if self._thread is not None:
             return 0
         self._state = self.StateWaitConnection
-        self._socket = PeerSocket(*self._address, self._receive, self._changeState)
+        self._stopped.clear()
+        self._thread = threading.Thread(target=self._keepConnected, daemon=True)
+        self._thread.start()
         return 1
 
     def Stop(self) -> int:
-        if self._socket is None:
+        if self._thread is None:
             return 0
-        self._socket.stop()
-        self._socket = None
+        self._stopped.set()
+        peer = self._peer
+        if peer is not None:
+            with contextlib.suppress(OSError):  # The other side may have been faster.
+                peer.shutdown(socket.SHUT_RDWR)
+        self._thread.join()
+        self._thread = None
         self._state = self.StateOff
         return 1
 
@@ -167,14 +200,14 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
             return
         command.commandId = self._nextCommandId
         self._nextCommandId += 1
-        if self._state != self.StateConnected or self._socket is None:
+        if self._state != self.StateConnected:
             return
         content = Command(
             command.commandId,
             decodedText(command.GetName()),
             decodedText(command.GetCommandContent()),
         )
-        if not self._socket.send(pack(Message("command", content, timestamp=0.0))):
+        if not self._send(pack(Message("command", content, timestamp=0.0))):
             command.SetCommandStatus(command.CommandFailed)
             return
         command.SetCommandStatus(command.CommandWaiting)
@@ -199,15 +232,44 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         for _key, raw in sorted(latest.items(), key=lambda item: item[0]):
             self._processData(*raw, modifications)
         for event in events:
-            if event == self.ConnectedEvent and self._socket is not None:
+            if event == self.ConnectedEvent:
                 # The odd STATUS that Slicer opens each connection with: no name, metadata `dummy`.
                 dummy = Message("none", Status(0), {"dummy": "dummy"}, timestamp=0.0)
                 greeting = bytearray(pack(dummy))
                 greeting[_DEVICE_NAME_FIELD] = bytes(20)
-                self._socket.send(bytes(greeting))
+                self._send(bytes(greeting))
             self.InvokeEvent(event)
         for node, wasModifying in reversed(modifications):
             node.EndModify(wasModifying)
+
+    def _send(self, data: bytes) -> bool:
+        """Send, blocking while the peer does not read; return whether it took everything."""
+        peer = self._peer
+        try:
+            if peer is not None:
+                peer.sendall(data)
+        except OSError:
+            return False
+        return peer is not None
+
+    def _keepConnected(self) -> None:
+        """Connect and receive until stopped; runs in its own thread."""
+        while not self._stopped.is_set():
+            with (
+                contextlib.suppress(OSError),
+                socket.create_connection(self._address, timeout=1.0) as peer,
+            ):
+                peer.settimeout(None)
+                peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+                self._peer = peer
+                self._changeState(True)
+                with contextlib.suppress(OSError, CrashError), peer.makefile("rb") as stream:
+                    while not self._stopped.is_set() and (message := _readMessage(stream)):
+                        self._receive(*message)
+                self._peer = None
+                if not self._stopped.is_set():
+                    self._changeState(False)
+            self._stopped.wait(RETRY_PERIOD_S)
 
     def _receive(self, header: Header, body: bytes) -> None:
         with self._lock:
@@ -294,6 +356,26 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
             if "extended header" in str(error):
                 raise recordCrash(f"A message of {header.device} came: {error}") from None
             logging.error("A message of %s was dropped: %s", header.device, error)
+
+
+def _readMessage(stream: BinaryIO) -> Raw | None:
+    """Return the next message, None at the end.
+
+    The real client takes any bytes for a header, and allocates the size that it reads there.
+    """
+    start = stream.read(len(_VERSIONS[0]))
+    if len(start) < len(_VERSIONS[0]):
+        return None
+    if start not in _VERSIONS:
+        raise recordCrash("The connector met something that is not OpenIGTLink.")
+    headerBytes = start + stream.read(HEADER_BYTES - len(start))
+    if len(headerBytes) < HEADER_BYTES:
+        return None
+    header = read_header(headerBytes)
+    if header is None or header.body_size >= CRASHING_BODY:
+        raise recordCrash("The peer sent a header that no OpenIGTLink message has.")
+    body = stream.read(header.body_size)
+    return (header, body) if len(body) == header.body_size else None
 
 
 def headlessKit() -> ConnectorKit:

@@ -6,7 +6,6 @@ Every line on standard output is one JSON object with the key `event`:
 
     status  state, sentence, remedy              the link, whenever it changes
     point   label, count, positionMm             a touch has appeared in the scene
-    removed count                                touches were undone, or a new trial started
     trial   results                              a trial is registered, scored and kept; the same
                                                  object is a line of results.jsonl
     problem sentence                             something is wrong with a trial or the images
@@ -20,7 +19,6 @@ from __future__ import annotations
 import argparse
 import json
 import math
-import os
 import sys
 import time
 from collections.abc import Sequence
@@ -30,10 +28,10 @@ from typing import Any
 
 import slicer
 
-from rastrainer.errors import InputError, RASTrainerError
+from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.json_records import record_to_json
-from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
+from rastrainer.protocol import DEFAULT_PORT
 from rastrainer.registration.fits import RIGID
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.sections.module_session import ModuleSession
@@ -49,13 +47,10 @@ from rastrainer_headless.residual_picture import writeResidualPicture
 from rastrainer_headless.scene import HeadlessScene
 
 PERIOD_S = 0.01
+SCENARIO = "colin27"
 SCENE = "trial.mrb"
 PICTURE = "residuals.png"
 RESULTS = "results.jsonl"
-
-
-class TrialsMissingError(RASTrainerError):
-    """The trials did not come in time."""
 
 
 class TrialPrinter:
@@ -69,9 +64,6 @@ class TrialPrinter:
         session.link.statusChanged.connect(lambda status: printEvent("status", **asdict(status)))
         session.link.pointsChanged.connect(self._printPoints)
         session.trials.trialScored.connect(self._printTrial)
-        session.trials.abortedKept.connect(
-            lambda trial: printEvent("aborted", trialId=trial.trial_id, reason=trial.reason)
-        )
         trials, files, procedure = session.trials, session.files, session.procedure
         for problems in (trials.problemFound, files.problemFound, procedure.answered):
             problems.connect(lambda sentence: printEvent("problem", sentence=sentence))
@@ -82,21 +74,12 @@ class TrialPrinter:
             printEvent(
                 "point", label=labels[row], count=row + 1, positionMm=positions[row].tolist()
             )
-        if len(labels) < self._touches:
-            printEvent("removed", count=len(labels))
         self._touches = len(labels)
 
     def _printTrial(self, analysis: TrialAnalysis) -> None:
         results = results_json(analysis)
-        try:
-            with self._results.open("a", encoding="utf-8", newline="\n") as file:
-                file.write(json.dumps(results, allow_nan=False) + "\n")
-                file.flush()
-                os.fsync(file.fileno())
-        except OSError as error:
-            raise InputError(
-                f"The file {self._results} cannot be written: {error.strerror}."
-            ) from None
+        with self._results.open("a", encoding="utf-8", newline="\n") as file:
+            file.write(json.dumps(results, allow_nan=False) + "\n")
         self.latest = analysis
         self.scored += 1
         printEvent("trial", results=results)
@@ -173,25 +156,26 @@ def main(argv: Sequence[str] | None = None) -> int:
         description="Slicer's side without Slicer. Not for clinical use.",
     )
     add = parser.add_argument
-    add("--host", default=DEFAULT_HOST, help="where the simulator runs")
-    add("--port", type=int, default=DEFAULT_PORT, help="its OpenIGTLink port")
-    add("--scenario", default="colin27", metavar="NAME")
+    add("--port", type=int, default=DEFAULT_PORT, help="the simulator's OpenIGTLink port")
     add("--output", type=Path, required=True, metavar="DIR")
     add("--trials", type=int, default=1, metavar="N", help="trials to wait for")
     add("--timeout", type=float, default=600.0, metavar="S", help="seconds to wait")
     add("--assets", type=Path, required=True, metavar="DIR", help="scenarios, robots and studies")
     arguments = parser.parse_args(argv)
     try:
-        _run(arguments)
-    except RASTrainerError as error:
+        missing = _run(arguments)
+    except InputError as error:
         print(f"rastrainer: {error}", file=sys.stderr)
-        return 1 if isinstance(error, TrialsMissingError) else 2
+        return 2
     except KeyboardInterrupt:
         return 130
-    return 0
+    if missing:
+        print(f"rastrainer: {missing}", file=sys.stderr)
+    return 1 if missing else 0
 
 
-def _run(arguments: argparse.Namespace) -> None:
+def _run(arguments: argparse.Namespace) -> str:
+    """Write all files, or return in a sentence how many trials have not come in time."""
     if arguments.trials < 1:
         raise InputError("Wait for at least one trial.")
     if not 0 < arguments.timeout < math.inf:
@@ -200,16 +184,16 @@ def _run(arguments: argparse.Namespace) -> None:
     session = openSession(scene, output, arguments.assets)
     try:
         # Problems are reported before anyone plays.
-        scenario = session.scenarios.find(arguments.scenario)
+        scenario = session.scenarios.find(SCENARIO)
         session.openStudyPatiently().close()
         printer = TrialPrinter(session, output / RESULTS)
         showScenario(scene.scene, scenario)
-        session.link.connectTo(arguments.host, arguments.port)
+        session.link.connectTo(port=arguments.port)
         end = time.monotonic() + arguments.timeout
         while printer.scored < arguments.trials:
             if time.monotonic() > end:
                 status = session.link.status
-                raise TrialsMissingError(
+                return (
                     f"{printer.scored} of {arguments.trials} trials came within "
                     f"{arguments.timeout:g} s. {status.sentence} {status.remedy}".rstrip()
                 )
@@ -220,6 +204,7 @@ def _run(arguments: argparse.Namespace) -> None:
     assert printer.latest is not None
     files = writeOutput(output, scene, scenario, printer.latest)
     printEvent("output", **files, study=str(output / STUDY_FILE))
+    return ""
 
 
 if __name__ == "__main__":

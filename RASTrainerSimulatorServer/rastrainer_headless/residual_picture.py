@@ -2,60 +2,55 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterable, Sequence
 from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import vtk
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from vtk.util.numpy_support import vtk_to_numpy
 
+from rastrainer.files.writing import write_bytes
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.registration.registration import Registration
-from rastrainer.slicer.polydata import meshPolyData
+from rastrainer.slicer.polydata import meshPolyData, vtkArray
 from rastrainer.slicer.scene.error_colors import (
     RESIDUAL_SCALARS,
     arrowTips,
     glyphsPolyData,
     residualRange,
 )
+from rastrainer.slicer.scene.nodes import setValues
 
 WIDTH, HEIGHT = 1800, 1080
-_VIEWS = ((0.0, 0.09, 0.45, 0.92), (0.45, 0.09, 0.9, 0.92))
-_LEGEND = (0.9, 0.09, 1.0, 0.92)
+_PIXELS_PER_INCH = 72
+"""So that a point of a font is a pixel."""
+_VIEW = 810, 896
+"""Width and height of the view from one side."""
+_BOTTOM = 0.09
 _LABEL_SIZE, _LABEL_GAP = (100, 28), 10
 _SIDES = ((1, 1), (1, -1), (-1, 1), (-1, -1))
 """Sides of a point for its label: right or left, above or below."""
 _MARGIN = 1.08
 _CLEARLY_FACING = 0.25
-_PAPER = (1.0, 1.0, 1.0)
 _INK = (0.12, 0.14, 0.18)
 _SKIN = (0.86, 0.83, 0.8)
-# Viridis, read at five places.
-_COLORS = (
-    (0.267, 0.005, 0.329),
-    (0.230, 0.322, 0.546),
-    (0.128, 0.567, 0.551),
-    (0.369, 0.789, 0.383),
-    (0.993, 0.906, 0.144),
-)
 
 
 def writeResidualPicture(
     path: Path, head: HeadMesh, registration: Registration, title: str, caption: Sequence[str]
 ) -> None:
     """Render the head from two sides with all points on it; write a PNG, whole or not."""
-    window = vtk.vtkRenderWindow()
-    window.SetOffScreenRendering(True)
-    window.SetMultiSamples(8)
-    window.SetSize(WIDTH, HEIGHT)
-    window.SetNumberOfLayers(2)
-    page = _addRenderer(window, (0.0, 0.0, 1.0, 1.0))
-    page.AddViewProp(_text(title, 34, (0.5, 0.955), isBold=True))
-    page.AddViewProp(_text("\n".join(caption), 24, (0.5, 0.045)))
-    low, high = residualRange(registration)
-    colors = vtk.vtkColorTransferFunction()
-    for share, color in zip(np.linspace(0.0, 1.0, len(_COLORS)), _COLORS, strict=True):
-        colors.AddRGBPoint(low + share * (high - low), *color)
+    size = WIDTH / _PIXELS_PER_INCH, HEIGHT / _PIXELS_PER_INCH
+    page = Figure(size, _PIXELS_PER_INCH, facecolor="white")
+    page.text(0.5, 0.955, title, size=32, weight="bold", color=_INK, ha="center", va="center")
+    page.text(0.5, 0.045, "\n".join(caption), size=21, color=_INK, ha="center", va="center")
+    colors = ScalarMappable(Normalize(*residualRange(registration)), "viridis")
     surface = meshPolyData(head)
     center = 0.5 * (head.vertices.min(axis=0) + head.vertices.max(axis=0))
     away = registration.fixed_mm - center
@@ -63,155 +58,104 @@ def writeResidualPicture(
     directions = chooseTwoViews(outward)
     facing = directions @ outward.T
     shown = np.vstack([head.vertices, arrowTips(registration)])
-    for number, viewport in enumerate(_VIEWS):
-        view = _addRenderer(window, viewport)
-        skin = _actor(surface)
-        skin.GetProperty().SetColor(*_SKIN)
-        skin.GetProperty().SetSpecular(0.1)
-        view.AddActor(skin)
-        axes = _look(view, shown, center, directions[number])
+    for number, direction in enumerate(directions):
         isLabeled = facing[number] == facing.max(axis=0)
         rows = np.flatnonzero((facing[number] > _CLEARLY_FACING) | isLabeled)
-        # A layer over the head, so that arrows that point inward are seen as well.
-        layer = _addRenderer(window, viewport)
-        layer.SetLayer(1)
-        layer.SetActiveCamera(view.GetActiveCamera())
-        layer.AddActor(_glyphs(registration, rows, colors))
-        _addLabels(layer, registration, np.flatnonzero(isLabeled), axes)
-    _addRenderer(window, _LEGEND).AddViewProp(_legend(colors))
+        rightward = np.cross([0.0, 0.0, 1.0], direction)
+        rightward /= np.linalg.norm(rightward)
+        across = np.array([rightward, np.cross(direction, rightward)])
+        ends = np.array([(shown @ across.T).min(axis=0), (shown @ across.T).max(axis=0)])
+        middle = ends.mean(axis=0)
+        half = 0.5 * _MARGIN * (np.ptp(ends, axis=0) / _VIEW).max() * np.array(_VIEW)
+        focus = middle @ across + (center @ direction) * direction
+        glyphs = glyphsPolyData(registration, rows)
+        residuals = vtk_to_numpy(glyphs.GetPointData().GetArray(RESIDUAL_SCALARS))
+        glyphs.GetPointData().SetScalars(vtkArray(colors.to_rgba(residuals, bytes=True)))
+        pixels = _rendered(surface, glyphs, focus, direction, half[1])
+        place = (number * _VIEW[0] / WIDTH, _BOTTOM, _VIEW[0] / WIDTH, _VIEW[1] / HEIGHT)
+        view = page.add_axes(place)
+        view.axis("off")
+        low, high = middle - half, middle + half
+        view.imshow(pixels, extent=(low[0], high[0], low[1], high[1]), aspect="auto")
+        _addLabels(view, registration, np.flatnonzero(isLabeled), across, 2.0 * half / _VIEW)
+    legend = page.colorbar(colors, page.add_axes((0.92, 0.21, 0.025, 0.58)))
+    legend.set_label("Residual (mm)", size=22, color=_INK)
+    legend.ax.tick_params(labelsize=22, labelcolor=_INK)
+    content = io.BytesIO()
+    page.savefig(content, format="png")
+    write_bytes(path, content.getvalue())
+
+
+def _rendered(
+    surface: vtk.vtkPolyData,
+    glyphs: vtk.vtkPolyData,
+    focus: np.ndarray,
+    direction: np.ndarray,
+    halfHeightMm: float,
+) -> np.ndarray:
+    """Return the view from a direction, (height, width, 3) uint8."""
+    # A layer over the head, so that arrows that point inward are seen as well.
+    window = setValues(
+        vtk.vtkRenderWindow(),
+        OffScreenRendering=True,
+        MultiSamples=8,
+        Size=_VIEW,
+        NumberOfLayers=2,
+    )
+    camera = setValues(
+        vtk.vtkCamera(),
+        ParallelProjection=True,
+        FocalPoint=focus,
+        Position=focus + 800.0 * direction,
+        ViewUp=(0.0, 0.0, 1.0),
+        ParallelScale=halfHeightMm,
+        ClippingRange=(1.0, 1600.0),
+    )
+    for layer, (data, specular, ambient) in enumerate(((surface, 0.1, 0.0), (glyphs, 0.0, 0.35))):
+        mapper = setValues(vtk.vtkPolyDataMapper(), InputData=data)
+        actor = setValues(vtk.vtkActor(), Mapper=mapper)
+        setValues(actor.GetProperty(), Color=_SKIN, Specular=specular, Ambient=ambient)
+        renderer = setValues(
+            vtk.vtkRenderer(), Layer=layer, Background=(1.0, 1.0, 1.0), ActiveCamera=camera
+        )
+        renderer.AddActor(actor)
+        window.AddRenderer(renderer)
     window.Render()
     image = vtk.vtkWindowToImageFilter()
     image.SetInput(window)
     image.ReadFrontBufferOff()
-    writer = vtk.vtkPNGWriter()
-    writer.SetInputConnection(image.GetOutputPort())
-    partial = path.with_suffix(".partial")
-    writer.SetFileName(str(partial))
-    writer.Write()
-    partial.replace(path)
+    image.Update()
+    pixels = vtk_to_numpy(image.GetOutput().GetPointData().GetScalars())
     window.Finalize()
-
-
-def _addRenderer(window: vtk.vtkRenderWindow, viewport: tuple[float, ...]) -> vtk.vtkRenderer:
-    renderer = vtk.vtkRenderer()
-    renderer.SetViewport(*viewport)
-    renderer.SetBackground(*_PAPER)
-    window.AddRenderer(renderer)
-    return renderer
-
-
-def _text(
-    words: str, size: int, place: tuple[float, float], isBold: bool = False
-) -> vtk.vtkTextActor:
-    actor = vtk.vtkTextActor()
-    actor.SetInput(words)
-    style = actor.GetTextProperty()
-    style.SetFontSize(size)
-    style.SetColor(*_INK)
-    style.SetBold(isBold)
-    style.SetLineSpacing(1.25)
-    style.SetJustificationToCentered()
-    style.SetVerticalJustificationToCentered()
-    actor.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
-    actor.SetPosition(*place)
-    return actor
-
-
-def _glyphs(
-    registration: Registration, rows: np.ndarray, colors: vtk.vtkColorTransferFunction
-) -> vtk.vtkActor:
-    glyphs = _actor(glyphsPolyData(registration, rows))
-    mapper = glyphs.GetMapper()
-    mapper.ScalarVisibilityOn()
-    mapper.SetScalarModeToUsePointFieldData()
-    mapper.SelectColorArray(RESIDUAL_SCALARS)
-    mapper.SetLookupTable(colors)
-    mapper.UseLookupTableScalarRangeOn()
-    glyphs.GetProperty().SetAmbient(0.35)
-    return glyphs
-
-
-def _actor(data: vtk.vtkPolyData) -> vtk.vtkActor:
-    mapper = vtk.vtkPolyDataMapper()
-    mapper.SetInputData(data)
-    mapper.ScalarVisibilityOff()
-    actor = vtk.vtkActor()
-    actor.SetMapper(mapper)
-    return actor
+    return pixels.reshape(_VIEW[1], _VIEW[0], 3)[::-1]
 
 
 def _addLabels(
-    view: vtk.vtkRenderer, registration: Registration, rows: np.ndarray, axes: np.ndarray
+    view: Axes, registration: Registration, rows: np.ndarray, across: np.ndarray, mmPerPixel: float
 ) -> None:
     """Write number and residual of points next to them, on the side that has most room."""
-    _left, bottom, _right, top = view.GetViewport()
-    pixelsPerMm = 0.5 * (top - bottom) * HEIGHT / view.GetActiveCamera().GetParallelScale()
     # In the picture, in sizes of a label.
     starts, tips = registration.fixed_mm, arrowTips(registration)
-    taken = np.vstack([starts, 0.5 * (starts + tips), tips]) @ axes.T
-    taken *= pixelsPerMm / np.array(_LABEL_SIZE)
+    taken = np.vstack([starts, 0.5 * (starts + tips), tips]) @ across.T
+    taken /= mmPerPixel * np.array(_LABEL_SIZE)
     for row in rows:
         middles = taken[row] + 0.6 * np.array(_SIDES)
         room = np.abs(middles[:, None] - taken).max(axis=2).min(axis=1)
         best = int(np.argmax(room.round(3)))
         taken = np.vstack([taken, middles[best]])
         right, up = _SIDES[best]
-        label = vtk.vtkBillboardTextActor3D()
-        label.SetInput(f"{registration.labels[row]}: {registration.residuals_mm[row]:.1f}")
-        label.SetPosition(registration.fixed_mm[row])
-        label.SetDisplayOffset(_LABEL_GAP * right, _LABEL_GAP * up)
-        style = label.GetTextProperty()
-        # VTK's numbers: 0 left or bottom, 1 centered, 2 right or top.
-        style.SetJustification(1 - right)
-        style.SetVerticalJustification(1 - up)
-        style.SetFontSize(22)
-        style.SetBold(True)
-        style.SetColor(*_INK)
-        style.SetBackgroundColor(*_PAPER)
-        style.SetBackgroundOpacity(0.65)
-        view.AddActor(label)
-
-
-def _look(
-    view: vtk.vtkRenderer, shown: np.ndarray, center: np.ndarray, direction: np.ndarray
-) -> np.ndarray:
-    """Fill the view with points (n, 3) as seen from a direction; return its axes (2, 3)."""
-    rightward = np.cross([0.0, 0.0, 1.0], direction)
-    rightward /= np.linalg.norm(rightward)
-    axes = np.array([rightward, np.cross(direction, rightward)])
-    across = (shown - center) @ axes.T
-    low, high = across.min(axis=0), across.max(axis=0)
-    left, bottom, right, top = view.GetViewport()
-    heightPerWidth = (top - bottom) * HEIGHT / ((right - left) * WIDTH)
-    focus = center + 0.5 * (low + high) @ axes
-    camera = view.GetActiveCamera()
-    camera.ParallelProjectionOn()
-    camera.SetFocalPoint(focus)
-    camera.SetPosition(focus + 800.0 * direction)
-    camera.SetViewUp(0.0, 0.0, 1.0)
-    camera.SetParallelScale(0.5 * _MARGIN * max((high - low) * [heightPerWidth, 1.0]))
-    camera.SetClippingRange(1.0, 1600.0)
-    return axes
-
-
-def _legend(colors: vtk.vtkColorTransferFunction) -> vtk.vtkScalarBarActor:
-    bar = vtk.vtkScalarBarActor()
-    bar.SetLookupTable(colors)
-    bar.SetTitle("Residual (mm)\n")
-    low, high = colors.GetRange()
-    wholeMillimeters = round(high - low)
-    bar.SetNumberOfLabels(wholeMillimeters + 1 if wholeMillimeters <= 8 else 5)
-    bar.SetLabelFormat("%.1f")
-    bar.UnconstrainedFontSizeOn()
-    for style in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
-        style.SetColor(*_INK)
-        style.SetFontSize(22)
-        style.ShadowOff()
-        style.ItalicOff()
-    bar.GetPositionCoordinate().SetValue(0.05, 0.15)
-    bar.SetWidth(0.75)
-    bar.SetHeight(0.7)
-    return bar
+        view.annotate(
+            f"{registration.labels[row]}: {registration.residuals_mm[row]:.1f}",
+            across @ starts[row],
+            (_LABEL_GAP * right, _LABEL_GAP * up),
+            textcoords="offset points",
+            ha="left" if right > 0 else "right",
+            va="bottom" if up > 0 else "top",
+            size=20,
+            weight="bold",
+            color=_INK,
+            bbox={"facecolor": "white", "alpha": 0.65, "edgecolor": "none", "pad": 1.0},
+        )
 
 
 def chooseTwoViews(outward: np.ndarray) -> np.ndarray:

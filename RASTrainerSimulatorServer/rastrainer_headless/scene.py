@@ -30,22 +30,16 @@ class HeadlessScene:
         self.scene = slicer.vtkMRMLScene()
         self._applicationLogic = slicer.vtkSlicerApplicationLogic()
         self._applicationLogic.SetMRMLScene(self.scene)
-        # It registers the storage of markups: without it, bundles would be saved without points.
-        self._markupsLogic = slicer.vtkSlicerMarkupsLogic()
-        self._markupsLogic.SetMRMLApplicationLogic(self._applicationLogic)
-        self._markupsLogic.SetMRMLScene(self.scene)
-        # In a saved scene the slice views show the images.
-        self._sliceLogics = []
-        for name, axes in SLICES.items():
-            logic = slicer.vtkMRMLSliceLogic()
+        # The first registers the storage of markups: without it, bundles would be saved without
+        # points. The second shows the item of each Sequence that its browser has chosen. In a saved
+        # scene the slice views show the images.
+        slices = [slicer.vtkMRMLSliceLogic() for _ in SLICES]
+        self._logics = [slicer.vtkSlicerMarkupsLogic(), slicer.vtkSlicerSequencesLogic(), *slices]
+        for logic in self._logics:
             logic.SetMRMLApplicationLogic(self._applicationLogic)
             logic.SetMRMLScene(self.scene)
+        for logic, (name, axes) in zip(slices, SLICES.items(), strict=True):
             logic.AddSliceNode(name).SetOrientation(axes)
-            self._sliceLogics.append(logic)
-        # It shows the item of each Sequence that its browser has chosen.
-        self._sequencesLogic = slicer.vtkSlicerSequencesLogic()
-        self._sequencesLogic.SetMRMLApplicationLogic(self._applicationLogic)
-        self._sequencesLogic.SetMRMLScene(self.scene)
 
     def save(self, path: Path) -> None:
         """Write the scene and all its files as one bundle (.mrb), whole or not at all."""

@@ -5,14 +5,13 @@ from __future__ import annotations
 import gzip
 import math
 import os
-import struct
 import zlib
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import slicer
+import vtk
 from scipy.spatial.transform import Rotation
 
 from rastrainer.errors import InputError
@@ -26,7 +25,7 @@ from rastrainer.slicer.head.volume_header import (
 )
 from rastrainer_headless.dicom_series import isDicom, readDicom
 
-_NIFTI_2, _MGH = 540, b"\0\0\0\1"
+_MGH = b"\0\0\0\1"
 _COLORS, _COMPLEX = (128, 2304), (32, 1792, 2048)
 _RIGHT_ANGLE = 0.01
 _LONGEST_ROTATION = 1.001
@@ -43,9 +42,9 @@ def readVolume(path: Path, orientation: str | None = None) -> Volume:
         return readDicom(path)
     if not path.is_file():
         raise InputError(f"{path} does not exist; give a volume such as a .nii.gz or .nrrd file.")
-    begin = beginOf(path)
-    _checkHeader(path, begin)
-    if _isCutShort(path, niftiHeader(begin)):
+    nifti = niftiHeader(path)
+    _checkHeader(path, nifti)
+    if _isCutShort(path, nifti):
         raise InputError(f"{path} is cut short; copy the file again.")
     missing = missingOrientation(path)
     if missing and orientation is None:
@@ -81,10 +80,11 @@ def _oriented(volume: Volume, orientation: str) -> Volume:
     return replace(volume, ijkToRas=matrix)
 
 
-def _checkHeader(path: Path, begin: bytes) -> None:
+def _checkHeader(path: Path, nifti: vtk.vtkNIFTIImageHeader | None) -> None:
+    begin = beginOf(path)
     if path.suffix.lower() in (".mgz", ".mgh") or begin.startswith(_MGH):
         raise _unusable(path, "is in FreeSurfer's format", "mri_convert makes NIfTI of it")
-    if begin[:4] in (struct.pack("<i", _NIFTI_2), struct.pack(">i", _NIFTI_2)):
+    if nifti is not None and nifti.GetMagic()[1:3] in ("+2", "i2"):
         raise _unusable(path, "is NIfTI-2", "save it as NIfTI-1 or NRRD")
     if begin.startswith(b"NRRD"):
         fields = nrrdFields(begin)
@@ -94,27 +94,27 @@ def _checkHeader(path: Path, begin: bytes) -> None:
             several = f"has {fields['sizes']} values, several in a voxel"
             raise _unusable(path, several, "use one with gray values")
         _checkSizes(path, tuple(sizes))
-    nifti = niftiHeader(begin)
     if nifti is not None:
         _checkNifti(path, nifti)
 
 
-def _checkNifti(path: Path, nifti: Any) -> None:
+def _checkNifti(path: Path, nifti: vtk.vtkNIFTIImageHeader) -> None:
     _checkSizes(path, _sizesOf(nifti))
-    if nifti["kind"] in _COLORS:
+    if nifti.GetDataType() in _COLORS:
         raise _unusable(path, "has colors (RGB)", "use the image with one gray value a voxel")
-    if nifti["kind"] in _COMPLEX:
+    if nifti.GetDataType() in _COMPLEX:
         raise _unusable(path, "has complex numbers", "use the magnitude")
-    if isAnalyze(nifti) or not nifti["codes"].any():
+    if isAnalyze(nifti):
         return
     repair = "write the orientation again from the original DICOM files"
-    qformCode, sformCode = nifti["codes"]
-    isLong = not np.linalg.norm(nifti["rotation"]) <= _LONGEST_ROTATION
-    if qformCode > 0 and (isLong or not (nifti["spacing"][1:] > 0).all()):
+    qformCode, sformCode = nifti.GetQFormCode(), nifti.GetSFormCode()
+    rotation = nifti.GetQuaternB(), nifti.GetQuaternC(), nifti.GetQuaternD()
+    isLong = not np.linalg.norm(rotation) <= _LONGEST_ROTATION
+    if qformCode > 0 and (isLong or not all(nifti.GetPixDim(axis) > 0 for axis in (1, 2, 3))):
         raise _unusable(path, "has a qform that is no rotation", repair)
     if sformCode <= 0:
         return
-    sform = nifti["sform"][:, :3].astype(float)
+    sform = np.array([nifti.GetSRowX(), nifti.GetSRowY(), nifti.GetSRowZ()])[:, :3]
     lengths = np.linalg.norm(sform, axis=0)
     if not np.isfinite(lengths).all() or not lengths.all():
         raise _unusable(path, "has an sform whose axes have no length", repair)
@@ -125,10 +125,9 @@ def _checkNifti(path: Path, nifti: Any) -> None:
         raise _unusable(path, what, "resample it")
     if qformCode <= 0:
         return
-    b, c, d = nifti["rotation"].astype(float)
-    a = math.sqrt(max(0.0, 1.0 - b * b - c * c - d * d))
-    flip = -1.0 if nifti["spacing"][0] < 0 else 1.0
-    qform = Rotation.from_quat([b, c, d, a]).as_matrix() @ np.diag([1.0, 1.0, flip])
+    scalar = math.sqrt(max(0.0, 1.0 - np.dot(rotation, rotation)))
+    flip = -1.0 if nifti.GetPixDim(0) < 0 else 1.0
+    qform = Rotation.from_quat([*rotation, scalar]).as_matrix() @ np.diag([1.0, 1.0, flip])
     if np.sum(axes * qform, axis=0).min() < _CONTRADICTION:
         both = f"{_letters(qform)} and {_letters(axes)}"
         what = f"has a qform and an sform that contradict each other ({both})"
@@ -141,11 +140,11 @@ def _letters(axes: np.ndarray) -> str:
     return "".join(("RAS" if axes[row, i] > 0 else "LPI")[row] for i, row in enumerate(main))
 
 
-def _isCutShort(path: Path, nifti: Any | None) -> bool:
+def _isCutShort(path: Path, nifti: vtk.vtkNIFTIImageHeader | None) -> bool:
     """Return whether a `.gz` file, or a NIfTI-1 file of any kind, ends too early."""
     least = 0.0
     if nifti is not None and not isAnalyze(nifti) and path.suffix not in (".hdr", ".img"):
-        least = float(nifti["begins"]) + math.prod(_sizesOf(nifti)) * int(nifti["bits"]) / 8
+        least = nifti.GetVoxOffset() + math.prod(_sizesOf(nifti)) * nifti.GetBitPix() / 8
     opened = gzip.open if path.suffix == ".gz" else open
     try:
         with opened(path, "rb") as file:
@@ -156,9 +155,8 @@ def _isCutShort(path: Path, nifti: Any | None) -> bool:
         return False
 
 
-def _sizesOf(nifti: Any) -> tuple[int, ...]:
-    count, *sizes = nifti["sizes"].tolist()
-    return tuple(sizes[: max(0, count)])
+def _sizesOf(nifti: vtk.vtkNIFTIImageHeader) -> tuple[int, ...]:
+    return tuple(nifti.GetDim(axis + 1) for axis in range(min(nifti.GetDim(0), 7)))
 
 
 def _checkSizes(path: Path, sizes: tuple[int, ...]) -> None:

@@ -1,6 +1,6 @@
 """What would have crashed Slicer in a test."""
 
-from rastrainer_headless.peer_socket import crashes
+from rastrainer_headless.connector import crashes
 
 
 def take_crashes():

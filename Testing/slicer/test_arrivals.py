@@ -4,8 +4,7 @@ import json
 
 import pytest
 
-from rastrainer.slicer.link.connection import MAX_KEPT
-from rastrainer.slicer.link.link import CHARACTERS_A_TURN, COMMANDS_A_TURN
+from rastrainer.slicer.link.link import CHARACTERS_A_TURN, COMMANDS_A_TURN, MAX_KEPT
 from rastrainer_headless.connector import HeadlessCommand
 
 

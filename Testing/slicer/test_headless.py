@@ -159,7 +159,6 @@ def test_trials_that_do_not_arrive_exit_with_status_1_and_a_message(simulator, t
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        (["--scenario", "nowhere"], 'The scenario "nowhere" is not here'),
         (["--assets", "nowhere"], "There is no file nowhere"),
         (["--port", "0"], "port must be a number from 1 to 65535"),
         (["--trials", "0"], "at least one trial"),

@@ -7,8 +7,7 @@ import vtk
 
 from rastrainer.igtl.content import Point, Points, Status, String
 from rastrainer.igtl.message import Message, crc64, pack
-from rastrainer_headless.connector import HeadlessCommand, HeadlessConnector
-from rastrainer_headless.peer_socket import CrashError
+from rastrainer_headless.connector import CrashError, HeadlessCommand, HeadlessConnector
 from Testing.domain.igtl.sent_pose import transform_of
 from Testing.slicer.crashes import take_crashes
 from Testing.slicer.simulator_double import SimulatorDouble, wait_until

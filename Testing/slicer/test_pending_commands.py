@@ -4,8 +4,7 @@ import threading
 
 import pytest
 
-from rastrainer.slicer.link.connection import MAX_AT_ONCE
-from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.link.link import MAX_AT_ONCE, Link
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer_headless.connector import headlessKit
 from Testing.slicer.crashes import take_crashes

@@ -5,8 +5,7 @@ import time
 import pytest
 
 from rastrainer.slicer.link.link_status import LinkState
-from rastrainer_headless.connector import headlessKit
-from rastrainer_headless.peer_socket import RETRY_PERIOD_S
+from rastrainer_headless.connector import RETRY_PERIOD_S, headlessKit
 from Testing.slicer.crashes import take_crashes
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until, wait_until
 from Testing.slicer.strangers import is_silent, says, stranger, web_server

@@ -7,7 +7,7 @@ import signal
 from collections.abc import Sequence
 from pathlib import Path
 
-from rastrainer.slicer.link.connection import CONNECTOR_NAME
+from rastrainer.slicer.link.link import CONNECTOR_NAME
 from Testing.end_to_end.module.installed_simulator import bundled_package, write_program
 from Testing.end_to_end.module.player import Player
 from Testing.free_port import free_port

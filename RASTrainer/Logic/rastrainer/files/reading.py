@@ -23,8 +23,6 @@ def read_bytes(path: str | os.PathLike[str], limit_bytes: int) -> bytes:
         flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
         with os.fdopen(os.open(path, flags), "rb") as file:
             status = os.fstat(file.fileno())
-            if stat.S_ISDIR(status.st_mode):
-                raise InputError(f"{path} is a folder; a file is needed.")
             if not stat.S_ISREG(status.st_mode):
                 raise InputError(f"{path} is not a regular file.")
             if status.st_size == 0:

@@ -29,8 +29,7 @@ from rastrainer.sections.trial_logic import TrialLogic
 from rastrainer.sections.trial_services import TrialServices
 from rastrainer.sections.views import BorrowedLayout, SliceFollower
 from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.link.connection import CallSoon, ConnectorKit
-from rastrainer.slicer.link.link import REST_S, SOON_S, Link
+from rastrainer.slicer.link.link import REST_S, SOON_S, CallSoon, ConnectorKit, Link
 from rastrainer.slicer.program.child_process import OwnProcess, Run
 from rastrainer.slicer.program.simulator_package import SimulatorPackage
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup

@@ -15,7 +15,7 @@ from rastrainer.scenario.points import LABELS
 from rastrainer.sections.application import callSoon, findPlaces
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel_stack import PanelStack
-from rastrainer.slicer.link.connection import desktopKit
+from rastrainer.slicer.link.link import desktopKit
 from rastrainer.slicer.scene.nodes import Role, setPoints
 from rastrainer.slicer.settings import Settings
 

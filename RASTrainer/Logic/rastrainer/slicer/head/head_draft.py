@@ -80,13 +80,10 @@ def makeDraft(
 
 
 def findSkin(
-    volume: Volume,
-    settings: HeadSettings | None = None,
-    progress: Progress = no_progress,
-    segment: SegmentImage | None = None,
+    volume: Volume, settings: HeadSettings | None = None, progress: Progress = no_progress
 ) -> tuple[HeadBody, HeadMesh, list[str]]:
     """Return a head as voxels and as a surface, and warnings; otherwise as `makeDraft`."""
-    return _findSkin(volume, settings, progress, segment)[1:]
+    return _findSkin(volume, settings, progress, None)[1:]
 
 
 def _findSkin(

@@ -11,6 +11,7 @@ import heapq
 from functools import lru_cache
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from scipy import ndimage
 
 from rastrainer.errors import InputError
@@ -96,57 +97,24 @@ def squaredDistances(mask: np.ndarray, most: float) -> np.ndarray:
     return squared
 
 
-_OFFSETS = [
-    (x, y, z) for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1) if (x, y, z) != (0, 0, 0)
-]
-
-
-def _bits(chosen) -> int:
-    return sum(1 << index for index, offset in enumerate(_OFFSETS) if chosen(offset))
-
-
-def _touching(offset, reach: int) -> int:
-    """Return the neighbors, as bits, that share a face (reach 1) or at least a corner (3)."""
-
-    def touches(other) -> bool:
-        steps = [abs(a - b) for a, b in zip(offset, other, strict=True)]
-        return max(steps) == 1 and sum(steps) <= reach
-
-    return _bits(touches)
-
-
-_FACES = _bits(lambda offset: sum(map(abs, offset)) == 1)
-_FACES_AND_EDGES = _bits(lambda offset: sum(map(abs, offset)) <= 2)
-_ALL = (1 << 26) - 1
 # Voxels. Tunnels are rarely wider than the first, and the time grows with it.
 _REACHES = (8, 16, 32, 64)
-_BY_FACE = [_touching(offset, 1) for offset in _OFFSETS]
-_BY_CORNER = [_touching(offset, 3) for offset in _OFFSETS]
+_FACES, _EDGES, _CORNERS = (ndimage.generate_binary_structure(3, n) for n in (1, 2, 3))
+_MIDDLE = (1, 1, 1)
 
 
 @lru_cache(maxsize=1 << 20)
-def isSimple(neighbors: int) -> bool:
+def isSimple(cube: bytes) -> bool:
     """Return whether the middle voxel of 3×3×3 may be removed without a change of topology.
 
-    `neighbors` are the 26 that are set, one bit each; the body is connected through faces, its
-    outside through faces, edges and corners.
+    The body is connected through faces, its outside through faces, edges and corners.
     """
-    inside = neighbors & _FACES_AND_EDGES
-    outside = _ALL & ~neighbors
-    if not inside & _FACES or not outside & _FACES:
-        return False
-    return _isOne(inside, inside & _FACES, _BY_FACE) and _isOne(outside, outside, _BY_CORNER)
-
-
-def _isOne(members: int, wanted: int, touching: list[int]) -> bool:
-    """Return whether `members` connects all `wanted` bits with each other."""
-    reached = frontier = wanted & -wanted
-    while frontier:
-        lowest = frontier & -frontier
-        new = touching[lowest.bit_length() - 1] & members & ~reached
-        reached |= new
-        frontier = (frontier ^ lowest) | new
-    return not wanted & ~reached
+    body = np.frombuffer(cube, bool).reshape(3, 3, 3)
+    near = body & _EDGES
+    near[_MIDDLE] = False
+    parts, _ = ndimage.label(near)
+    _, outsideCount = ndimage.label(~body, _CORNERS)
+    return outsideCount == 1 and not body[_FACES].all() and len({*parts[_FACES & near]}) == 1
 
 
 def carved(body: np.ndarray, wanted: np.ndarray) -> np.ndarray:
@@ -160,26 +128,28 @@ def carved(body: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     keep = np.pad(np.pad(wanted, sides), below, mode="edge")
     keep[:, :, 0] = True
     voxels = bytearray(padded.tobytes())
+    shape = padded.shape
+    cubes = sliding_window_view(np.frombuffer(voxels, bool).reshape(shape), (3, 3, 3))
     candidates = padded & ~keep
     for reach in _REACHES:
         squared = squaredDistances(keep, reach)
         if squared[candidates].max(initial=0) <= reach**2:
             break
     isCandidate, distance = candidates.ravel(), squared.ravel()
-    strides = (padded.shape[1] * padded.shape[2], padded.shape[2], 1)
-    steps = [sum(a * b for a, b in zip(offset, strides, strict=True)) for offset in _OFFSETS]
+    steps = ((np.argwhere(_CORNERS) - 1) @ (shape[1] * shape[2], shape[2], 1)).tolist()
     waiting = set(np.flatnonzero(candidates & ndimage.binary_dilation(~padded)).tolist())
     queue = [(-int(distance[index]), index) for index in waiting]
     heapq.heapify(queue)
     while queue:
         _, index = heapq.heappop(queue)
         waiting.discard(index)
-        around = [index + step for step in steps]
-        if isSimple(sum(1 << bit for bit, other in enumerate(around) if voxels[other])):
+        row, k = divmod(index, shape[2])
+        i, j = divmod(row, shape[1])
+        if isSimple(cubes[i - 1, j - 1, k - 1].tobytes()):
             voxels[index] = 0
-            for other in around:
+            for other in (index + step for step in steps):
                 if voxels[other] and isCandidate[other] and other not in waiting:
                     waiting.add(other)
                     heapq.heappush(queue, (-int(distance[other]), other))
-    result = np.frombuffer(voxels, dtype=bool).reshape(padded.shape)
+    result = np.frombuffer(voxels, dtype=bool).reshape(shape)
     return result[1:-1, 1:-1, 1:-1].copy()

@@ -8,38 +8,10 @@ from __future__ import annotations
 import gzip
 import zlib
 from pathlib import Path
-from typing import Any
 
-import numpy as np
+import vtk
 
 _READ_BYTES = 4096
-_HEADER_SIZE = 348
-_FIELDS = {
-    "size": ("i4", 0),
-    "sizes": ("8i2", 40),
-    "kind": ("i2", 70),
-    "bits": ("i2", 72),
-    "spacing": ("4f4", 76),
-    "begins": ("f4", 108),
-    "codes": ("2i2", 252),
-    "rotation": ("3f4", 256),
-    "sform": ("(3,4)f4", 280),
-    "magic": ("S4", 344),
-}
-_FORMATS, _OFFSETS = zip(*_FIELDS.values(), strict=True)
-_NIFTI = np.dtype(
-    {
-        "names": list(_FIELDS),
-        "formats": list(_FORMATS),
-        "offsets": list(_OFFSETS),
-        "itemsize": _HEADER_SIZE,
-    }
-)
-"""The header of NIfTI-1 (nifti1.h), or of Analyze 7.5, which knows no orientation.
-
-`sizes` begin with their number, `spacing` with the sign of the last axis of the qform; `codes` are
-of qform and sform, 0 for none; `rotation` is b, c, d of the qform's quaternion.
-"""
 _PICTURES = (b"\x89PNG", b"\xff\xd8\xff", b"BM", b"II*\0", b"MM\0*", b"# vtk")
 """How files begin that never state an orientation."""
 
@@ -49,12 +21,12 @@ def missingOrientation(path: Path) -> str:
 
     A file that is not there any more is not doubted.
     """
-    begin = beginOf(path)
-    nifti = niftiHeader(begin)
-    if nifti is not None and isAnalyze(nifti):
-        return "Analyze files have none"
-    if nifti is not None and not nifti["codes"].any():
-        return "its qform_code and sform_code are 0"
+    begin, nifti = beginOf(path), niftiHeader(path)
+    if nifti is not None:
+        if isAnalyze(nifti):
+            return "Analyze files have none"
+        isPlaced = nifti.GetQFormCode() or nifti.GetSFormCode()
+        return "" if isPlaced else "its qform_code and sform_code are 0"
     if begin.startswith(b"NRRD") and not {"space", "space directions"} <= nrrdFields(begin).keys():
         return "it has no space directions"
     if b"ObjectType" in begin[:200] and not any(
@@ -65,9 +37,7 @@ def missingOrientation(path: Path) -> str:
 
 
 def beginOf(path: Path) -> bytes:
-    """Return the first bytes of a file, or of an image's separate header; unpacked."""
-    beside = path.with_suffix(".hdr")
-    path = beside if path.suffix == ".img" and beside.is_file() else path
+    """Return the first bytes of a file, unpacked."""
     try:
         with path.open("rb") as file:
             begin = file.read(_READ_BYTES)
@@ -80,18 +50,21 @@ def beginOf(path: Path) -> bytes:
     return begin
 
 
-def niftiHeader(begin: bytes) -> Any | None:
-    """Return a record of `_NIFTI`, of either order of bytes; None for other files."""
-    for kind in (_NIFTI.newbyteorder("<"), _NIFTI.newbyteorder(">")):
-        if len(begin) >= _HEADER_SIZE:
-            header = np.frombuffer(begin, kind, 1)[0]
-            if header["size"] == _HEADER_SIZE:
-                return header
-    return None
+def niftiHeader(path: Path) -> vtk.vtkNIFTIImageHeader | None:
+    """Return the header of a NIfTI or Analyze 7.5 file; None for other files."""
+    reader = vtk.vtkNIFTIImageReader()
+    if not reader.CanReadFile(str(path)):
+        return None
+    reader.SetFileName(str(path))
+    isLoud = reader.GetGlobalWarningDisplay()
+    reader.GlobalWarningDisplayOff()
+    reader.UpdateInformation()
+    reader.SetGlobalWarningDisplay(isLoud)
+    return reader.GetNIFTIHeader()
 
 
-def isAnalyze(header: Any) -> bool:
-    return header["magic"][:3] not in (b"n+1", b"ni1")
+def isAnalyze(header: vtk.vtkNIFTIImageHeader) -> bool:
+    return header.GetMagic()[:3] not in ("n+1", "ni1", "n+2", "ni2")
 
 
 def nrrdFields(begin: bytes) -> dict[str, str]:
