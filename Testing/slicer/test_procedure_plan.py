@@ -1,14 +1,12 @@
 """The plan of a procedure in the scene: read, with one message for a missing part, and stored."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.procedure.plan import MAX_NO_GO_TRIANGLES
-from rastrainer.sections.procedure_plan_logic import PlanDescription, ProcedurePlanLogic, noGoMeshes
+from rastrainer.sections.procedure_plan_logic import ProcedurePlanLogic, noGoMeshes
 from rastrainer.slicer.scene.nodes import Role, setPoints, setValues
 from rastrainer.slicer.scene.plan_points import unfinishedLine
 from rastrainer.slicer.scene.procedure_lines import (
@@ -23,7 +21,7 @@ from rastrainer.slicer.scene.procedure_lines import (
 from Testing.domain.procedure.made_up_procedure import made_up_procedure, vessel
 from Testing.slicer.scene_bundle import load_bundle
 
-PLAN = PlanDescription("Two leads", "dbs")
+PLAN = {"title": "Two leads", "kind": "dbs"}
 ENDS = np.array([[0.0, 0.0, 90.0], [0.0, 0.0, 20.0]])
 
 
@@ -52,7 +50,7 @@ def test_a_displayed_plan_is_read_back_unchanged(scene, logic):
     procedure = made_up_procedure()
     showPlan(scene, procedure, {"Vessel": vessel()})
     node = scene.GetFirstNodeByName("Checkpoints")
-    read, meshes = logic.read(replace(PLAN, name="dbs-1", checkpoints=node))
+    read, meshes = logic.read(**PLAN, name="dbs-1", checkpoints=node)
     assert [each.name for each in read.trajectories] == ["Left", "Right"]
     for one, other in zip(read.trajectories, procedure.trajectories, strict=True):
         np.testing.assert_allclose(one.entry_ras, other.entry_ras)
@@ -94,17 +92,17 @@ SPOILERS = {
 def test_anything_missing_or_unusable_is_reported_in_one_sentence(scene, logic, sentence):
     SPOILERS[sentence](scene, placed(scene))
     with pytest.raises(InputError) as refused:
-        logic.read(PLAN)
+        logic.read(**PLAN)
     assert sentence in str(refused.value)
 
 
 def test_a_plan_needs_a_title_from_which_a_name_can_be_made(scene, logic):
     placed(scene)
     with pytest.raises(InputError, match="Enter a title"):
-        logic.read(replace(PLAN, title="  "))
+        logic.read("  ", "dbs")
     with pytest.raises(InputError, match="needs a Latin letter or digit"):
-        logic.read(replace(PLAN, title="Ω"))
-    assert logic.read(replace(PLAN, title="Ä first: Try!"))[0].name == "first-try"
+        logic.read("Ω", "dbs")
+    assert logic.read("Ä first: Try!", "dbs")[0].name == "first-try"
 
 
 def test_a_structure_is_where_its_transform_places_it(scene):
@@ -141,7 +139,7 @@ def test_instruments_and_structures_are_kept_with_the_scene(headless_scene, logi
     assert instrumentOf(line) == (2.25, 3.5)
     (node,) = noGoNodes(headless_scene.scene)
     assert isNoGo(node)
-    procedure, meshes = logic.read(PLAN)
+    procedure, meshes = logic.read(**PLAN)
     assert procedure.trajectories[0].diameter_mm == 2.25
     assert len(meshes) == 1
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import partial
-from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 from rastrainer.commands import CommandName
 from rastrainer.number_text import fixed
@@ -14,7 +12,6 @@ from rastrainer.protocol import Phase
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, connectClick
 from rastrainer.sections.trial_status import TrialStatus
-from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.settings import SLICES_LIE_ALONG
 from rastrainer.slicer.translation import _
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
@@ -24,31 +21,21 @@ FEED_MM, FEED_MM_S = 1.0, 2.0
 """How far one press of a button feeds drill or instrument, and how fast."""
 
 
-class _Step(NamedTuple):
-    """A button: its widget's name, the phases it belongs to, and its command."""
-
-    button: str
-    phases: tuple[Phase, ...]
-    command: str
-    arguments: Mapping[str, float] = MappingProxyType({})
-
-
 _VERIFY, _ALIGN = (Phase.VERIFYING,), (Phase.ALIGNING,)
 _DRILL, _INSERT = (Phase.DRILLING,), (Phase.INSERTING,)
 _FEED = {"velocityMmS": FEED_MM_S, "durationS": FEED_MM / FEED_MM_S}
-STEPS = (
-    _Step("acceptButton", _VERIFY, CommandName.ACCEPT_REGISTRATION),
-    _Step("registerAgainButton", _VERIFY, CommandName.REGISTER_AGAIN),
-    _Step("alignButton", _ALIGN, CommandName.ALIGN_GUIDE),
-    _Step("lockButton", _ALIGN, CommandName.LOCK_GUIDE),
-    _Step("advanceButton", _DRILL + _INSERT, CommandName.FEED, _FEED),
-    _Step(
-        "withdrawButton", _DRILL + _INSERT, CommandName.FEED, {**_FEED, "velocityMmS": -FEED_MM_S}
-    ),
-    _Step("retractDrillButton", _DRILL, CommandName.RETRACT_DRILL),
-    _Step("startInsertionButton", _DRILL, CommandName.START_INSERTION),
-    _Step("releaseButton", _INSERT, CommandName.RELEASE_INSTRUMENT),
-)
+STEPS: dict[str, tuple[Any, ...]] = {
+    "acceptButton": (_VERIFY, CommandName.ACCEPT_REGISTRATION),
+    "registerAgainButton": (_VERIFY, CommandName.REGISTER_AGAIN),
+    "alignButton": (_ALIGN, CommandName.ALIGN_GUIDE),
+    "lockButton": (_ALIGN, CommandName.LOCK_GUIDE),
+    "advanceButton": (_DRILL + _INSERT, CommandName.FEED, _FEED),
+    "withdrawButton": (_DRILL + _INSERT, CommandName.FEED, {**_FEED, "velocityMmS": -FEED_MM_S}),
+    "retractDrillButton": (_DRILL, CommandName.RETRACT_DRILL),
+    "startInsertionButton": (_DRILL, CommandName.START_INSERTION),
+    "releaseButton": (_INSERT, CommandName.RELEASE_INSTRUMENT),
+}
+"""The phases that each button belongs to, and the command that it sends, with arguments."""
 WHEN = {
     Phase.VERIFYING: _("while the registration is verified"),
     Phase.ALIGNING: _("while the guide is aligned"),
@@ -65,9 +52,9 @@ class ProcedurePanel(Panel):
         self._logic = session.procedure
         bind(ui.slicesAlongCheckBox, "checked", session.settings, SLICES_LIE_ALONG)
         ui.slicesAlongCheckBox.connect("toggled(bool)", lambda _checked: session.woken.emit())
-        for step in STEPS:
-            send = partial(self._logic.command, step.command, step.arguments)
-            connectClick(getattr(ui, step.button), send, _("The command was not sent."))
+        for button, (_phases, *command) in STEPS.items():
+            send = partial(self._logic.command, *command)
+            connectClick(getattr(ui, button), send, _("The command was not sent."))
         ui.procedureErrorsTable.connect("itemSelectionChanged()", self._jumpToTarget)
         section, connection = ui.procedureCollapsibleButton, session.link.statusChanged
         self.showWhileOpen(section, self.showState, self._logic.changed, connection)
@@ -80,24 +67,24 @@ class ProcedurePanel(Panel):
 
     def showState(self, *_arguments: Any) -> None:
         ui, status, isFailed = self._ui, self._logic.status, self._logic.isRegistrationFailed
-        isConnected = self._session.link.status.state is LinkState.CONNECTED
+        isConnected = self._session.link.status.isConnected
         setText(ui.procedureStateText, stateText(status, isConnected))
         advice = instruction(status)
         if isFailed:
             advice = _("The touches could not be registered: have all points touched again.")
         setText(ui.procedureInstructionText, advice if isConnected else "")
-        for step in STEPS:
-            isReady = status.procedure.registrationInUse or Phase.VERIFYING not in step.phases
+        for button, (phases, *_command) in STEPS.items():
+            isReady = status.procedure.registrationInUse or Phase.VERIFYING not in phases
             # If registration fails, the only remedy is to touch again.
-            isReady |= isFailed and step.command == CommandName.REGISTER_AGAIN
-            isNow = status.isProcedureUnderWay and status.phase in step.phases
-            when = _(" or ").join(WHEN[phase] for phase in step.phases)
+            isReady |= isFailed and button == "registerAgainButton"
+            isNow = status.isProcedureUnderWay and status.phase in phases
+            when = _(" or ").join(WHEN[phase] for phase in phases)
             reason = _("Only {when}.").format(when=when)
             if isNow and not isReady:
                 reason = _("The touches are being registered.")
             if not isConnected:
                 reason = _("Connect to the simulator first.")
-            setEnabled(getattr(ui, step.button), isConnected and isNow and isReady, reason)
+            setEnabled(getattr(ui, button), isConnected and isNow and isReady, reason)
 
     def _showOutcome(self) -> None:
         ui, outcome = self._ui, self._logic.outcome

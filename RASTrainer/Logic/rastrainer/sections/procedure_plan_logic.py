@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import tempfile
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -44,20 +43,8 @@ from rastrainer.work_progress import Progress, no_progress
 
 FILE = "procedure.json"
 
-
-@dataclass(frozen=True)
-class PlanDescription:
-    """The parts of a plan that are not lines or structures in the scene.
-
-    `name` is empty for a new procedure, whose name its title gives; without a `source`, the
-    coordinates were placed in Slicer. `checkpoints` is a list of points on the skin, or None.
-    """
-
-    title: str
-    kind: str
-    source: str = ""
-    name: str = ""
-    checkpoints: Any = None
+Plan = tuple[Procedure, dict[str, HeadMesh]]
+"""A procedure, and the meshes of its no-go structures by file name."""
 
 
 class ProcedurePlanLogic:
@@ -74,9 +61,15 @@ class ProcedurePlanLogic:
         showPlan(self._scene, procedure, meshes.no_go if meshes else {})
         return procedure
 
-    def read(self, plan: PlanDescription) -> tuple[Procedure, dict[str, HeadMesh]]:
-        """Return the plan of the scene, and the meshes of its no-go structures by file name."""
-        title = plan.title.strip()
+    def read(
+        self, title: str, kind: str, source: str = "", name: str = "", checkpoints: Any = None
+    ) -> Plan:
+        """Return the plan of the scene.
+
+        `name` is empty for a new procedure, whose name its title gives; without a `source`, the
+        coordinates were placed in Slicer. `checkpoints` is a list of points on the skin, or None.
+        """
+        title = title.strip()
         if not title:
             raise InputError(_("Enter a title for the procedure."))
         trajectories = self._trajectories()
@@ -85,30 +78,30 @@ class ProcedurePlanLogic:
         if len(files) > MAX_NO_GO:
             text = _("The plan has {count} no-go structures; it may have {most}.")
             raise InputError(text.format(count=len(files), most=MAX_NO_GO))
-        name = plan.name or identifier_of(title)
+        name = name or identifier_of(title)
         if not name:
             text = _("{title} cannot be a procedure's title: it needs a Latin letter or digit.")
             raise InputError(text.format(title=title))
-        node = plan.checkpoints
-        checkpoints = () if node is None else zip(labelsOf(node), worldPoints(node), strict=True)
+        places = () if checkpoints is None else worldPoints(checkpoints)
+        labels = () if checkpoints is None else labelsOf(checkpoints)
         structures = zip(noGo, files, strict=True)
         procedure = Procedure(
             name,
             title[:80],
-            ProcedureKind(plan.kind),
-            plan.source.strip() or _("Planned in 3D Slicer."),
+            ProcedureKind(kind),
+            source.strip() or _("Planned in 3D Slicer."),
             trajectories,
             tuple(NoGoStructure(each[:60], Path(NO_GO_FOLDER, file)) for each, file in structures),
-            tuple(Checkpoint(label, place) for label, place in checkpoints),
+            tuple(map(Checkpoint, labels, places)),
         )
         return procedure, dict(zip(files, noGo.values(), strict=True))
 
     def check(
-        self, scenario: Scenario, plan: PlanDescription, progress: Progress = no_progress
+        self, scenario: Scenario, plan: Plan, progress: Progress = no_progress
     ) -> MeasuredProcedure:
         """Measure the plan on the head of a scenario; nothing is changed."""
         with tempfile.TemporaryDirectory() as temporary:
-            path = self._write(Path(temporary), plan)
+            path = _write(Path(temporary), *plan)
             measures = path.with_name("lines.json")
             words = ["lines", str(scenario.folder), "--procedure", str(path)]
             words += ["--json", str(measures)]
@@ -119,23 +112,11 @@ class ProcedurePlanLogic:
         return record_from_json(MeasuredProcedure, measured)
 
     def save(
-        self,
-        scenario: Scenario,
-        title: str,
-        plan: PlanDescription,
-        progress: Progress = no_progress,
+        self, scenario: Scenario, title: str, plan: Plan, progress: Progress = no_progress
     ) -> Scenario:
         with tempfile.TemporaryDirectory() as temporary:
-            words = ["--procedure", str(self._write(Path(temporary), plan))]
+            words = ["--procedure", str(_write(Path(temporary), *plan))]
             return self._files.saveWith(words, scenario.name, title, progress)
-
-    def _write(self, folder: Path, plan: PlanDescription) -> Path:
-        procedure, meshes = self.read(plan)
-        (folder / NO_GO_FOLDER).mkdir()
-        for name, mesh in meshes.items():
-            write_head_mesh(folder / NO_GO_FOLDER / name, mesh)
-        write_json(folder / FILE, procedure_json(procedure))
-        return folder / FILE
 
     def _trajectories(self) -> tuple[ProcedureTrajectory, ...]:
         lines = planLines(self._scene)
@@ -148,6 +129,14 @@ class ProcedurePlanLogic:
                 text = _("Two lines are named {name}: give each its own name.")
                 raise InputError(text.format(name=name))
         return tuple(_trajectory(line) for line in lines)
+
+
+def _write(folder: Path, procedure: Procedure, meshes: dict[str, HeadMesh]) -> Path:
+    (folder / NO_GO_FOLDER).mkdir()
+    for name, mesh in meshes.items():
+        write_head_mesh(folder / NO_GO_FOLDER / name, mesh)
+    write_json(folder / FILE, procedure_json(procedure))
+    return folder / FILE
 
 
 def _trajectory(line: Any) -> ProcedureTrajectory:

@@ -12,7 +12,7 @@ from rastrainer.procedure.checks import LineMeasures, MeasuredProcedure
 from rastrainer.procedure.plan import ProcedureKind
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, chosenScenario, connectClick
-from rastrainer.sections.procedure_plan_logic import PlanDescription
+from rastrainer.sections.procedure_plan_logic import Plan
 from rastrainer.slicer.scene.nodes import Role, worldPoints
 from rastrainer.slicer.scene.plan_points import startPlacing, unfinishedLine
 from rastrainer.slicer.scene.procedure_lines import (
@@ -144,7 +144,7 @@ class ProcedurePlanPanel(Panel):
         """Measure all lines on the head of the chosen scenario."""
         self._problem = ""
         scenario = chosenScenario(self._ui, self._session)
-        plan, snapshot = self._description(), self._snapshot()
+        plan, snapshot = self._read(), self._snapshot()
         found = self._work.run(lambda report: self._logic.check(scenario, plan, report))
         if found is not None:
             self._checked = snapshot, found
@@ -153,7 +153,7 @@ class ProcedurePlanPanel(Panel):
     def save(self) -> None:
         """Copy the chosen scenario with this procedure and use the copy."""
         title = self._ui.procedureScenarioLineEdit.text.strip()
-        scenario, plan = chosenScenario(self._ui, self._session), self._description()
+        scenario, plan = chosenScenario(self._ui, self._session), self._read()
         saved = self._work.run(lambda report: self._logic.save(scenario, title, plan, report))
         if saved is not None:
             self._session.scenarioMade.emit(saved.name)
@@ -234,11 +234,12 @@ class ProcedurePlanPanel(Panel):
         lines, row = planLines(slicer.mrmlScene), self._ui.linesTable.currentRow()
         return lines[row] if 0 <= row < len(lines) else None
 
-    def _description(self) -> PlanDescription:
+    def _read(self) -> Plan:
         ui, kind = self._ui, chosenData(self._ui.procedureKindComboBox)
         title, source = ui.procedureTitleLineEdit.text, ui.procedureSourceLineEdit.text
-        checkpoints = ui.checkpointsComboBox.currentNode()
-        return PlanDescription(title, kind, source, self._name, checkpoints)
+        return self._logic.read(
+            title, kind, source, self._name, ui.checkpointsComboBox.currentNode()
+        )
 
     def _showProcedures(self) -> None:
         entries = [(title, name) for name, title in self._session.procedures]

@@ -142,14 +142,13 @@ class SimulatorPanel(Panel):
         bind(ui.networkCheckBox, "checked", session.settings, HAS_NETWORK)
         self._startsAfterSetup = False
         self._start = guardedAction(self._startProgram, _("The simulator could not be started."))
-        connect = guardedAction(self._connect, _("The connection could not be started."))
-        self.connect = connect
+        self.connect = guardedAction(self._connect, _("The connection could not be started."))
         ui.startSimulatorButton.connect("clicked()", self.startAndConnect)
         notStopped = _("The simulator could not be stopped.")
         connectClick(ui.stopSimulatorButton, self._simulator.stop, notStopped)
         ui.programPathLineEdit.connect("currentPathChanged(QString)", self._showProgram)
         disconnect = guardedAction(self._link.disconnect, _("The connection could not be closed."))
-        connectAsPressed(ui.connectButton, lambda: connect if self._isOff() else disconnect)
+        connectAsPressed(ui.connectButton, lambda: self.connect if self._isOff() else disconnect)
         connectClick(ui.probeButton, self.testConnection, _("The connection could not be tested."))
         setup, program = self._simulator.setup, self._simulator.program
         self.listen(
@@ -235,7 +234,7 @@ class SimulatorPanel(Panel):
         ui.portSpinBox.enabled = isOff
         why = _("Disconnect first: the state of the connection is shown below.")
         setEnabled(ui.probeButton, isOff, why)
-        if status.state is not LinkState.CONNECTED:
+        if not status.isConnected:
             setText(ui.trainingText, "")
 
     def _showWords(self, status: LinkStatus) -> None:
@@ -261,7 +260,6 @@ class RunningSimulatorPanel(Panel):
         ui, running = self._ui, self._running
         ui.runningSimulatorFrame.visible = running.holder is not None
         setText(ui.runningSimulatorText, running.sentence)
-        why = _("Its address is not known.")
-        setEnabled(ui.connectToRunningButton, running.canConnect, why)
+        setEnabled(ui.connectToRunningButton, running.canConnect, _("Its address is not known."))
         why = _("It is ending, or its process is not known.")
         setEnabled(ui.endRunningButton, running.canEnd, why)

@@ -65,8 +65,9 @@ class PracticeMonitor(Listening):
     def unsavedS(self, trainee: str, mode: str) -> float:
         """Return how long the trial run was practiced in a mode since it was last stored, s."""
         run = self._run
-        isTheirs = run is not None and (run.trainee, run.mode) == (trainee, mode)
-        return run.elapsedS - self._kept if run is not None and isTheirs else 0.0
+        if run is None or (run.trainee, run.mode) != (trainee, mode):
+            return 0.0
+        return run.elapsedS - self._kept
 
     def keep(self) -> None:
         """Store the practice time in the study's file; the step is done when its time is over."""
@@ -216,20 +217,19 @@ class StudyLogic(Listening):
         task: str,
         mode: str,
         isTutorialFirst: bool = True,
-        procedure: str = "",
-        method: str = "",
+        **others: str | Mapping[str, float],
     ) -> None:
         """Start a trial for the chosen trainee, unless the study asks for something else first.
 
         Within a study, the protocol decides whether a trial run waits for the tutorial, by what a
         trial is registered, how its skin shifts, and whether it continues with a procedure.
         """
-        skin: Mapping[str, float] = {}
-        if self.study.protocol() is not None and self._trainees.chosen:
-            step = self._progress().check_start(mode, task)
-            isTutorialFirst, procedure, method, skin = True, step.procedure, step.method, step.skin
         trainee = self._trainees.chosen
-        self._training.start(trainee, task, mode, isTutorialFirst, procedure, method, skin)
+        if self.study.protocol() is not None and trainee:
+            step = self._progress().check_start(mode, task)
+            isTutorialFirst = True
+            others = {name: getattr(step, name) for name in ("procedure", "method", "skin")}
+        self._training.start(trainee, task, mode, isTutorialFirst, **others)
 
     def offProtocolSentence(self) -> str:
         """Return a sentence while an enrolled trainee plays what the study has not requested."""

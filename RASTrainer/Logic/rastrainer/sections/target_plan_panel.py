@@ -14,7 +14,6 @@ from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, connectClick
 from rastrainer.sections.scenario_files import planArguments
 from rastrainer.sections.target_plan_logic import PlanOnImages, targetsOf
-from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.scene.nodes import NodeKind, Role
 from rastrainer.slicer.scene.plan_points import startPlacing, whyNotRemoved
 from rastrainer.slicer.translation import _
@@ -89,9 +88,9 @@ class PlanPanel(Panel):
         setEnabled(ui.undoPlanButton, logic.points.canUndo, unchanged)
         setText(ui.planWorldText, problem if plan is None else _place(plan))
         setText(ui.planTreText, "–" if plan is None else _expected(plan), INTERVAL_NOTE)
-        isConnected = self._session.link.status.state is LinkState.CONNECTED
         problem = problem or _("Connect to the simulator first.")
-        setEnabled(ui.sendPlanButton, plan is not None and isConnected, problem)
+        maySend = plan is not None and self._session.link.status.isConnected
+        setEnabled(ui.sendPlanButton, maySend, problem)
         none = _("Place a target or a trajectory, or choose one.")
         setEnabled(ui.keepPlanButton, self._keeping.isUnderWay or node is not None, none)
         setLight(ui.reachableLight, {None: GRAY, True: GREEN, False: RED}[logic.isReachable])

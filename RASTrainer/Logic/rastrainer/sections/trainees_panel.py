@@ -162,10 +162,11 @@ class TraineesPanel(Panel):
         """Write the trials of the chosen trainee as a table, and aborted trials as another."""
         from rastrainer.study.tidy_csv import write_history
 
-        def write(study: Study, name: str, path: Path) -> int:
-            return write_history(study, [name], path)
-
-        self._export(_("Export the history"), "CSV", write)
+        self._export(
+            _("Export the history"),
+            "CSV",
+            lambda study, name, path: write_history(study, [name], path),
+        )
 
     def _export(self, caption: str, kind: str, write: Callable[[Study, str, Path], int]) -> None:
         chosen, suffix = self._logic.chosen, kind.lower()

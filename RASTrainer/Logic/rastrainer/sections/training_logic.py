@@ -16,7 +16,6 @@ from rastrainer.scenario.scenario import Scenario, method_of
 from rastrainer.sections.trial_status import TrialStatus, readStatus
 from rastrainer.slicer.background_work import CallLater, callNow
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
 from rastrainer.slicer.scene.trial_scene import (
@@ -87,14 +86,12 @@ class TrainingLogic(Listening):
         task: str,
         mode: str,
         isTutorialFirst: bool = False,
-        procedure: str = "",
-        method: str = "",
-        skin: Mapping[str, float] | None = None,
+        **others: str | Mapping[str, float],
     ) -> None:
-        """Start a trial, by fiducials and without a procedure unless others are named.
+        """Start a trial, by fiducials and without a procedure unless `others` names them.
 
-        Its skin shifts by `skin`, or as the scenario says. With `isTutorialFirst`, the simulator
-        may open the tutorial instead of a trial run, which can be started after it.
+        Its skin shifts by the `skin` there, or as the scenario says. With `isTutorialFirst`, the
+        simulator may open the tutorial instead of a trial run, which can be started after it.
         """
         if not trainee:
             raise InputError(_("Choose a trainee in the section Trainees first."))
@@ -106,8 +103,8 @@ class TrainingLogic(Listening):
                 CommandName.START_TUTORIAL, who, lambda reply: self._startUnlessTutorial(reply, who)
             )
         else:
-            isMarked = method == RegistrationMethod.FIDUCIALS.value
-            others = {"procedure": procedure, "method": "" if isMarked else method, "skin": skin}
+            if others.get("method") == RegistrationMethod.FIDUCIALS.value:
+                del others["method"]
             given = {key: each for key, each in others.items() if each}
             self.command(CommandName.START_TASK, {"task": task, **who, **given})
 
@@ -122,7 +119,7 @@ class TrainingLogic(Listening):
     @property
     def obstacle(self) -> str:
         """Why no trial can be started now, for any trainee; empty if one can."""
-        if self._link.status.state is not LinkState.CONNECTED:
+        if not self._link.status.isConnected:
             return _("Connect to the simulator first.")
         if self.status.isOpen:
             return _("A trial is open: abort it or let it be registered first.")

@@ -19,7 +19,6 @@ from rastrainer.protocol import (
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, connectClick
 from rastrainer.sections.training_logic import TrialStatus
-from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.settings import (
     IS_TUTORIAL_FIRST,
     MODE,
@@ -85,9 +84,8 @@ class TrainingPanel(Panel):
         for box in (ui.slicesNextPointCheckBox, ui.slicesToolCheckBox):
             box.connect("toggled(bool)", lambda _checked: session.woken.emit())
         notStarted, logic = _("The trial was not started."), self._logic
-        self.startTrialRun = connectClick(
-            ui.startTrialRunButton, lambda: self._start(TRIAL_RUN), notStarted
-        )
+        run = partial(self._start, TRIAL_RUN)
+        self.startTrialRun = connectClick(ui.startTrialRunButton, run, notStarted)
         self.startTask = connectClick(ui.startTaskButton, self._startTask, notStarted)
         pause = partial(logic.command, CommandName.PAUSE)
         self.pause = guardedAction(pause, _("The trial was not paused."))
@@ -112,13 +110,13 @@ class TrainingPanel(Panel):
         self.showState()
 
     def _startTask(self) -> None:
-        ui = self._ui
-        procedure, method = (chosenData(box) for box in (ui.procedureComboBox, ui.methodComboBox))
-        self._start(self._session.task, procedure, method)
+        boxes = {"procedure": self._ui.procedureComboBox, "method": self._ui.methodComboBox}
+        chosen = {name: chosenData(box) for name, box in boxes.items()}
+        self._start(self._session.task, **chosen)
 
-    def _start(self, task: str, procedure: str = "", method: str = "") -> None:
+    def _start(self, task: str, **others: str) -> None:
         mode, isTutorialFirst = chosenData(self._ui.modeComboBox), self._ui.tutorialCheckBox.checked
-        self._session.study.startTrial(task, mode, isTutorialFirst, procedure, method)
+        self._session.study.startTrial(task, mode, isTutorialFirst, **others)
 
     def abort(self) -> None:
         trial = self._logic.status
@@ -150,12 +148,11 @@ class TrainingPanel(Panel):
         setText(ui.trainingTraineeText, session.trainees.chosen or nobody)
         title = _("Start {task}").format(task=buttonTitle(session.taskTitle))
         setProperty(ui.startTaskButton, "text", title)
-        isConnected = session.link.status.state is LinkState.CONNECTED
-        self._showButtons(trial, isConnected)
+        self._showButtons(trial)
         received = len(session.trials.received)
         kept = _("{count}, all stored in the study").format(count=received)
         setText(ui.receivedText, kept if received else _("none"))
-        if not isConnected:
+        if not session.link.status.isConnected:
             setText(ui.phaseText, _("not connected; no touch is lost"))
             setLight(ui.clearanceLight, GRAY)
             for label in (ui.trialText, ui.nextPointText, ui.elapsedText, ui.clearanceText):
@@ -176,12 +173,12 @@ class TrainingPanel(Panel):
         setText(ui.instructionText, text if trial.instruction else "")
 
     def _showTime(self) -> None:
-        if self._session.link.status.state is LinkState.CONNECTED:
+        if self._session.link.status.isConnected:
             minutes, seconds = divmod(int(self._logic.status.elapsedS), 60)
             setText(self._ui.elapsedText, f"{minutes}:{seconds:02d} min")
 
-    def _showButtons(self, trial: TrialStatus, isConnected: bool) -> None:
-        ui = self._ui
+    def _showButtons(self, trial: TrialStatus) -> None:
+        ui, isConnected = self._ui, self._session.link.status.isConnected
         nobody = _("Choose a trainee in the section Trainees first.")
         reason = self._logic.obstacle or ("" if self._session.trainees.chosen else nobody)
         for button in (ui.startTrialRunButton, ui.startTaskButton):

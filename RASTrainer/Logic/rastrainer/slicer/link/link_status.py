@@ -63,6 +63,10 @@ class LinkStatus:
     sentence: str
     remedy: str = ""
 
+    @property
+    def isConnected(self) -> bool:
+        return self.state is LinkState.CONNECTED
+
 
 NOT_INSTALLED = LinkStatus(
     LinkState.NOT_INSTALLED,
