@@ -40,14 +40,14 @@ from rastrainer.scenario.writer import (
 from rastrainer.work_progress import HEAD_MADE, Progress, Warn, no_progress, report_line
 from rastrainer_simulator.authoring.landmarks import check_on_planned_head
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
-from rastrainer_simulator.authoring.procedure_plan import measure_procedures, with_procedure
+from rastrainer_simulator.authoring.procedure_plan import measure_procedure, with_procedure
 from rastrainer_simulator.authoring.scenario_check import (
     check_plan,
     check_tasks,
     read_placed_tasks,
     start_clearance_mm,
 )
-from rastrainer_simulator.authoring.task_set import TaskSetProposer
+from rastrainer_simulator.authoring.task_set import propose_tasks
 from rastrainer_simulator.rendering.picture import draw_preview
 
 CENTER = "Center of the head"
@@ -93,7 +93,7 @@ def make_scenario(
         planning, tasks = check_options(draft, options, progress, warn)
         scenario = planning.scenario
         if not tasks:
-            tasks = TaskSetProposer(planning, progress).propose(options.seed)
+            tasks = propose_tasks(planning, options.seed, progress)
         progress("Drawing the picture", 0.95)
         draw_preview(made / PREVIEW_NAME, replace(scenario, tasks=tasks), draft.head)
         if wait_for_skull is not None:
@@ -169,11 +169,11 @@ def _with_main_target(scenario: Scenario, head: HeadMesh, warn: Warn) -> Scenari
 
 def copy_with_plan(
     folder: Path,
-    title: str,
     copy: Path,
+    warn: Warn,
+    title: str,
     targets: tuple[PlannedTarget, ...],
     trajectory: PlannedTrajectory | None,
-    warn: Callable[[str], None],
     procedure: Procedure | None = None,
     landmarks: tuple[Landmark, ...] | None = None,
 ) -> Scenario:
@@ -193,8 +193,7 @@ def copy_with_plan(
     wrong: list[str] = []
     if procedure is not None:
         scenario, no_go = with_procedure(scenario, procedure)
-        (measured,) = measure_procedures(folder, procedure)
-        wrong += measured.wrong
+        wrong += measure_procedure(PlanningSetup(before, head), procedure).wrong
     if landmarks is not None:
         scenario = replace(scenario, landmarks=on_skin(head, landmarks))
     planning = PlanningSetup(scenario, head)

@@ -21,7 +21,7 @@ from rastrainer.procedure.plan import (
     read_procedure_meshes,
 )
 from rastrainer.scenario.library import require_usable_lines
-from rastrainer.scenario.scenario import Scenario, load_scenario
+from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.planning_setup import POSES_TRIED, PlanningSetup, pose_head
 from rastrainer_simulator.core.setup import SimulationSetup
@@ -47,17 +47,28 @@ def is_guide_held(
 
 
 def check_procedures(planning: PlanningSetup) -> list[str]:
-    """Return a sentence for each error in the procedures of a scenario.
-
-    Reach is checked in the nominal pose of the head and in some seeded poses.
-    """
-    wrong = []
+    """Return a sentence for each error in the procedures of a scenario."""
+    wrong: list[str] = []
     for procedure in planning.scenario.procedures:
         try:
-            wrong += _check_on_head(planning, procedure) or _lines_held(planning, procedure)[1]
+            wrong += measure_procedure(planning, procedure).wrong
         except InputError as error:
             wrong.append(f"{procedure.title}: {error}")
     return wrong
+
+
+def measure_procedure(planning: PlanningSetup, procedure: Procedure) -> MeasuredProcedure:
+    """Return how a procedure would be on the scenario's head.
+
+    Reach is checked in the nominal pose of the head and in some seeded poses.
+    """
+    meshes = read_procedure_meshes(procedure, skull_of(planning.scenario))
+    wrong = check_procedure(procedure, planning.mesh, meshes)
+    lines = measure_lines(procedure, meshes)
+    if not wrong:
+        held, wrong = _lines_held(planning, procedure)
+        lines = [replace(line, is_held=can) for line, can in zip(lines, held, strict=True)]
+    return MeasuredProcedure(procedure.name, procedure.title, tuple(lines), tuple(wrong))
 
 
 def require_usable_procedures(setup: SimulationSetup) -> None:
@@ -76,12 +87,6 @@ def require_usable_procedures(setup: SimulationSetup) -> None:
     ]
     if wrong:
         raise InputError(" ".join(wrong))
-
-
-def _check_on_head(planning: PlanningSetup, procedure: Procedure) -> list[str]:
-    """Return a sentence for each error of a plan on the scenario's head, apart from the reach."""
-    meshes = read_procedure_meshes(procedure, planning.scenario.skull_path)
-    return check_procedure(procedure, planning.mesh, meshes)
 
 
 def _lines_held(
@@ -105,24 +110,6 @@ def _lines_held(
     return held, wrong
 
 
-def measure_procedures(
-    folder: Path, procedure: Procedure | None = None
-) -> tuple[MeasuredProcedure, ...]:
-    """Return the procedures of a scenario, or another one on its head, as measured."""
-    scenario = load_scenario(folder)
-    skull = _skull(scenario)
-    planning = PlanningSetup(scenario, read_head_mesh(scenario.head))
-    measured = []
-    for each in scenario.procedures if procedure is None else (procedure,):
-        wrong = _check_on_head(planning, each)
-        lines = measure_lines(each, read_procedure_meshes(each, skull))
-        if not wrong:
-            held, wrong = _lines_held(planning, each)
-            lines = [replace(line, is_held=can) for line, can in zip(lines, held, strict=True)]
-        measured.append(MeasuredProcedure(each.name, each.title, tuple(lines), tuple(wrong)))
-    return tuple(measured)
-
-
 def with_procedure(
     scenario: Scenario, procedure: Procedure
 ) -> tuple[Scenario, dict[str, HeadMesh]]:
@@ -131,7 +118,7 @@ def with_procedure(
     The second value has the meshes of all its no-go structures by file name. A new mesh gets
     another file name if another procedure uses its name for another structure.
     """
-    _skull(scenario)
+    skull_of(scenario)
     others = [each for each in scenario.procedures if each.name != procedure.name]
     kept = read_all_no_go(others)
     structures = []
@@ -151,7 +138,7 @@ def with_procedure(
     return replace(scenario, procedures=tuple(procedures.values())), kept
 
 
-def _skull(scenario: Scenario) -> Path:
+def skull_of(scenario: Scenario) -> Path:
     if scenario.skull is None:
         raise InputError(
             f"The scenario {scenario.name} has no skull, which a procedure needs for drilling; "

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 from itertools import combinations, pairwise
 from pathlib import Path
 
@@ -155,10 +154,15 @@ SHORTEST_PATH_TOLERANCE = 0.01
 """Tolerance, as a share of the path."""
 
 
-def measured(planning: PlanningSetup, task: Task) -> Task:
-    index = complexity(task.fiducials, planning.mesh, planning.graph, planning.eye).index
-    shortest = shortest_path_mm(task.fiducials, planning.mesh, planning.graph)
-    return replace(task, complexity=round(index, 2), shortest_path_mm=round(shortest, 1))
+def measured(planning: PlanningSetup, task: TaskPlan | Task, fiducials: np.ndarray) -> Task:
+    """Return a task with these fiducials, and its complexity and shortest path."""
+    index = complexity(fiducials, planning.graph, planning.eye).index
+    shortest = shortest_path_mm(fiducials, planning.graph)
+    return Task(
+        *(task.name, task.title, task_file(task.name)),
+        *(round(index, 2), round(shortest, 1)),
+        fiducials=fiducials,
+    )
 
 
 def check_tasks(planning: PlanningSetup, tasks: Iterable[Task], first_seed: int = 0) -> list[str]:
@@ -172,7 +176,7 @@ def check_tasks(planning: PlanningSetup, tasks: Iterable[Task], first_seed: int 
         wrong += _wrong_places(planning, task) or [
             *(_untouchable(planning, task, first_seed) or _unseen(planning, task)),
             *([] if planning.views.on_skin(task)[1].has_room else [f"{task.title}: {NO_ROOM}"]),
-            *_wrong_measures(task, measured(planning, task)),
+            *_wrong_measures(task, measured(planning, task, task.fiducials)),
         ]
     for easier, harder in pairwise(tasks):
         if harder.complexity <= easier.complexity:
@@ -281,16 +285,16 @@ def read_placed_tasks(
     for index, (path, plan) in enumerate(zip(files, PLANS, strict=False)):
         progress(f"Checking {plan.title}", index / len(files))
         try:
-            task = _read(planning.mesh, path, plan, warn)
+            fiducials = _read(planning.mesh, path, plan, warn)
         except InputError as error:
             wrong.append(f"{plan.title}: {error}")
         else:
-            tasks.append(measured(planning, task))
+            tasks.append(measured(planning, plan, fiducials))
     return tuple(tasks), [*wrong, *check_tasks(planning, tasks)]
 
 
-def _read(mesh: HeadMesh, path: Path, plan: TaskPlan, warn: Warn) -> Task:
-    """Return a task on the skin."""
+def _read(mesh: HeadMesh, path: Path, plan: TaskPlan, warn: Warn) -> np.ndarray:
+    """Return the fiducials (15, 3) of a task, on the skin."""
     placed = read_markups(path)
     labels = placed.labels or [""] * len(placed.points)
     points = np.array(placed.points, dtype=float)[touch_order(labels)]
@@ -310,4 +314,4 @@ def _read(mesh: HeadMesh, path: Path, plan: TaskPlan, warn: Warn) -> Task:
         )
     if len(np.unique(points, axis=0)) != len(LABELS):
         raise InputError("two fiducials are at the same place.")
-    return Task(plan.name, plan.title, task_file(plan.name), 0.0, fiducials=points)
+    return points

@@ -106,11 +106,11 @@ class TaskProposer:
 
     def __init__(
         self,
-        mesh: HeadMesh,
+        graph: SurfaceGraph,
         places: CandidatePlaces,
         eye: np.ndarray,
         target: np.ndarray,
-        accepts: Callable[[Proposal], bool] = lambda _proposal: True,
+        accepts: Callable[[np.ndarray], bool] = lambda _fiducials: True,
         usable: Callable[[np.ndarray], np.ndarray] = lambda places: np.ones(len(places), bool),
     ) -> None:
         """Prepare proposals for the default view's eye and a target to be located well, RAS mm.
@@ -118,7 +118,7 @@ class TaskProposer:
         `usable` returns which of some points (n, 3) can be used, (n,) bool; it is expensive, so it
         is called for chosen points only, and unusable points are not chosen again.
         """
-        self._mesh, self._graph, self._places = mesh, SurfaceGraph(mesh), places
+        self._graph, self._places = graph, places
         self._eye, self._target = eye, target
         self._accepts, self._usable = accepts, usable
 
@@ -137,7 +137,7 @@ class TaskProposer:
             if begins_easy and not proposals:
                 own_seeds = sorted(own_seeds, key=lambda seed: self._draw(plan, seed)[1])
             found = (self.propose(plan, own_seed, least) for own_seed in own_seeds)
-            rising = next((one for one in found if one and self._accepts(one)), None)
+            rising = next((one for one in found if one and self._accepts(one.fiducials)), None)
             if rising is None:
                 raise InputError(f"{plan.title} cannot be made harder than the task before it.")
             proposals.append(rising)
@@ -158,7 +158,7 @@ class TaskProposer:
             )
         if rough_index < ROUGHLY * least:
             return None
-        demands = complexity(fiducials, self._mesh, self._graph, self._eye)
+        demands = complexity(fiducials, self._graph, self._eye)
         return Proposal(plan, fiducials, demands) if demands.index >= least else None
 
     def _draw(self, plan: TaskPlan, seed: int) -> tuple[np.ndarray, float]:

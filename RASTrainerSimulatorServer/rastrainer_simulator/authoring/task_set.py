@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
-from functools import cached_property
 
 import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, outward_normals
-from rastrainer.scenario.points import LABELS, Task, task_file
+from rastrainer.scenario.points import LABELS, Task
 from rastrainer.work_progress import Progress, no_progress
 from rastrainer_simulator.authoring.face_removal import face_vertices
 from rastrainer_simulator.authoring.planning_setup import WIDER, PlanningSetup
+from rastrainer_simulator.authoring.scenario_check import measured
 from rastrainer_simulator.authoring.task_proposal import (
     PLANS,
     CandidatePlaces,
     TaskProposer,
     places_seen_from,
 )
-from rastrainer_simulator.authoring.touch_order import shortest_path_mm
 from rastrainer_simulator.scene.skin_marks import Skin, place_marks
 
 ABOVE_BASE_MM = 25.0
@@ -72,93 +72,79 @@ MAX_SHARE = 0.94
 _DECIMALS = 4
 
 
-class TaskSetProposer:
-    """Proposes sets of tasks for one head and set-up; the same seed proposes the same set."""
+def propose_tasks(
+    planning: PlanningSetup, seed: int, progress: Progress = no_progress
+) -> tuple[Task, ...]:
+    """Return a set of tasks, each more demanding than its predecessor; the same for a seed.
 
-    def __init__(self, planning: PlanningSetup, progress: Progress = no_progress) -> None:
-        """Prepare proposals; `progress` may raise to cancel."""
-        self._planning = planning
-        self._progress = progress
-        self._skin = Skin(planning.mesh)
-        # In these, besides the nominal one, every fiducial must be touchable.
-        self._poses = [*planning.poses(WIDE_SEEDS, WIDER)[1:], *planning.poses(TRIAL_SEEDS)[1:]]
-        self._found: dict[tuple[float, ...], bool] = {}
-        self._share = 0.0
+    Their fiducials are on the skin, off the face, touchable in many poses of the head, and spread
+    so that the target is located well; their numbers do not overlap. `progress` may raise to
+    cancel.
+    """
+    share = 0.0
 
-    def propose(self, seed: int) -> tuple[Task, ...]:
-        """Return the tasks, each more demanding than its predecessor.
+    def report(step: str, reached: float) -> None:
+        nonlocal share
+        share = max(share, min(reached, MAX_SHARE))
+        progress(step, share)
 
-        Their fiducials are on the skin, off the face, touchable in many poses of the head, and
-        spread so that the target is located well; their numbers do not overlap.
-        """
-        planning, problem = self._planning, ""
-        for attempt in range(ATTEMPTS):
-            proposer = TaskProposer(
-                planning.mesh,
-                self._places,
-                planning.eye,
-                planning.scenario.target.position_ras,
-                lambda one: place_marks(self._skin, one.fiducials, LABELS).has_room,
-                self._are_touchable,
-            )
-            self._report("Placing fiducials", 0.3 + 0.1 * attempt)
-            try:
-                # Easy tasks have more room in each further attempt.
-                wider = WIDEN_DEG * attempt
-                plans = [
-                    replace(plan, off_axis_deg=min(WIDEST_DEG, plan.off_axis_deg + wider))
-                    for plan in PLANS
-                ]
-                proposals = proposer.propose_rising(plans, seed + attempt, attempt > 0)
-            except InputError as error:
-                problem = str(error)
-                continue
-            return tuple(
-                Task(
-                    one.plan.name,
-                    one.plan.title,
-                    task_file(one.plan.name),
-                    round(one.complexity.index, 2),
-                    round(shortest_path_mm(one.fiducials, planning.mesh, planning.graph), 1),
-                    fiducials=one.fiducials,
-                )
-                for one in proposals
-            )
-        raise InputError(problem)
+    # In these, besides the nominal one, every fiducial must be touchable.
+    poses = [*planning.poses(WIDE_SEEDS, WIDER)[1:], *planning.poses(TRIAL_SEEDS)[1:]]
+    known: dict[tuple[float, ...], bool] = {}
 
-    @cached_property
-    def _places(self) -> CandidatePlaces:
-        planning = self._planning
-        self._report("Finding smooth skin", 0.0)
-        vertices = smooth_places(planning.mesh, PLACE_SPACING_MM)
-        positions = planning.mesh.vertices[vertices].astype(float).round(_DECIMALS)
-        normals = planning.mesh.vertex_normals[vertices]
-        face = planning.mesh.vertices[face_vertices(planning.mesh)]
-        if len(face):
-            away = np.array([np.linalg.norm(face - place, axis=1).min() for place in positions])
-            positions, normals = positions[away > FACE_MARGIN_MM], normals[away > FACE_MARGIN_MM]
-        self._report("Finding what the robot can touch", 0.05)
-        can_be = planning.touchable(positions, normals, planning.poses(range(0)))
-        positions, normals = positions[can_be], normals[can_be]
-        if len(positions) < len(LABELS):
-            raise InputError(
-                f"The robot can touch only {len(positions)} of {len(vertices)} places of this head "
-                "where a fiducial could be; move the head closer to the robot."
-            )
-        self._report("Finding what the view shows", 0.2)
-        return places_seen_from(planning.mesh, positions, normals, planning.eye)
-
-    def _are_touchable(self, positions: np.ndarray) -> np.ndarray:
-        """Return which points (n,) bool can be touched in every pose of a trial."""
+    def are_touchable(positions: np.ndarray) -> np.ndarray:
         places = [tuple(position) for position in positions.tolist()]
-        new = [place for place in places if place not in self._found]
+        new = [place for place in places if place not in known]
         if new:
-            self._report("Checking reach", 0.3 + 0.005 * len(self._found))
-            normals = outward_normals(self._planning.mesh, np.array(new))
-            can_be = self._planning.touchable(np.array(new), normals, self._poses)
-            self._found |= dict(zip(new, can_be.tolist(), strict=True))
-        return np.array([self._found[place] for place in places])
+            report("Checking reach", 0.3 + 0.005 * len(known))
+            normals = outward_normals(planning.mesh, np.array(new))
+            can_be = planning.touchable(np.array(new), normals, poses)
+            known.update(zip(new, can_be.tolist(), strict=True))
+        return np.array([known[place] for place in places])
 
-    def _report(self, step: str, share: float) -> None:
-        self._share = max(self._share, min(share, MAX_SHARE))
-        self._progress(step, self._share)
+    places, skin, problem = _touchable_places(planning, report), Skin(planning.mesh), ""
+    for attempt in range(ATTEMPTS):
+        proposer = TaskProposer(
+            planning.graph,
+            places,
+            planning.eye,
+            planning.scenario.target.position_ras,
+            lambda fiducials: place_marks(skin, fiducials, LABELS).has_room,
+            are_touchable,
+        )
+        report("Placing fiducials", 0.3 + 0.1 * attempt)
+        # Easy tasks have more room in each further attempt.
+        wider = WIDEN_DEG * attempt
+        plans = [
+            replace(plan, off_axis_deg=min(WIDEST_DEG, plan.off_axis_deg + wider)) for plan in PLANS
+        ]
+        try:
+            proposals = proposer.propose_rising(plans, seed + attempt, attempt > 0)
+        except InputError as error:
+            problem = str(error)
+        else:
+            return tuple(measured(planning, one.plan, one.fiducials) for one in proposals)
+    raise InputError(problem)
+
+
+def _touchable_places(
+    planning: PlanningSetup, report: Callable[[str, float], None]
+) -> CandidatePlaces:
+    report("Finding smooth skin", 0.0)
+    vertices = smooth_places(planning.mesh, PLACE_SPACING_MM)
+    positions = planning.mesh.vertices[vertices].astype(float).round(_DECIMALS)
+    normals = planning.mesh.vertex_normals[vertices]
+    face = planning.mesh.vertices[face_vertices(planning.mesh)]
+    if len(face):
+        away = np.array([np.linalg.norm(face - place, axis=1).min() for place in positions])
+        positions, normals = positions[away > FACE_MARGIN_MM], normals[away > FACE_MARGIN_MM]
+    report("Finding what the robot can touch", 0.05)
+    can_be = planning.touchable(positions, normals, planning.poses(range(0)))
+    positions, normals = positions[can_be], normals[can_be]
+    if len(positions) < len(LABELS):
+        raise InputError(
+            f"The robot can touch only {len(positions)} of {len(vertices)} places of this head "
+            "where a fiducial could be; move the head closer to the robot."
+        )
+    report("Finding what the view shows", 0.2)
+    return places_seen_from(planning.mesh, positions, normals, planning.eye)

@@ -52,22 +52,20 @@ class Complexity:
         )
 
 
-def complexity(
-    fiducials: np.ndarray, mesh: HeadMesh, graph: SurfaceGraph, eye: np.ndarray
-) -> Complexity:
+def complexity(fiducials: np.ndarray, graph: SurfaceGraph, eye: np.ndarray) -> Complexity:
     """Return the complexity of touching `fiducials` (n, 3) float, RAS mm, in order.
 
-    `graph` has the paths over the mesh; `eye` is the position (3,) of the default view.
+    `eye` is the position (3,) of the default view.
     """
     fiducials = np.asarray(fiducials, dtype=float)
-    normals = outward_normals(mesh, fiducials)
+    normals = outward_normals(graph.mesh, fiducials)
     return Complexity(
         path_length_mm=sum(itertools.starmap(graph.distance, itertools.pairwise(fiducials))),
         turning_deg=float(
             turns_deg(fiducials[:-2], fiducials[1:-1], fiducials[2:], normals[1:-1]).sum()
         ),
         hidden_points=sum(
-            is_hidden(point, normal, mesh, eye)
+            is_hidden(point, normal, graph.mesh, eye)
             for point, normal in zip(fiducials, normals, strict=True)
         ),
         reorientation_deg=float(_angles_deg(normals[:-1], normals[1:]).sum()),
@@ -211,7 +209,7 @@ class SurfaceGraph:
         # Only here: a simulator that loads a scenario needs no paths, and need not wait for scipy.
         from scipy.sparse import csr_array
 
-        self._mesh, count = mesh, len(mesh.vertices)
+        self.mesh, count = mesh, len(mesh.vertices)
         across, across_mm = _paths_across(mesh)
         straight = np.linalg.norm(np.diff(mesh.vertices[mesh.edges], axis=1)[:, 0], axis=1)
         pairs = np.sort(np.concatenate([mesh.edges, across]), axis=1)
@@ -229,12 +227,12 @@ class SurfaceGraph:
         # Complexity and shortest path of a task need the same paths.
         key = (*map(float, start), *map(float, end))
         if key not in self._known:
-            first, last = nearest_on_mesh(self._mesh, start), nearest_on_mesh(self._mesh, end)
+            first, last = nearest_on_mesh(self.mesh, start), nearest_on_mesh(self.mesh, end)
             straight = float(np.linalg.norm(first.position - last.position))
             if first.triangle == last.triangle:
                 self._known[key] = straight
             else:
-                near, far = (self._mesh.triangles[each.triangle] for each in (first, last))
+                near, far = (self.mesh.triangles[each.triangle] for each in (first, last))
                 # Nearly all paths are shorter than twice the straight line.
                 for limit in (2.0 * straight + 20.0, np.inf):
                     between = dijkstra(self._paths, directed=False, indices=near, limit=limit)
@@ -246,7 +244,7 @@ class SurfaceGraph:
 
     def _to(self, point: NearestPoint) -> np.ndarray:
         """Return the distances (3,) to the corners of a point's triangle."""
-        corners = self._mesh.vertices[self._mesh.triangles[point.triangle]]
+        corners = self.mesh.vertices[self.mesh.triangles[point.triangle]]
         return np.asarray(np.linalg.norm(corners - point.position, axis=1))
 
 
@@ -274,23 +272,23 @@ def _paths_across(mesh: HeadMesh) -> tuple[np.ndarray, np.ndarray]:
     return ends[straight], length[straight]
 
 
-def shortest_path_mm(fiducials: np.ndarray, mesh: HeadMesh, graph: SurfaceGraph) -> float:
+def shortest_path_mm(fiducials: np.ndarray, graph: SurfaceGraph) -> float:
     """Return the length in mm of the shortest free path through (n, 3) fiducials in order.
 
     It joins two fiducials by the straight line or, if the head is in the way, by the path along the
     skin, about 2.5 % too long in the graph. Takes about half a second.
     """
     fiducials = np.asarray(fiducials, dtype=float)
-    normals = list(outward_normals(mesh, fiducials))
+    normals = outward_normals(graph.mesh, fiducials)
     return sum(
         float(np.linalg.norm(fiducials[i + 1] - fiducials[i]))
-        if _is_free(mesh, fiducials[i : i + 2], normals[i : i + 2])
+        if _is_free(graph.mesh, fiducials[i : i + 2], normals[i : i + 2])
         else graph.distance(fiducials[i], fiducials[i + 1])
         for i, _ in enumerate(fiducials[1:])
     )
 
 
-def _is_free(mesh: HeadMesh, ends: np.ndarray, normals: list[np.ndarray]) -> bool:
+def _is_free(mesh: HeadMesh, ends: np.ndarray, normals: np.ndarray) -> bool:
     """Return whether the straight line leaves the skin outward at both ends and hits nothing."""
     along = ends[1] - ends[0]
     if along @ normals[0] <= 0 or -along @ normals[1] <= 0:

@@ -42,7 +42,6 @@ NOTE = (
     "Residuals and errors are root mean squares over trials and targets, ends of intervals medians."
     " Residuals of different methods are of different points: they do not show which is better."
 )
-COLORS = {"expected TRE": "#0b6fa4", "true TRE": "#d1661b"}
 
 
 def compare_methods(arguments: argparse.Namespace) -> int:
@@ -170,15 +169,10 @@ def comparison_csv(found: Found) -> str:
 
 def picture(found: Found) -> str:
     """Return expected and true TRE by method as SVG, as the report draws modes by task."""
-    expected, true = [], []
-    for trials in found.values():
-        results = [result for _, result in trials]
-        expected.append(tuple(e.expected_mm for one in results for e in one.errors))
-        known = [one.true_mm for one in results if one.true_mm is not None]
-        true.append(tuple(float(value) for of_trial in known for value in of_trial))
-    series = [
-        (name, color, values)
-        for (name, color), values in zip(COLORS.items(), (expected, true), strict=True)
-    ]
+    results = [[result for _, result in trials] for trials in found.values()]
+    expected = [tuple(e.expected_mm for one in own for e in one.errors) for own in results]
+    known = [[one.true_mm for one in own if one.true_mm is not None] for own in results]
+    true = [tuple(float(value) for errors in own for value in errors) for own in known]
+    series = [("expected TRE", "#0b6fa4", expected), ("true TRE", "#d1661b", true)]
     names = [method.value for method in found]
     return grouped_bars("Target registration error (mm)", names, series, "method")

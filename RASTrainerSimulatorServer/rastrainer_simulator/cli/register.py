@@ -8,6 +8,7 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from rastrainer.errors import InputError
 from rastrainer.files.point_files import read_point_numbers, read_points
@@ -125,7 +126,7 @@ def _registered(
 
 
 def _target_error(
-    found: Registration, target: list[float] | None, localization: LocalizationError | None
+    found: Registration, target: ArrayLike | None, localization: LocalizationError | None
 ) -> TargetError | None:
     """Return the error to expect at a target, or at the center of the points if it is known."""
     if target is None:
@@ -133,7 +134,7 @@ def _target_error(
             degrees_of_freedom(found)
         except InputError:
             return None
-        return target_error(found, found.fixed_mm.mean(axis=0), localization)
+        target = found.fixed_mm.mean(axis=0)
     return target_error(found, np.array(target), localization)
 
 

@@ -7,16 +7,18 @@ import signal
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.files.writing import write_json
 from rastrainer.head.mesh import RAS_LIMIT_MM, read_head_mesh
+from rastrainer.json_checks import accepted, text
 from rastrainer.json_records import record_to_json
 from rastrainer.number_text import fixed
 from rastrainer.procedure.checks import MeasuredProcedure
-from rastrainer.procedure.plan import Procedure, read_procedure
+from rastrainer.procedure.plan import read_procedure
 from rastrainer.scenario.library import list_scenarios, unpack
 from rastrainer.scenario.points import PlannedTarget, PlannedTrajectory
 from rastrainer.scenario.scenario import load_scenario
@@ -39,12 +41,11 @@ from rastrainer_simulator.authoring.make import (
     without_tasks,
 )
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
-from rastrainer_simulator.authoring.procedure_plan import measure_procedures
+from rastrainer_simulator.authoring.procedure_plan import measure_procedure, skull_of
 from rastrainer_simulator.authoring.scenario_check import check_scenario
 from rastrainer_simulator.cli.printing import aligned
 from rastrainer_simulator.rendering.picture import draw_preview
 
-LONGEST_TITLE, LONGEST_NAME, LONGEST_TEXT = 80, 60, 4000
 ALL_RIGHT = "Set-up, plan and fiducials can be used."
 
 
@@ -104,7 +105,13 @@ def check(arguments: argparse.Namespace) -> int:
 
 
 def measure_lines(arguments: argparse.Namespace) -> int:
-    measured = measure_procedures(arguments.dir, _procedure_of(arguments))
+    scenario = load_scenario(arguments.dir)
+    skull_of(scenario)
+    planning = PlanningSetup(scenario, read_head_mesh(scenario.head))
+    procedures = scenario.procedures
+    if arguments.procedure is not None:
+        procedures = (read_procedure(arguments.procedure),)
+    measured = [measure_procedure(planning, each) for each in procedures]
     print("\n\n".join(map(_lines_text, measured)) or "The scenario has no procedure.")
     if arguments.json is not None:
         write_json(arguments.json, [record_to_json(each, with_defaults=True) for each in measured])
@@ -137,13 +144,11 @@ def _lines_text(measured: MeasuredProcedure) -> str:
 def copy(arguments: argparse.Namespace) -> int:
     scenario = copy_with_plan(
         arguments.dir,
-        title_of(arguments),
         arguments.output,
-        targets_of(arguments),
-        trajectory_of(arguments),
         print_warning,
-        _procedure_of(arguments),
-        None if arguments.landmarks is None else read_placed_landmarks(arguments.landmarks),
+        procedure=arguments.procedure and read_procedure(arguments.procedure),
+        landmarks=arguments.landmarks and read_placed_landmarks(arguments.landmarks),
+        **plan_of(arguments),
     )
     print(f"{scenario.title} is in {arguments.output}.")
     return 0
@@ -202,10 +207,6 @@ def list_all(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _procedure_of(arguments: argparse.Namespace) -> Procedure | None:
-    return None if arguments.procedure is None else read_procedure(arguments.procedure)
-
-
 def _clean_up_when_terminated() -> None:
     """Exit like an error on SIGTERM, by which Slicer cancels, so that everything is cleaned up."""
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
@@ -214,37 +215,37 @@ def _clean_up_when_terminated() -> None:
 def options_of(arguments: argparse.Namespace, source: str) -> ScenarioOptions:
     """Return the options of a command line; `source` is the default for its source."""
     return ScenarioOptions(
-        title=title_of(arguments),
-        source=_text("--source", arguments.source or source, LONGEST_TEXT),
-        license=_text("--license", arguments.license, LONGEST_TEXT),
+        source=accepted(text(4000), arguments.source or source, "--source"),
+        license=accepted(text(4000), arguments.license, "--license"),
         setup=read_setup(arguments.setup) if arguments.setup else SetUp(),
-        targets=targets_of(arguments),
-        trajectory=trajectory_of(arguments),
         task_files=tuple(arguments.tasks or ()),
         seed=arguments.seed,
+        **plan_of(arguments),
     )
 
 
-def title_of(arguments: argparse.Namespace) -> str:
-    """Return the title of a new scenario, of which a name can be made; else raise `InputError`."""
-    title = _text("--title", arguments.title or arguments.output.absolute().name, LONGEST_TITLE)
-    scenario_name(title)
-    return title
+def plan_of(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Return title, targets and trajectory; a scenario's name can be made of the title."""
+    title = arguments.title or arguments.output.absolute().name
+    scenario_name(accepted(text(80), title, "--title"))
+    given = arguments.trajectory
+    return {
+        "title": title,
+        "targets": tuple(PlannedTarget(*_named("--target", words)) for words in arguments.target),
+        "trajectory": PlannedTrajectory(*_named("--trajectory", given)) if given else None,
+    }
 
 
-def targets_of(arguments: argparse.Namespace) -> tuple[PlannedTarget, ...]:
-    return tuple(
-        PlannedTarget(_text("--target", name, LONGEST_NAME), _numbers("--target", numbers))
-        for name, *numbers in arguments.target
-    )
-
-
-def trajectory_of(arguments: argparse.Namespace) -> PlannedTrajectory | None:
-    if not arguments.trajectory:
-        return None
-    name, *numbers = arguments.trajectory
-    places = _numbers("--trajectory", numbers)
-    return PlannedTrajectory(_text("--trajectory", name, LONGEST_NAME), places[:3], places[3:])
+def _named(option: str, words: list[str]) -> tuple[Any, ...]:
+    """Return a name and points, each (3,) float, RAS mm, of an option's words."""
+    name, *numbers = words
+    try:
+        points = np.array([float(number) for number in numbers]).reshape(-1, 3)
+    except ValueError:
+        raise InputError(f"{option} needs numbers after its name, RAS mm.") from None
+    if not (np.abs(points) <= RAS_LIMIT_MM).all():
+        raise InputError(f"{option} must be within ±{RAS_LIMIT_MM:g} mm.")
+    return accepted(text(60), name, option), *points
 
 
 def head_arguments(arguments: argparse.Namespace) -> list[str]:
@@ -252,19 +253,3 @@ def head_arguments(arguments: argparse.Namespace) -> list[str]:
     named = ("threshold", "cut", "orientation")
     given = ((name, getattr(arguments, name)) for name in named)
     return [f"--{name}={value}" for name, value in given if value is not None]
-
-
-def _text(option: str, text: str, longest: int) -> str:
-    if not 1 <= len(text) <= longest or not text.isprintable():
-        raise InputError(f"{option} must be printable text of 1 to {longest} characters.")
-    return text
-
-
-def _numbers(option: str, words: list[str]) -> np.ndarray:
-    try:
-        numbers = np.array([float(word) for word in words])
-    except ValueError:
-        raise InputError(f"{option} needs numbers after its name, RAS mm.") from None
-    if not (np.abs(numbers) <= RAS_LIMIT_MM).all():
-        raise InputError(f"{option} must be within ±{RAS_LIMIT_MM:g} mm.")
-    return numbers

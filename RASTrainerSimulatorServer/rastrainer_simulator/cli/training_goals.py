@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from statistics import fmean
 
@@ -22,6 +22,7 @@ from rastrainer.study.curriculum.standing import (
 )
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import StudyProtocol, protocol_text
+from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.cli.printing import aligned
 from rastrainer_simulator.statistics.pass_marks import pass_mark
 
@@ -75,12 +76,10 @@ def compute_pass_mark(arguments: argparse.Namespace) -> int:
     if both:
         raise InputError(f"{both[0]} is named in both groups; name each person once, in one group.")
     with Study.open_for_reading(arguments.study) as opened:
-        novices, experts, method = _mean_scores(opened, arguments.novices, arguments.experts)
-        aborted = sum(
-            attempt.is_aborted
-            for pseudonym in {*arguments.novices, *arguments.experts}
-            for attempt in opened.attempts(pseudonym)
-        )
+        names = dict.fromkeys((*arguments.novices, *arguments.experts))
+        attempts = {pseudonym: opened.attempts(pseudonym) for pseudonym in names}
+    novices, experts, method = _mean_scores(attempts, arguments.novices, arguments.experts)
+    aborted = sum(attempt.is_aborted for own in attempts.values() for attempt in own)
     mark = pass_mark(novices, experts)
     print(
         f"Pass mark {mark.score:.1f} of 100 (trials by {method.value}), from {len(novices)} "
@@ -110,7 +109,7 @@ def compute_pass_mark(arguments: argparse.Namespace) -> int:
 
 
 def _mean_scores(
-    opened: Study, novices: Sequence[str], experts: Sequence[str]
+    attempts: Mapping[str, Sequence[TrialRow]], novices: Sequence[str], experts: Sequence[str]
 ) -> tuple[list[float], list[float], RegistrationMethod]:
     """Return the mean score of each person's last trials, by group, and the trials' method."""
     methods: set[RegistrationMethod] = set()
@@ -118,8 +117,7 @@ def _mean_scores(
     for group in (novices, experts):
         means.append([])
         for pseudonym in dict.fromkeys(group):
-            attempts = opened.attempts(pseudonym)
-            trials = [each for each in attempts if not each.is_aborted][-LAST_TRIALS:]
+            trials = [one for one in attempts[pseudonym] if not one.is_aborted][-LAST_TRIALS:]
             if len(trials) < LAST_TRIALS:
                 raise InputError(
                     f"{pseudonym} has {len(trials)} scored trials, and {LAST_TRIALS} are needed of "

@@ -121,9 +121,7 @@ def test_the_shortest_path_runs_over_a_bulge_and_straight_across_a_hollow():
     mesh = sphere_mesh()
     angle = np.arccos(on_sphere(0, 20) @ on_sphere(90, 20) / RADIUS_MM**2)
     ends = np.array([on_sphere(0, 20), on_sphere(90, 20)])
-    assert shortest_path_mm(ends, mesh, SurfaceGraph(mesh)) == pytest.approx(
-        RADIUS_MM * angle, rel=0.04
-    )
+    assert shortest_path_mm(ends, SurfaceGraph(mesh)) == pytest.approx(RADIUS_MM * angle, rel=0.04)
     from_top = np.arccos(mesh.vertices[:, 2] / RADIUS_MM)
     hollow = HeadMesh(
         mesh.vertices * (1 - 0.6 * np.exp(-((from_top / 0.5) ** 2)))[:, None], mesh.triangles
@@ -131,7 +129,7 @@ def test_the_shortest_path_runs_over_a_bulge_and_straight_across_a_hollow():
     wall = np.flatnonzero(np.abs(from_top - np.radians(25)) < 0.03)
     ends = hollow.vertices[wall[[0, np.argmin(mesh.vertices[wall] @ mesh.vertices[wall[0]])]]]
     straight = np.linalg.norm(ends[1] - ends[0])
-    assert shortest_path_mm(ends, hollow, SurfaceGraph(hollow)) == pytest.approx(straight)
+    assert shortest_path_mm(ends, SurfaceGraph(hollow)) == pytest.approx(straight)
 
 
 def test_a_recording_excludes_pauses_and_undone_touches():

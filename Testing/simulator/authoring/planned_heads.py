@@ -15,7 +15,7 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.scenario.writer import HeadDraft, write_scenario
 from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
-from rastrainer_simulator.authoring.task_set import TaskSetProposer
+from rastrainer_simulator.authoring.task_set import propose_tasks
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
 from Testing.simulator.authoring.heads import egg, small
 
@@ -48,7 +48,7 @@ def setup_of(name: str, folder: Path) -> SimulationSetup:
 def proposed(name: str) -> tuple[Task, ...]:
     """Return the tasks that the planner proposes for a head."""
     head = HEADS[name]()
-    return TaskSetProposer(PlanningSetup(_scenario(name, head), head)).propose(SEED)
+    return propose_tasks(PlanningSetup(_scenario(name, head), head), SEED)
 
 
 def as_json(tasks: tuple[Task, ...]) -> list[dict]:

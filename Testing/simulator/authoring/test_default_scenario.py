@@ -30,7 +30,7 @@ def computed():
     eye = transforms.apply(
         transforms.inverse(SCENARIO.head_to_world), SCENARIO.cameras["close-up"].position_mm
     )
-    return [complexity(task.fiducials, MESH, GRAPH, eye) for task in SCENARIO.tasks]
+    return [complexity(task.fiducials, GRAPH, eye) for task in SCENARIO.tasks]
 
 
 def test_the_head_is_one_closed_body_without_tunnels():

@@ -15,6 +15,7 @@ from rastrainer_simulator.authoring.task_proposal import (
 )
 from rastrainer_simulator.authoring.task_set import smooth_places
 from rastrainer_simulator.authoring.touch_order import (
+    SurfaceGraph,
     crossing_order,
     transitions_between,
 )
@@ -38,7 +39,7 @@ def places(mesh):
 
 @pytest.fixture(scope="module")
 def proposer(mesh, places):
-    return TaskProposer(mesh, places, EYE, TARGET)
+    return TaskProposer(SurfaceGraph(mesh), places, EYE, TARGET)
 
 
 def test_each_task_demands_more_than_the_one_before(proposer):
@@ -70,7 +71,7 @@ def test_positions_that_prove_unusable_are_replaced(mesh, places, proposer):
         counts.append(len(positions))
         return ~(positions[:, None] == useless[None]).all(axis=2).any(axis=1)
 
-    picky = TaskProposer(mesh, places, EYE, TARGET, usable=usable)
+    picky = TaskProposer(SurfaceGraph(mesh), places, EYE, TARGET, usable=usable)
     found = picky.propose(plan, 5)
     assert usable(found.fiducials).all()
     assert found.complexity.hidden_points == plan.hidden
@@ -87,7 +88,7 @@ def test_the_same_seed_proposes_the_same_task(proposer):
 def test_a_head_without_room_for_a_task_is_refused_with_a_message(mesh, places):
     few = type(places)(*(values[:10] for values in vars(places).values()))
     with pytest.raises(InputError, match="no room for the fiducials of Task 1"):
-        TaskProposer(mesh, few, EYE, TARGET).propose(PLANS[1], 1)
+        TaskProposer(SurfaceGraph(mesh), few, EYE, TARGET).propose(PLANS[1], 1)
 
 
 def test_no_fiducial_is_placed_near_an_edge():

@@ -19,7 +19,7 @@ from rastrainer_simulator.authoring.face_removal import face_vertices
 from rastrainer_simulator.authoring.make import ScenarioOptions, make_scenario, without_tasks
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.scenario_check import check_plan, check_tasks
-from rastrainer_simulator.authoring.task_set import TaskSetProposer
+from rastrainer_simulator.authoring.task_set import propose_tasks
 from Testing.simulator.authoring.heads import HEADS, egg
 
 SEED = 5
@@ -47,7 +47,7 @@ def tasks(planning):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(task_set, "WIDE_SEEDS", range(1000, 1002))
         patch.setattr(task_set, "TRIAL_SEEDS", range(2000, 2001))
-        return TaskSetProposer(planning).propose(SEED)
+        return propose_tasks(planning, SEED)
 
 
 def test_there_are_six_tasks_of_rising_complexity_on_the_skin_off_the_face(planning, tasks):
@@ -71,9 +71,8 @@ def test_dozens_of_task_sets_pass_the_check_in_poses_that_the_proposal_has_not_t
     head = HEADS[name]()
     draft, options = HeadDraft(head, "test"), ScenarioOptions(name, "test", "none")
     planning = PlanningSetup(without_tasks(draft, options), head)
-    proposer = TaskSetProposer(planning)
     for seed in range(100, 133):
-        assert check_tasks(planning, proposer.propose(seed), first_seed=60_000) == [], seed
+        assert check_tasks(planning, propose_tasks(planning, seed), first_seed=60_000) == [], seed
 
 
 def test_the_first_planned_target_is_the_one_whose_error_is_reported(planning):

@@ -45,7 +45,7 @@ GRAPH = SurfaceGraph(MESH)
 
 
 def of(*places):
-    return complexity(np.array([on_sphere(*place) for place in places]), MESH, GRAPH, FRONT)
+    return complexity(np.array([on_sphere(*place) for place in places]), GRAPH, FRONT)
 
 
 def test_each_part_is_counted_in_its_unit():
@@ -81,6 +81,6 @@ def test_an_occluded_point_is_hidden_even_if_it_faces_the_view():
         np.vstack([mesh.triangles, len(mesh.vertices) + np.array([[0, 1, 2]])]),
     )
     points = np.array([on_sphere(90, 0), on_sphere(60, 30)])
-    assert complexity(points, mesh, SurfaceGraph(mesh), FRONT).hidden_points == 0
+    assert complexity(points, SurfaceGraph(mesh), FRONT).hidden_points == 0
     graph = SurfaceGraph(with_screen)
-    assert complexity(points, with_screen, graph, FRONT).hidden_points == 1
+    assert complexity(points, graph, FRONT).hidden_points == 1
