@@ -51,7 +51,7 @@ class Flow:
         self._control_loop = session.control_loop
         self._arm = ArmEvents()
         self._trial_screen = TrialScreen(session, self._arm)
-        self._procedure_screen = ProcedureScreen(session, self._trial_screen)
+        self._procedure_screen = ProcedureScreen(session, self._arm, self._trial_screen)
         self._tutorial_screen = TutorialScreen(session, self._arm)
         self._seen = ("", Phase.IDLE)
         self._seen_result: TrialResult | None = None

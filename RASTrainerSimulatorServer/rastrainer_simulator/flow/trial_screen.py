@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field
 from functools import partial
 
 from rastrainer.commands import CommandName
@@ -34,7 +35,6 @@ from rastrainer_simulator.flow.arm_screen import (
     FARTHEST,
     LOOKED_AT_MM,
     PRACTICED_MM,
-    ArmEvents,
     ArmScreen,
     off_path,
 )
@@ -59,20 +59,19 @@ ELSEWHERE_M = 0.003
 """This far from a refused touch, the tip on the skin is about to touch again."""
 
 
+@dataclass(eq=False)
 class TrialScreen(ArmScreen):
     """The instructions, warnings and hints of an open trial, and its controls."""
 
-    def __init__(self, session: TrainingSession, arm: ArmEvents) -> None:
-        super().__init__(session, arm)
-        self.guidance = Guidance.NONE
-        self._points: dict[str, Vector] = {}
-        self._count = FIDUCIAL_COUNT
-        self._center = ZERO
-        self._is_beside = False
-        self.has_requested_menu = False
-        self._is_practice_end_shown = False
-        self._practice_step: StudyStep | None = None
-        self._practice_end_s: float | None = None
+    guidance: Guidance = Guidance.NONE
+    has_requested_menu: bool = False
+    _points: dict[str, Vector] = field(default_factory=dict)
+    _count: int = FIDUCIAL_COUNT
+    _center: Vector = ZERO
+    _is_beside: bool = False
+    _is_practice_end_shown: bool = False
+    _practice_step: StudyStep | None = None
+    _practice_end_s: float | None = None
 
     def screen(self) -> Screen:
         session = self._session

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
+
 from rastrainer.commands import CommandName
 from rastrainer.journal.entries import GUIDED_TOUCHES
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.arm import start_tip
-from rastrainer_simulator.flow.arm_screen import ArmEvents, ArmScreen
+from rastrainer_simulator.flow.arm_screen import ArmScreen
 from rastrainer_simulator.flow.pages.introduction import tutorial_page
 from rastrainer_simulator.flow.pages.trial_review import POOR_MM, error_arrow, error_tone
-from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.session.tutorial import (
     CENTERED_M,
     DONE_DEG,
@@ -36,17 +37,18 @@ TAKEN_OVER = 0.2
 """A stick that is pushed farther counts as intended."""
 
 
+@dataclass(eq=False)
 class TutorialScreen(ArmScreen):
-    """The present step of the session's tutorial, its progress and its controls."""
+    """The present step of the session's tutorial, its progress and its controls.
 
-    def __init__(self, session: TrainingSession, arm: ArmEvents) -> None:
-        super().__init__(session, arm)
-        self._seen: Tutorial | None = None
-        self._has_paused = False
-        # Where the tip still has to go on its way to the start, World, m.
-        self._way: list[Vector] = []
-        self._is_commanded = False
-        self._left_s = 0.0
+    `_way` is where the tip still has to go to the start, World, m.
+    """
+
+    _seen: Tutorial | None = None
+    _has_paused: bool = False
+    _way: list[Vector] = field(default_factory=list)
+    _is_commanded: bool = False
+    _left_s: float = 0.0
 
     @property
     def _tutorial(self) -> Tutorial:

@@ -87,7 +87,12 @@ def feedback_event(
     if isinstance(entry, FeedChange):
         return _OF_A_LAYER.get(entry.layer)
     if isinstance(entry, ProximityChange):
-        return _of_proximity(entry.from_, entry.to, touch)
+        if entry.to is Proximity.CONTACT:
+            is_on_point = touch in (TouchStage.ON_SKIN, TouchStage.PRESSED)
+            return FeedbackEvent.ON_SKIN if is_on_point else FeedbackEvent.CONTACT
+        left = entry.from_ is Proximity.CONTACT
+        nearer = FeedbackEvent.CONTACT_OUT if left else FeedbackEvent.PROXIMITY_IN
+        return FeedbackEvent.PROXIMITY_OUT if entry.to is Proximity.FREE else nearer
     if not isinstance(entry, PhaseChange):
         return _OF_A_KIND.get(type(entry))
     if not_recorded:
@@ -103,12 +108,3 @@ def touch_feedback(before: TouchStage, after: TouchStage) -> FeedbackEvent | Non
         return FeedbackEvent.ON_SKIN
     is_worse = after in TOUCH_ERRORS and before not in TOUCH_ERRORS
     return FeedbackEvent.CONTACT if is_worse else None
-
-
-def _of_proximity(before: Proximity, after: Proximity, touch: TouchStage) -> FeedbackEvent:
-    if after is Proximity.CONTACT:
-        is_on_point = touch in (TouchStage.ON_SKIN, TouchStage.PRESSED)
-        return FeedbackEvent.ON_SKIN if is_on_point else FeedbackEvent.CONTACT
-    if after is Proximity.FREE:
-        return FeedbackEvent.PROXIMITY_OUT
-    return FeedbackEvent.CONTACT_OUT if before is Proximity.CONTACT else FeedbackEvent.PROXIMITY_IN

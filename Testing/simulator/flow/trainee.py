@@ -467,7 +467,7 @@ class Mouse:
         presenter = self._trainee.presenter
         assert presenter.screen.has_sticks
         is_pushed = bool(right or forward or up)
-        if is_pushed and fine != presenter._session.screen_sticks.is_slow:
+        if is_pushed and fine != presenter._session.operator.screen_sticks.is_slow:
             presenter.on_sticks(VIEW, (0.0, 0.0, 0.0), (0.0, 0.0), False, 0.0)
             self.click("press fine")
         presenter.on_sticks(VIEW, (right, forward, up), (0.0, 0.0), False, 0.0)

@@ -6,7 +6,7 @@ An operator with only a mouse gets two sticks that views draw on request.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import reduce
 
 from rastrainer.protocol import Mode
@@ -24,15 +24,17 @@ SHOW, TILT = "sticks", "tilt"
 """Names of the hints that show or hide the sticks, and have the right stick tilt the tool."""
 
 
+@dataclass(eq=False)
 class OperatorDevice:
-    """The device of the holder of control, or the likely one before anyone has it."""
+    """The device of the holder of control, or the likely one before anyone has it.
 
-    def __init__(self, controls: Controls, texts: Texts) -> None:
-        self.controls = controls
-        self.texts = texts
-        # The labels of the keys of each view, by their W3C codes.
-        self.layouts: dict[int, Mapping[str, str]] = {}
-        self.screen_sticks = ScreenSticks()
+    `layouts` are the labels of the keys of each view, by their W3C codes.
+    """
+
+    controls: Controls
+    texts: Texts
+    layouts: dict[int, Mapping[str, str]] = field(default_factory=dict)
+    screen_sticks: ScreenSticks = field(default_factory=lambda: ScreenSticks())
 
     @property
     def kind(self) -> InputDevice:

@@ -303,8 +303,7 @@ class Tutorial:
     @property
     def practice(self) -> TouchPractice:
         """The present practice: first a single point, then the guided points."""
-        is_guided = self.step in (TutorialStep.GUIDED, *OF_PRACTICE, None)
-        return self._guided if is_guided else self._first
+        return self._guided if self.has_learned_view else self._first
 
     @property
     def step(self) -> TutorialStep | None:
