@@ -173,11 +173,11 @@ class ArmScreen:
         replace looking.
         """
         session = self._session
-        away = MM_PER_M * distance(session.tip, target)
+        away = MM_PER_M * distance(session.state.tip, target)
         if away < nearest_mm:
             return session.say("status.near", name=name, distance=f"{nearest_mm:.0f}")
         step_mm = STEP_MM if away >= LOOKED_AT_MM else PRACTICED_STEP_MM
-        words = direction_words(session.tip, target, self._axes())
+        words = direction_words(session.state.tip, target, self._axes())
         return session.say(
             "status.toward",
             name=name,

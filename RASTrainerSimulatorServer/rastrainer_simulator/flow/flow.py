@@ -77,7 +77,7 @@ class Flow:
         is_back = key_of(result.state.training.instruction) == NOT_RECORDED
         self._session.feel(result.events, touch, is_back)
         for event in result.events:
-            self._arm.note_event(event, self._session.tip)
+            self._arm.note_event(event, self._session.state.tip)
         self._touch = touch
 
     def advance(self, dt: float, state: SimulationState) -> None:

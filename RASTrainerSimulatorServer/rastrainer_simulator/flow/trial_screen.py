@@ -182,7 +182,7 @@ class TrialScreen(ArmScreen):
             who = training.trainee
             return self._message("work.complete", Tone.GOOD, trainee=who, count=count, touch=key)
         is_on_skin = session.state.touch is TouchStage.ON_SKIN
-        has_gone_on = is_on_skin and distance(session.tip, self._arm.refused_at) > ELSEWHERE_M
+        has_gone_on = is_on_skin and distance(session.state.tip, self._arm.refused_at) > ELSEWHERE_M
         if self._is_refused and not has_gone_on:
             return self._instructed(Tone.WARNING)
         if is_on_skin:
@@ -228,7 +228,7 @@ class TrialScreen(ArmScreen):
         if self.guidance is Guidance.NONE or not training.touches or target is None:
             self._is_beside = False
             return False
-        off = off_path(self._session.tip, self._center, training.touches[-1].position, target)
+        off = off_path(self._session.state.tip, self._center, training.touches[-1].position, target)
         self._is_beside = off > (BACK_WITHIN if self._is_beside else FARTHEST)
         return self._is_beside
 

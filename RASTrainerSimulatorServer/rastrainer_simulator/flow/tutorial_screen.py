@@ -80,7 +80,7 @@ class TutorialScreen(ArmScreen):
         if tutorial is not self._seen:
             self._seen, self._has_paused, self._is_commanded = tutorial, False, False
             start_height = session.control_loop.setup.settings.start_height
-            tip, goal = session.tip, start_tip(session.scenario, start_height)
+            tip, goal = session.state.tip, start_tip(session.scenario, start_height)
             high = max(tip[2], goal[2])
             is_near = distance(tip, goal) < NEAR_M
             self._way = [] if is_near else [(*tip[:2], high), (*goal[:2], high), goal]
@@ -92,7 +92,7 @@ class TutorialScreen(ArmScreen):
         tutorial.practice.training.end_refusal(session.state.sim_time)
         practice = tutorial.practice.training.state
         seen = TutorialObservation(
-            tip=session.tip,
+            tip=session.state.tip,
             axes=self._axes(),
             is_slow=session.controls.held.fine,
             orbit=session.view.control.orbit,
@@ -117,7 +117,7 @@ class TutorialScreen(ArmScreen):
         is_taken_over = max(map(abs, session.controls.held.translation)) > TAKEN_OVER
         if self._left_s < 0.0 or is_taken_over:
             self._way.clear()
-        while self._way and distance(session.tip, self._way[0]) < NEAR_M / 4.0:
+        while self._way and distance(session.state.tip, self._way[0]) < NEAR_M / 4.0:
             del self._way[0]
             self._is_commanded = False
         if self._way and not self._is_commanded:
@@ -209,7 +209,7 @@ class TutorialScreen(ArmScreen):
 
     def _play_reply(self, reply: TrainingReply) -> None:
         for event in reply.events:
-            self._arm.note_event(event, self._session.tip)
+            self._arm.note_event(event, self._session.state.tip)
         self._session.feel(reply.events, self._state.touch)
 
     def _sentence(self, step: TutorialStep | None) -> str:

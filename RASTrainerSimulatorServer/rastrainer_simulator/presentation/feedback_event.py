@@ -14,7 +14,6 @@ from rastrainer.journal.entries import (
     Undo,
 )
 from rastrainer.protocol import PROCEDURE_PHASES, Phase, Proximity
-from rastrainer_simulator.presentation.messages import Feedback
 from rastrainer_simulator.state import TOUCH_ERRORS, Event, TouchStage
 from rastrainer_simulator.training.feed import FeedLayer
 
@@ -54,11 +53,6 @@ class FeedbackEvent(str, Enum):
         event._value_, event.sound = kind, sound
         event.rumble, event.seconds = rumble, seconds
         return event
-
-
-def feedback_of(what: FeedbackEvent, number: int, volume: float = 1.0) -> Feedback:
-    rumble_ms = round(1000.0 * what.seconds)
-    return Feedback(number, what.value, what.sound, volume, what.rumble, rumble_ms)
 
 
 _OF_A_KIND = {

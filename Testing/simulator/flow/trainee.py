@@ -268,7 +268,7 @@ class Trainee:
 
     @property
     def tip(self):
-        return tuple(self.state.tool_tip_to_world[:3, 3].tolist())
+        return self.state.tip
 
     def steer_to(
         self, place: np.ndarray, near: float, fine: bool = False, ends_in_contact: bool = False

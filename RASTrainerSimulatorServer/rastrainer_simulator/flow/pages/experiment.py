@@ -145,10 +145,8 @@ class ExperimentPage(SessionPage):
 
     def _skip(self, what: str) -> None:
         session = self.session
-        if what == "tutorial":
-            session.history.skipped_tutorials.add(session.trainee_id)
-        else:
-            session.history.skipped_runs.add((session.trainee_id, session.scenario.name))
+        of = "" if what == "tutorial" else session.scenario.name
+        session.history.skipped.add((session.trainee_id, of))
         session.pages.focus(self._next_task())
 
     def _next_task(self) -> str:

@@ -22,6 +22,7 @@ _BY_MOUSE = "mouse"
 """Devices with their own names of inputs, and the prefix of the keys of these texts."""
 SHOW, TILT = "sticks", "tilt"
 """Names of the hints that show or hide the sticks, and have the right stick tilt the tool."""
+_SWITCHES = {SHOW: "is_shown", TILT: "is_tilting", ControlName.FINE.value: "is_slow"}
 
 
 @dataclass(eq=False)
@@ -124,15 +125,10 @@ class ScreenSticks:
 
     def pressed(self, name: str) -> bool:
         """Switch what a click stands for; return whether it concerns the sticks."""
-        if name == SHOW:
-            self.is_shown = not self.is_shown
-        elif name == TILT:
-            self.is_tilting = not self.is_tilting
-        elif name == ControlName.FINE.value:
-            self.is_slow = not self.is_slow
-        else:
-            return False
-        return True
+        switched = _SWITCHES.get(name, "")
+        if switched:
+            setattr(self, switched, not getattr(self, switched))
+        return switched != ""
 
     def moved(
         self, translation: tuple[float, float, float], rotation: tuple[float, float]

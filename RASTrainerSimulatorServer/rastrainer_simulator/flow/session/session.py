@@ -128,10 +128,6 @@ class TrainingSession:
         return self.training.phase in OPEN_PHASES
 
     @property
-    def tip(self) -> Vector:
-        return tuple(self.state.tool_tip_to_world[:3, 3].tolist())
-
-    @property
     def scenario(self) -> Scenario:
         return self.control_loop.setup.scenario
 
