@@ -184,16 +184,13 @@ def open_experiment(
 Listing = Future[list[ListedScenario]]
 
 
-def _leave_when_loaded(page: SessionPage, _dt: float, _listing: Listing, wanted: str = "") -> None:
-    """Go back once the chosen head is loaded; stay if it was refused."""
-    session = page.session
-    if wanted == session.scenario.name and not session.reload.is_under_way:
-        page.back()
+def _is_loaded(page: SessionPage, _listing: Listing, wanted: str = "") -> bool:
+    return wanted == page.session.scenario.name and not page.session.reload.is_under_way
 
 
-@page_kind("scenario", advance=_leave_when_loaded)
+@page_kind("scenario", is_over=_is_loaded)
 def scenario_page(page: SessionPage, listing: Listing, wanted: str = "") -> PageContent:
-    """List the scenarios, and why some cannot be used."""
+    """List the scenarios, and why some cannot be used; stay if the chosen one is refused."""
     session, is_loading = page.session, page.session.reload.is_under_way
     present = session.scenario.name
 
@@ -222,12 +219,7 @@ def scenario_page(page: SessionPage, listing: Listing, wanted: str = "") -> Page
     )
 
 
-def _leave_without_curriculum(page: SessionPage, _dt: float) -> None:
-    if page.session.curriculum is None:
-        page.back()
-
-
-@page_kind("assignments", advance=_leave_without_curriculum)
+@page_kind("assignments", is_over=lambda page: page.session.curriculum is None)
 def assignments_page(page: SessionPage) -> PageContent:
     """List the assignments; the next to practice has the focus, and each begins its trial."""
     session, curriculum = page.session, page.session.curriculum

@@ -146,8 +146,13 @@ class Page(Generic[S]):
     def pressed(self, control: ControlName) -> bool:  # noqa: ARG002
         return False
 
-    def advance(self, dt: float) -> None:
-        """Advance by `dt` seconds."""
+    def is_over(self) -> bool:
+        """Return whether the page has to go back by itself."""
+        return False
+
+    def advance(self, dt: float) -> None:  # noqa: ARG002
+        if self.is_over():
+            self.back()
 
     def closed(self) -> None:
         """Clean up: the page is no longer open."""
