@@ -23,9 +23,9 @@ HEAD = """/**
  * What page and simulator share, written by tools/page_types.py: do not edit.
  * docs/views.md explains the messages, presentation/look.py the constants.
  */"""
-UNIONS = {"News": messages.News, "ViewInput": messages.ViewInput}
+UNIONS = {kind.__name__: kind.__subclasses__() for kind in (messages.News, messages.ViewInput)}
 ROOTS = (
-    *(kind for union in UNIONS.values() for kind in get_args(union)),
+    *(kind for kinds in UNIONS.values() for kind in kinds),
     board_messages.TilesNews,
     board_messages.ClassNews,
     messages.InstructorOrder,
@@ -117,8 +117,8 @@ def page_types() -> str:
     for root in ROOTS:
         types.of(root)
     unions = [
-        f"export type {name} =\n  | " + "\n  | ".join(map(types.of, get_args(union))) + ";"
-        for name, union in UNIONS.items()
+        f"export type {name} =\n  | " + "\n  | ".join(map(types.of, kinds)) + ";"
+        for name, kinds in UNIONS.items()
     ]
     constants = {name: getattr(messages, name) for name in LIMITS}
     constants["BOARD_SUBPROTOCOL"] = board_messages.BOARD_SUBPROTOCOL

@@ -237,6 +237,10 @@ class SimulationState:
     tip_clearance: float = 0.0
 
     @property
+    def tip(self) -> Vector:
+        return vector(self.tool_tip_to_world[:3, 3].tolist())
+
+    @property
     def starting_point(self) -> StartingPoint:
         """Where another simulation continues."""
         return StartingPoint(self.tick, self.sim_time, self.training.revision, self.camera)

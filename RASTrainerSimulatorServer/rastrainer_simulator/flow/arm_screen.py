@@ -74,12 +74,12 @@ class ArmEvents:
                 self.layer = ""
 
 
+@dataclass(eq=False)
 class ArmScreen:
     """The warnings about the arm, the directions to a point, and the hints on movement."""
 
-    def __init__(self, session: TrainingSession, arm: ArmEvents) -> None:
-        self._session = session
-        self._arm = arm
+    _session: TrainingSession
+    _arm: ArmEvents
 
     @property
     def _state(self) -> SimulationState:
@@ -102,7 +102,7 @@ class ArmScreen:
             warnings=self.warnings(),
             status=tuple(status),
             hints=hints,
-            has_sticks=self._session.screen_sticks.is_shown,
+            has_sticks=self._session.operator.screen_sticks.is_shown,
             **others,
         )
 
@@ -148,7 +148,7 @@ class ArmScreen:
         self, moving: Iterable[Hint], names: Mapping[ControlName, str], can_tilt: bool = False
     ) -> tuple[Hint, ...]:
         session, operator = self._session, self._session.operator
-        say, sticks = session.say, session.screen_sticks
+        say, sticks = session.say, session.operator.screen_sticks
         hints = list(moving)
         for control, key in names.items():
             item = None
@@ -173,11 +173,11 @@ class ArmScreen:
         replace looking.
         """
         session = self._session
-        away = MM_PER_M * distance(session.tip, target)
+        away = MM_PER_M * distance(session.state.tip, target)
         if away < nearest_mm:
             return session.say("status.near", name=name, distance=f"{nearest_mm:.0f}")
         step_mm = STEP_MM if away >= LOOKED_AT_MM else PRACTICED_STEP_MM
-        words = direction_words(session.tip, target, self._axes())
+        words = direction_words(session.state.tip, target, self._axes())
         return session.say(
             "status.toward",
             name=name,

@@ -51,7 +51,7 @@ class Flow:
         self._control_loop = session.control_loop
         self._arm = ArmEvents()
         self._trial_screen = TrialScreen(session, self._arm)
-        self._procedure_screen = ProcedureScreen(session, self._trial_screen)
+        self._procedure_screen = ProcedureScreen(session, self._arm, self._trial_screen)
         self._tutorial_screen = TutorialScreen(session, self._arm)
         self._seen = ("", Phase.IDLE)
         self._seen_result: TrialResult | None = None
@@ -77,7 +77,7 @@ class Flow:
         is_back = key_of(result.state.training.instruction) == NOT_RECORDED
         self._session.feel(result.events, touch, is_back)
         for event in result.events:
-            self._arm.note_event(event, self._session.tip)
+            self._arm.note_event(event, self._session.state.tip)
         self._touch = touch
 
     def advance(self, dt: float, state: SimulationState) -> None:

@@ -223,12 +223,12 @@ class FlowPresenter(Presenter):
         is_fine: bool,
         yaw_deg: float,
     ) -> None:
-        source = self._views.sticks_source(view, self._session.screen_sticks.is_shown)
+        source = self._views.sticks_source(view, self._session.operator.screen_sticks.is_shown)
         if source.kind is SourceKind.XR and view in self._views.joined:
             self._views.joined[view].yaw_deg = yaw_deg
         sticks = OperatorInput(translation, rotation, is_fine)
         if source.kind is SourceKind.MOUSE:
-            sticks = self._session.screen_sticks.moved(translation, rotation)
+            sticks = self._session.operator.screen_sticks.moved(translation, rotation)
         self.controls.set_sticks(source, sticks)
 
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
@@ -243,7 +243,7 @@ class FlowPresenter(Presenter):
         if self._session.pages.top is None:
             name = ControlName(control)
         self.controls.press(
-            self._views.sticks_source(view, self._session.screen_sticks.is_shown), name
+            self._views.sticks_source(view, self._session.operator.screen_sticks.is_shown), name
         )
 
     def on_item(self, view: int, name: str) -> None:
@@ -254,7 +254,7 @@ class FlowPresenter(Presenter):
             return
         if not pressed:
             self._session.pages.choose(name)
-        elif not self._session.screen_sticks.pressed(pressed) and control is not None:
+        elif not self._session.operator.screen_sticks.pressed(pressed) and control is not None:
             self._flow.pressed(ControlName(pressed))
         self._is_changed = True
 

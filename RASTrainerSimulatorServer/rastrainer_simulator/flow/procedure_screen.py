@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import partial
 
 from rastrainer.commands import CommandName
@@ -13,7 +14,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.arm_screen import ArmScreen
 from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow, page_kind
 from rastrainer_simulator.flow.session.plan_marks import ball, plan_marks
-from rastrainer_simulator.flow.session.session import SessionPage, TrainingSession
+from rastrainer_simulator.flow.session.session import SessionPage
 from rastrainer_simulator.flow.trial_screen import TrialScreen
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
 from rastrainer_simulator.presentation.screen import (
@@ -39,12 +40,11 @@ _FELT: Mapping[str, Tone] = {
 """Layers that a hand feels through the drill or the instrument, and their tones."""
 
 
+@dataclass(eq=False)
 class ProcedureScreen(ArmScreen):
     """The instructions, the figures and the controls of the phases after the touches."""
 
-    def __init__(self, session: TrainingSession, trial_screen: TrialScreen) -> None:
-        super().__init__(session, trial_screen._arm)
-        self._trial_screen = trial_screen
+    _trial_screen: TrialScreen
 
     @property
     def is_open(self) -> bool:
@@ -173,8 +173,9 @@ class ProcedureScreen(ArmScreen):
         if ruler is not None:
             depth = MM_PER_M * state.feed
             is_drill = self._procedure.stage is Phase.DRILLING
-            goal = ruler.inner_mm if is_drill and ruler.inner_mm is not None else ruler.target_mm
-            to = "inner" if is_drill and ruler.inner_mm is not None else "target"
+            goal, to = ruler.target_mm, "target"
+            if is_drill and ruler.inner_mm is not None:
+                goal, to = ruler.inner_mm, "inner"
             if depth > goal:
                 return (say(f"status.past {to}", past=depth - goal),)
             return (say(f"status.to {to}", left=goal - depth),)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field
 from functools import partial
 
 from rastrainer.commands import CommandName
@@ -34,7 +35,6 @@ from rastrainer_simulator.flow.arm_screen import (
     FARTHEST,
     LOOKED_AT_MM,
     PRACTICED_MM,
-    ArmEvents,
     ArmScreen,
     off_path,
 )
@@ -59,20 +59,19 @@ ELSEWHERE_M = 0.003
 """This far from a refused touch, the tip on the skin is about to touch again."""
 
 
+@dataclass(eq=False)
 class TrialScreen(ArmScreen):
     """The instructions, warnings and hints of an open trial, and its controls."""
 
-    def __init__(self, session: TrainingSession, arm: ArmEvents) -> None:
-        super().__init__(session, arm)
-        self.guidance = Guidance.NONE
-        self._points: dict[str, Vector] = {}
-        self._count = FIDUCIAL_COUNT
-        self._center = ZERO
-        self._is_beside = False
-        self.has_requested_menu = False
-        self._is_practice_end_shown = False
-        self._practice_step: StudyStep | None = None
-        self._practice_end_s: float | None = None
+    guidance: Guidance = Guidance.NONE
+    has_requested_menu: bool = False
+    _points: dict[str, Vector] = field(default_factory=dict)
+    _count: int = FIDUCIAL_COUNT
+    _center: Vector = ZERO
+    _is_beside: bool = False
+    _is_practice_end_shown: bool = False
+    _practice_step: StudyStep | None = None
+    _practice_end_s: float | None = None
 
     def screen(self) -> Screen:
         session = self._session
@@ -183,7 +182,7 @@ class TrialScreen(ArmScreen):
             who = training.trainee
             return self._message("work.complete", Tone.GOOD, trainee=who, count=count, touch=key)
         is_on_skin = session.state.touch is TouchStage.ON_SKIN
-        has_gone_on = is_on_skin and distance(session.tip, self._arm.refused_at) > ELSEWHERE_M
+        has_gone_on = is_on_skin and distance(session.state.tip, self._arm.refused_at) > ELSEWHERE_M
         if self._is_refused and not has_gone_on:
             return self._instructed(Tone.WARNING)
         if is_on_skin:
@@ -229,7 +228,7 @@ class TrialScreen(ArmScreen):
         if self.guidance is Guidance.NONE or not training.touches or target is None:
             self._is_beside = False
             return False
-        off = off_path(self._session.tip, self._center, training.touches[-1].position, target)
+        off = off_path(self._session.state.tip, self._center, training.touches[-1].position, target)
         self._is_beside = off > (BACK_WITHIN if self._is_beside else FARTHEST)
         return self._is_beside
 

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
+
 from rastrainer.commands import CommandName
 from rastrainer.journal.entries import GUIDED_TOUCHES
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.arm import start_tip
-from rastrainer_simulator.flow.arm_screen import ArmEvents, ArmScreen
+from rastrainer_simulator.flow.arm_screen import ArmScreen
 from rastrainer_simulator.flow.pages.introduction import tutorial_page
 from rastrainer_simulator.flow.pages.trial_review import POOR_MM, error_arrow, error_tone
-from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.session.tutorial import (
     CENTERED_M,
     DONE_DEG,
@@ -36,17 +37,18 @@ TAKEN_OVER = 0.2
 """A stick that is pushed farther counts as intended."""
 
 
+@dataclass(eq=False)
 class TutorialScreen(ArmScreen):
-    """The present step of the session's tutorial, its progress and its controls."""
+    """The present step of the session's tutorial, its progress and its controls.
 
-    def __init__(self, session: TrainingSession, arm: ArmEvents) -> None:
-        super().__init__(session, arm)
-        self._seen: Tutorial | None = None
-        self._has_paused = False
-        # Where the tip still has to go on its way to the start, World, m.
-        self._way: list[Vector] = []
-        self._is_commanded = False
-        self._left_s = 0.0
+    `_way` is where the tip still has to go to the start, World, m.
+    """
+
+    _seen: Tutorial | None = None
+    _has_paused: bool = False
+    _way: list[Vector] = field(default_factory=list)
+    _is_commanded: bool = False
+    _left_s: float = 0.0
 
     @property
     def _tutorial(self) -> Tutorial:
@@ -78,7 +80,7 @@ class TutorialScreen(ArmScreen):
         if tutorial is not self._seen:
             self._seen, self._has_paused, self._is_commanded = tutorial, False, False
             start_height = session.control_loop.setup.settings.start_height
-            tip, goal = session.tip, start_tip(session.scenario, start_height)
+            tip, goal = session.state.tip, start_tip(session.scenario, start_height)
             high = max(tip[2], goal[2])
             is_near = distance(tip, goal) < NEAR_M
             self._way = [] if is_near else [(*tip[:2], high), (*goal[:2], high), goal]
@@ -90,7 +92,7 @@ class TutorialScreen(ArmScreen):
         tutorial.practice.training.end_refusal(session.state.sim_time)
         practice = tutorial.practice.training.state
         seen = TutorialObservation(
-            tip=session.tip,
+            tip=session.state.tip,
             axes=self._axes(),
             is_slow=session.controls.held.fine,
             orbit=session.view.control.orbit,
@@ -115,7 +117,7 @@ class TutorialScreen(ArmScreen):
         is_taken_over = max(map(abs, session.controls.held.translation)) > TAKEN_OVER
         if self._left_s < 0.0 or is_taken_over:
             self._way.clear()
-        while self._way and distance(session.tip, self._way[0]) < NEAR_M / 4.0:
+        while self._way and distance(session.state.tip, self._way[0]) < NEAR_M / 4.0:
             del self._way[0]
             self._is_commanded = False
         if self._way and not self._is_commanded:
@@ -207,7 +209,7 @@ class TutorialScreen(ArmScreen):
 
     def _play_reply(self, reply: TrainingReply) -> None:
         for event in reply.events:
-            self._arm.note_event(event, self._session.tip)
+            self._arm.note_event(event, self._session.state.tip)
         self._session.feel(reply.events, self._state.touch)
 
     def _sentence(self, step: TutorialStep | None) -> str:

@@ -14,7 +14,6 @@ from rastrainer.journal.entries import (
     Undo,
 )
 from rastrainer.protocol import PROCEDURE_PHASES, Phase, Proximity
-from rastrainer_simulator.presentation.messages import Feedback
 from rastrainer_simulator.state import TOUCH_ERRORS, Event, TouchStage
 from rastrainer_simulator.training.feed import FeedLayer
 
@@ -56,11 +55,6 @@ class FeedbackEvent(str, Enum):
         return event
 
 
-def feedback_of(what: FeedbackEvent, number: int, volume: float = 1.0) -> Feedback:
-    rumble_ms = round(1000.0 * what.seconds)
-    return Feedback(number, what.value, what.sound, volume, what.rumble, rumble_ms)
-
-
 _OF_A_KIND = {
     AcceptedTouch: FeedbackEvent.TOUCH,
     Undo: FeedbackEvent.UNDO,
@@ -87,7 +81,12 @@ def feedback_event(
     if isinstance(entry, FeedChange):
         return _OF_A_LAYER.get(entry.layer)
     if isinstance(entry, ProximityChange):
-        return _of_proximity(entry.from_, entry.to, touch)
+        if entry.to is Proximity.CONTACT:
+            is_on_point = touch in (TouchStage.ON_SKIN, TouchStage.PRESSED)
+            return FeedbackEvent.ON_SKIN if is_on_point else FeedbackEvent.CONTACT
+        left = entry.from_ is Proximity.CONTACT
+        nearer = FeedbackEvent.CONTACT_OUT if left else FeedbackEvent.PROXIMITY_IN
+        return FeedbackEvent.PROXIMITY_OUT if entry.to is Proximity.FREE else nearer
     if not isinstance(entry, PhaseChange):
         return _OF_A_KIND.get(type(entry))
     if not_recorded:
@@ -103,12 +102,3 @@ def touch_feedback(before: TouchStage, after: TouchStage) -> FeedbackEvent | Non
         return FeedbackEvent.ON_SKIN
     is_worse = after in TOUCH_ERRORS and before not in TOUCH_ERRORS
     return FeedbackEvent.CONTACT if is_worse else None
-
-
-def _of_proximity(before: Proximity, after: Proximity, touch: TouchStage) -> FeedbackEvent:
-    if after is Proximity.CONTACT:
-        is_on_point = touch in (TouchStage.ON_SKIN, TouchStage.PRESSED)
-        return FeedbackEvent.ON_SKIN if is_on_point else FeedbackEvent.CONTACT
-    if after is Proximity.FREE:
-        return FeedbackEvent.PROXIMITY_OUT
-    return FeedbackEvent.CONTACT_OUT if before is Proximity.CONTACT else FeedbackEvent.PROXIMITY_IN

@@ -11,7 +11,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
-from typing import Annotated, Any, ClassVar, Literal, cast, get_args
+from typing import Annotated, Any, ClassVar, Literal, cast
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import (
@@ -106,7 +106,12 @@ class HeadsetPose:
 
 
 @dataclass(frozen=True)
-class WelcomeNews(ViewMessage):
+class News(ViewMessage):
+    """What a view is sent; a board is sent a `WelcomeNews` and `SeatNews`."""
+
+
+@dataclass(frozen=True)
+class WelcomeNews(News):
     """The first message: the number of the view, and the bodies in the order of a state's poses."""
 
     type = "welcome"
@@ -116,7 +121,7 @@ class WelcomeNews(ViewMessage):
 
 
 @dataclass(frozen=True)
-class SceneNews(ViewMessage):
+class SceneNews(News):
     """The scene's file, and what goes with it: fiducials by label in the head's frame, m.
 
     `no_go` has the nodes of the no-go structures of each procedure.
@@ -164,7 +169,7 @@ class CoveringBodies:
 
 
 @dataclass(frozen=True)
-class StateNews(ViewMessage):
+class StateNews(News):
     """State of the simulation, sent 60 times a second.
 
     Attributes:
@@ -199,7 +204,7 @@ class StateNews(ViewMessage):
 
 
 @dataclass(frozen=True)
-class ScreenNews(ViewMessage):
+class ScreenNews(News):
     """A new screen: everything that the trainee reads."""
 
     type = "screen"
@@ -207,7 +212,7 @@ class ScreenNews(ViewMessage):
 
 
 @dataclass(frozen=True)
-class Feedback(ViewMessage):
+class Feedback(News):
     """A sound and a vibration of a `FeedbackEvent`, to be played once.
 
     The numbers count from 1 without a gap. The volume is 0 while sounds are muted.
@@ -223,7 +228,7 @@ class Feedback(ViewMessage):
 
 
 @dataclass(frozen=True)
-class ControlNews(ViewMessage):
+class ControlNews(News):
     """The holder of control, "" for nobody; `is_you` is true for the view that holds it."""
 
     type = "control"
@@ -232,7 +237,7 @@ class ControlNews(ViewMessage):
 
 
 @dataclass(frozen=True)
-class PairingNews(ViewMessage):
+class PairingNews(News):
     """How another view is paired; only for views on the simulator's own computer."""
 
     type = "pairing"
@@ -249,7 +254,7 @@ class SkinPlace:
 
 
 @dataclass(frozen=True)
-class TraceNews(ViewMessage):
+class TraceNews(News):
     """New points of a trace over the skin, in the head's frame; `known` earlier points remain.
 
     Within `covered_mm` around the points the skin is painted; 0 for no paint.
@@ -326,24 +331,16 @@ class SeatNews(SeatReport, ViewMessage):
     type = "seat"
 
 
-News = (
-    WelcomeNews
-    | SceneNews
-    | StateNews
-    | ScreenNews
-    | Feedback
-    | ControlNews
-    | PairingNews
-    | TraceNews
-)
-"""Everything that a view is sent; a board is sent a `WelcomeNews` and `SeatNews`."""
-
-
 # Sent by a view.
 
 
 @dataclass(frozen=True)
-class Hello(ViewMessage):
+class ViewInput(ViewMessage):
+    """What a view may send."""
+
+
+@dataclass(frozen=True)
+class Hello(ViewInput):
     """A view's description of itself when it joins."""
 
     type = "hello"
@@ -353,7 +350,7 @@ class Hello(ViewMessage):
 
 
 @dataclass(frozen=True)
-class KeyInput(ViewMessage):
+class KeyInput(ViewInput):
     """A key went down or up: its W3C `KeyboardEvent.code`, and the text that it types."""
 
     type = "key"
@@ -363,7 +360,7 @@ class KeyInput(ViewMessage):
 
 
 @dataclass(frozen=True)
-class LayoutInput(ViewMessage):
+class LayoutInput(ViewInput):
     """Labels of the keys by their codes, such as "q" on KeyA in France."""
 
     type = "layout"
@@ -371,7 +368,7 @@ class LayoutInput(ViewMessage):
 
 
 @dataclass(frozen=True)
-class PadInput(ViewMessage):
+class PadInput(ViewInput):
     """A gamepad that the browser reads: axes −1 to 1 and buttons 0 to 1 of the W3C gamepad."""
 
     type = "pad"
@@ -380,7 +377,7 @@ class PadInput(ViewMessage):
 
 
 @dataclass(frozen=True)
-class SticksInput(ViewMessage):
+class SticksInput(ViewInput):
     """Sticks of XR controllers or on the screen, as in `OperatorInput`.
 
     Forward is where the eyes look: `yaw_deg`, counterclockwise from World's x.
@@ -394,7 +391,7 @@ class SticksInput(ViewMessage):
 
 
 @dataclass(frozen=True)
-class OrbitInput(ViewMessage):
+class OrbitInput(ViewInput):
     """A turn of the view: around to the right, higher, and its distance multiplied."""
 
     type = "orbit"
@@ -404,7 +401,7 @@ class OrbitInput(ViewMessage):
 
 
 @dataclass(frozen=True)
-class PressInput(ViewMessage):
+class PressInput(ViewInput):
     """One press of a control, by its name in the settings of the controls."""
 
     type = "press"
@@ -412,7 +409,7 @@ class PressInput(ViewMessage):
 
 
 @dataclass(frozen=True)
-class ItemInput(ViewMessage):
+class ItemInput(ViewInput):
     """A click on an item of the menu or of a hint."""
 
     type = "item"
@@ -420,7 +417,7 @@ class ItemInput(ViewMessage):
 
 
 @dataclass(frozen=True)
-class TextInput(ViewMessage):
+class TextInput(ViewInput):
     """The new text of a text item."""
 
     type = "text"
@@ -429,7 +426,7 @@ class TextInput(ViewMessage):
 
 
 @dataclass(frozen=True)
-class PictureProgress(ViewMessage):
+class PictureProgress(ViewInput):
     """How much of a task's scene a view has loaded; 1 once it is drawn."""
 
     type = "picture"
@@ -438,7 +435,7 @@ class PictureProgress(ViewMessage):
 
 
 @dataclass(frozen=True)
-class Frames(ViewMessage):
+class Frames(ViewInput):
     """How smoothly a view has drawn during the last second."""
 
     type = "frames"
@@ -448,7 +445,7 @@ class Frames(ViewMessage):
 
 
 @dataclass(frozen=True)
-class Visibility(ViewMessage):
+class Visibility(ViewInput):
     """Whether the trainee sees the view: the headset was doffed, the page hidden."""
 
     type = "visibility"
@@ -456,37 +453,20 @@ class Visibility(ViewMessage):
 
 
 @dataclass(frozen=True)
-class HeadsetInput(HeadsetPose, ViewMessage):
+class HeadsetInput(HeadsetPose, ViewInput):
     """Where a headset and its controllers are, at most 30 times a second."""
 
     type = "headsetPose"
 
 
 @dataclass(frozen=True)
-class Alive(ViewMessage):
+class Alive(ViewInput):
     """A sign of life: everything held is still held."""
 
     type = "alive"
 
 
-ViewInput = (
-    Hello
-    | KeyInput
-    | LayoutInput
-    | PadInput
-    | SticksInput
-    | OrbitInput
-    | PressInput
-    | ItemInput
-    | TextInput
-    | PictureProgress
-    | Frames
-    | Visibility
-    | HeadsetInput
-    | Alive
-)
-"""Everything that a view may send."""
-INPUTS: Mapping[str, type[ViewInput]] = {each.type: each for each in get_args(ViewInput)}
+INPUTS: Mapping[str, type[ViewInput]] = {each.type: each for each in ViewInput.__subclasses__()}
 
 
 class ViewRole(str, Enum):

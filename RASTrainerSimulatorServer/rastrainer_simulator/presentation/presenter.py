@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer_simulator.loop.results import Subscribers
-from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_of
+from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 from rastrainer_simulator.presentation.messages import (
     Feedback,
     Hello,
@@ -71,7 +71,10 @@ class Presenter:
     def happened(self, what: FeedbackEvent, volume: float = 1.0) -> None:
         """Have the views play the sound and the vibration of an event."""
         self._feedback_count += 1
-        self.updates.publish(feedback_of(what, self._feedback_count, volume))
+        number, rumble_ms = self._feedback_count, round(1000.0 * what.seconds)
+        self.updates.publish(
+            Feedback(number, what.value, what.sound, volume, what.rumble, rumble_ms)
+        )
 
     def pictures(self, now: SimulationState) -> Pictures:
         raise NotImplementedError

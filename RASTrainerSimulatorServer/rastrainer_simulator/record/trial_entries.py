@@ -200,7 +200,7 @@ class TrialEntries:
             is_fed = state.tool in (Tool.DRILL, Tool.ELECTRODE)
             sample = Sample(
                 q=state.q,
-                tip_mm=in_millimeters(state.tool_tip_to_world[:3, 3].tolist()),
+                tip_mm=in_millimeters(state.tip),
                 clearance_mm=MM_PER_M * state.clearance,
                 depth_mm=MM_PER_M * state.depth,
                 feed_mm=MM_PER_M * state.feed if is_fed else None,

@@ -91,7 +91,6 @@ def places_to_see(
     if training.next_point is not None and training.is_marked:
         task = scenario.task(training.task)
         guided = task.fiducials[task.labels.index(training.next_point)].tolist()
-    places = [now.tool_tip_to_world[:3, 3]]
-    if guided is not None:
-        places.append(apply(now.head_to_world, np.array(guided) / MM_PER_M))
-    return [vector(place.tolist()) for place in places]
+    if guided is None:
+        return [now.tip]
+    return [now.tip, vector(apply(now.head_to_world, np.array(guided) / MM_PER_M).tolist())]

@@ -24,7 +24,6 @@ from rastrainer_simulator.vectors import (
     scale,
     subtract,
     unit,
-    vector,
 )
 from rastrainer_simulator.viewpoint.best_view import BestView, BestViews
 from rastrainer_simulator.viewpoint.view_control import (
@@ -107,16 +106,12 @@ class TrialView:
     def pictures(self, now: SimulationState, cameras: Mapping[str, Camera]) -> Pictures:
         self.control.use(now.camera)
         main = camera_pose(cameras[now.camera], self.control.orbit)
-        tip = vector(now.tool_tip_to_world[:3, 3].tolist())
-        procedure = now.training.procedure
+        procedure, view, inset = now.training.procedure, self._view_of(now), None
         if procedure is not None and procedure.present is not None:
-            line = across_line(main.position, procedure.present.line, tip)
-            return Pictures(main, line, self.yaw_deg)
-        view = self._view_of(now)
-        if view is None or view.beside is None:
-            return Pictures(main, yaw_deg=self.yaw_deg)
-        beside = along_skin(view.beside, view.fiducial, tip)
-        return Pictures(main, beside, self.yaw_deg)
+            inset = across_line(main.position, procedure.present.line, now.tip)
+        elif view is not None and view.beside is not None:
+            inset = along_skin(view.beside, view.fiducial, now.tip)
+        return Pictures(main, inset, self.yaw_deg)
 
     def turned(
         self, sticks: OperatorInput, camera: Camera, axes: AxesChoice, yaw_deg: float | None

@@ -185,17 +185,17 @@ class Pictures:
     yaw_deg: float | None = None
 
 
+@dataclass(eq=False)
 class ViewControl:
     """One view of the scene, which all windows and pages draw: an orbit from a scenario's camera.
 
     `travel` is a move under way; `is_automatic` is whether the last move was automatic.
     """
 
-    def __init__(self) -> None:
-        self.camera = ""
-        self.orbit = FRONT
-        self.is_automatic = False
-        self.travel: _Travel | None = None
+    camera: str = ""
+    orbit: Orbit = FRONT
+    is_automatic: bool = False
+    travel: _Travel | None = None
 
     @property
     def is_moved(self) -> bool:

@@ -63,7 +63,7 @@ def test_the_arm_is_driven_and_touches_are_made_and_undone_by_clicks_and_dragged
 def test_the_right_stick_tilts_once_its_hint_has_been_clicked(clicking):
     clicking.hands.click("train")
     session, presenter = clicking.presenter._session, clicking.presenter
-    session.screen_sticks.is_shown = True
+    session.operator.screen_sticks.is_shown = True
     presenter.on_sticks(VIEW, (0.0, 0.0, 0.5), (0.2, 0.0), False, 0.0)
     held = session.controls.held
     assert (held.translation, held.rotation) == (

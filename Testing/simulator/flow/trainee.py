@@ -268,7 +268,7 @@ class Trainee:
 
     @property
     def tip(self):
-        return tuple(self.state.tool_tip_to_world[:3, 3].tolist())
+        return self.state.tip
 
     def steer_to(
         self, place: np.ndarray, near: float, fine: bool = False, ends_in_contact: bool = False
@@ -467,7 +467,7 @@ class Mouse:
         presenter = self._trainee.presenter
         assert presenter.screen.has_sticks
         is_pushed = bool(right or forward or up)
-        if is_pushed and fine != presenter._session.screen_sticks.is_slow:
+        if is_pushed and fine != presenter._session.operator.screen_sticks.is_slow:
             presenter.on_sticks(VIEW, (0.0, 0.0, 0.0), (0.0, 0.0), False, 0.0)
             self.click("press fine")
         presenter.on_sticks(VIEW, (right, forward, up), (0.0, 0.0), False, 0.0)

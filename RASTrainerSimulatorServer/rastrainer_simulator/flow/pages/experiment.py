@@ -72,7 +72,8 @@ class ExperimentPage(SessionPage):
         yield from self._trainee()
         modes = [mode.value for mode in Mode]
         yield self.choice("mode", modes, session.mode, say(f"mode.{session.mode}"))
-        yield self.button("scenario", self._open_heads, value=session.scenario.title)
+        heads = self.open_page(lambda own: scenario_page(own, own.services.list_scenarios()))
+        yield self.button("scenario", heads, value=session.scenario.title)
         methods, offered = playable_methods(session.scenario), chosen_trial.offered_method(session)
         others: dict[str, Any] = {"is_enabled": step is None}
         if len(methods) > 1:
@@ -85,10 +86,6 @@ class ExperimentPage(SessionPage):
             others["help"] = say("experiment.procedure help")
             shown = session.procedure_title(chosen if step is None else step.procedure)
             yield self.choice("procedure", names, chosen, shown, **others)
-
-    def _open_heads(self) -> None:
-        session = self.session
-        session.pages.open(scenario_page(session, session.services.list_scenarios()))
 
     def _trainee(self) -> Iterator[PageRow]:
         """Yield the trainee's ID, and for who only clicks what enters one."""
@@ -132,31 +129,25 @@ class ExperimentPage(SessionPage):
         if what:
             label = self.say(f"experiment.skip {what}")
             yield self.button("skip", partial(self._skip, what), label)
-        yield from (self._task(task.name) for task in session.scenario.tasks)
+        for name in (task.name for task in session.scenario.tasks):
+            reason, outcome = chosen_trial.obstacle(session, name), session.outcome_of(name)
+            yield self.button(
+                name,
+                partial(chosen_trial.start_task, session, name),
+                session.task_title(name),
+                value=self.say(f"experiment.{outcome}") if outcome else "",
+                is_enabled=not reason,
+                help=reason or self.say("experiment.task help"),
+            )
         count = len(session.history.own(session.trainee_id))
         if count:
             yield self.button("trials", self.open_page(own_trials_page), value=str(count))
 
     def _skip(self, what: str) -> None:
         session = self.session
-        if what == "tutorial":
-            session.history.skipped_tutorials.add(session.trainee_id)
-        else:
-            session.history.skipped_runs.add((session.trainee_id, session.scenario.name))
+        of = "" if what == "tutorial" else session.scenario.name
+        session.history.skipped.add((session.trainee_id, of))
         session.pages.focus(self._next_task())
-
-    def _task(self, name: str) -> PageRow:
-        session = self.session
-        reason = chosen_trial.obstacle(session, name)
-        outcome = session.outcome_of(name)
-        return self.button(
-            name,
-            partial(chosen_trial.start_task, session, name),
-            session.task_title(name),
-            value=self.say(f"experiment.{outcome}") if outcome else "",
-            is_enabled=not reason,
-            help=reason or self.say("experiment.task help"),
-        )
 
     def _next_task(self) -> str:
         """Return the row of the first task to be done, so that a stray key changes no known ID."""
@@ -193,16 +184,13 @@ def open_experiment(
 Listing = Future[list[ListedScenario]]
 
 
-def _leave_when_loaded(page: SessionPage, _dt: float, _listing: Listing, wanted: str = "") -> None:
-    """Go back once the chosen head is loaded; stay if it was refused."""
-    session = page.session
-    if wanted == session.scenario.name and not session.reload.is_under_way:
-        page.back()
+def _is_loaded(page: SessionPage, _listing: Listing, wanted: str = "") -> bool:
+    return wanted == page.session.scenario.name and not page.session.reload.is_under_way
 
 
-@page_kind("scenario", advance=_leave_when_loaded)
+@page_kind("scenario", is_over=_is_loaded)
 def scenario_page(page: SessionPage, listing: Listing, wanted: str = "") -> PageContent:
-    """List the scenarios, and why some cannot be used."""
+    """List the scenarios, and why some cannot be used; stay if the chosen one is refused."""
     session, is_loading = page.session, page.session.reload.is_under_way
     present = session.scenario.name
 
@@ -231,12 +219,7 @@ def scenario_page(page: SessionPage, listing: Listing, wanted: str = "") -> Page
     )
 
 
-def _leave_without_curriculum(page: SessionPage, _dt: float) -> None:
-    if page.session.curriculum is None:
-        page.back()
-
-
-@page_kind("assignments", advance=_leave_without_curriculum)
+@page_kind("assignments", is_over=lambda page: page.session.curriculum is None)
 def assignments_page(page: SessionPage) -> PageContent:
     """List the assignments; the next to practice has the focus, and each begins its trial."""
     session, curriculum = page.session, page.session.curriculum

@@ -56,7 +56,7 @@ def tutorial_page(page: SessionPage) -> PageContent:
 
     def leave() -> None:
         if is_skipped:
-            session.history.skipped_tutorials.add(session.trainee_id)
+            session.history.skipped.add((session.trainee_id, ""))
         session.end_tutorial()
         open_experiment(session)
 

@@ -75,13 +75,12 @@ def character_page(page: SessionPage, write: Write, row: str) -> PageContent:
     return _id_content(page, (*characters, page.button("back")))
 
 
-def _follow_study(page: SessionPage, _dt: float, step: StudyStep, **_answers: int) -> None:
-    """Leave once the study has another step, for example after answers given in Slicer."""
-    if page.session.services.assigned.steps.get(step.trainee) != step:
-        page.back()
+def _has_moved_on(page: SessionPage, step: StudyStep, **_answers: int) -> bool:
+    """Return whether the study has another step, for example after answers given in Slicer."""
+    return page.session.services.assigned.steps.get(step.trainee) != step
 
 
-@page_kind("questionnaire", advance=_follow_study)
+@page_kind("questionnaire", is_over=_has_moved_on)
 def questionnaire_page(page: SessionPage, step: StudyStep, **answers: int) -> PageContent:
     """Collect an answer to each item, and submit them together for Slicer to store."""
     asked = find_questionnaire(step.questionnaire)

@@ -113,10 +113,8 @@ class AssignmentTexts:
         return " · ".join(filter(None, (self.task_title(each.task), special)))
 
     def progress(self, each: AssignmentStanding) -> str:
-        if each.state is AssignmentState.REACHED:
-            return self.texts.say("assignments.reached")
-        if each.state is AssignmentState.LOCKED:
-            return self.texts.say("assignments.locked")
+        if each.state is not AssignmentState.OPEN:
+            return self.texts.say(f"assignments.{each.state.value}")
         key = "assignments.percent" if each.goal is GoalKind.COMPETENT else "assignments.count"
         return self.texts.say(key, done=each.done, needed=each.needed)
 

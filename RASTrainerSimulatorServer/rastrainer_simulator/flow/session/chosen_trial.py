@@ -203,7 +203,7 @@ def usual_id(session: TrainingSession) -> str:
 
 def needs_tutorial(session: TrainingSession) -> bool:
     """Return whether the trial run waits for the tutorial with the device in use."""
-    is_skipped = may_skip(session) and session.trainee_id in session.history.skipped_tutorials
+    is_skipped = may_skip(session) and (session.trainee_id, "") in session.history.skipped
     if is_skipped or tutorial_rule(session) is not TutorialRule.REQUIRED:
         return False
     return not has_learned(session)

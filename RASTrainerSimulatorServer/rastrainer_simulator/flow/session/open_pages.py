@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
@@ -146,8 +146,13 @@ class Page(Generic[S]):
     def pressed(self, control: ControlName) -> bool:  # noqa: ARG002
         return False
 
-    def advance(self, dt: float) -> None:
-        """Advance by `dt` seconds."""
+    def is_over(self) -> bool:
+        """Return whether the page has to go back by itself."""
+        return False
+
+    def advance(self, dt: float) -> None:  # noqa: ARG002
+        if self.is_over():
+            self.back()
 
     def closed(self) -> None:
         """Clean up: the page is no longer open."""
@@ -175,6 +180,7 @@ GRACE_S = 0.7
 """How long a page that opens automatically has no focus: presses meant for the arm do nothing."""
 
 
+@dataclass(eq=False)
 class OpenPages:
     """The open pages; none while the trainee works.
 
@@ -185,12 +191,10 @@ class OpenPages:
         home: makes the page that all others lie over.
     """
 
-    home: Callable[[], Page[Any]]
-
-    def __init__(self, happened: Callable[[FeedbackEvent], None]) -> None:
-        self._happened = happened
-        self._open: list[Page[Any]] = []
-        self._grace_s = 0.0
+    _happened: Callable[[FeedbackEvent], None]
+    home: Callable[[], Page[Any]] = field(init=False)
+    _open: list[Page[Any]] = field(default_factory=list)
+    _grace_s: float = 0.0
 
     @property
     def top(self) -> Page[Any] | None:

@@ -6,7 +6,7 @@ An operator with only a mouse gets two sticks that views draw on request.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import reduce
 
 from rastrainer.protocol import Mode
@@ -22,17 +22,20 @@ _BY_MOUSE = "mouse"
 """Devices with their own names of inputs, and the prefix of the keys of these texts."""
 SHOW, TILT = "sticks", "tilt"
 """Names of the hints that show or hide the sticks, and have the right stick tilt the tool."""
+_SWITCHES = {SHOW: "is_shown", TILT: "is_tilting", ControlName.FINE.value: "is_slow"}
 
 
+@dataclass(eq=False)
 class OperatorDevice:
-    """The device of the holder of control, or the likely one before anyone has it."""
+    """The device of the holder of control, or the likely one before anyone has it.
 
-    def __init__(self, controls: Controls, texts: Texts) -> None:
-        self.controls = controls
-        self.texts = texts
-        # The labels of the keys of each view, by their W3C codes.
-        self.layouts: dict[int, Mapping[str, str]] = {}
-        self.screen_sticks = ScreenSticks()
+    `layouts` are the labels of the keys of each view, by their W3C codes.
+    """
+
+    controls: Controls
+    texts: Texts
+    layouts: dict[int, Mapping[str, str]] = field(default_factory=dict)
+    screen_sticks: ScreenSticks = field(default_factory=lambda: ScreenSticks())
 
     @property
     def kind(self) -> InputDevice:
@@ -122,15 +125,10 @@ class ScreenSticks:
 
     def pressed(self, name: str) -> bool:
         """Switch what a click stands for; return whether it concerns the sticks."""
-        if name == SHOW:
-            self.is_shown = not self.is_shown
-        elif name == TILT:
-            self.is_tilting = not self.is_tilting
-        elif name == ControlName.FINE.value:
-            self.is_slow = not self.is_slow
-        else:
-            return False
-        return True
+        switched = _SWITCHES.get(name, "")
+        if switched:
+            setattr(self, switched, not getattr(self, switched))
+        return switched != ""
 
     def moved(
         self, translation: tuple[float, float, float], rotation: tuple[float, float]

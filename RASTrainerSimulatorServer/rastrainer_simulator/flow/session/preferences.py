@@ -119,18 +119,18 @@ def write_preferences(path: Path, preferences: Preferences) -> None:
     write_private_json(path, record_to_json(preferences, with_defaults=True))
 
 
+@dataclasses.dataclass
 class InstructorLock:
     """The lock of an instructor's PIN on settings, order, and passing on the control.
 
     If a PIN is set, it is locked until somebody enters the PIN, and again when the trainee changes
-    or a trial or tutorial begins: the instructor may have left by then.
+    or a trial or tutorial begins: the instructor may have left by then. The PIN may be set and
+    removed at any time; None locks nothing.
     """
 
-    def __init__(self, pin: InstructorPin | None) -> None:
-        """Lock by a PIN, which may be set and removed at any time; None locks nothing."""
-        self._pin = pin
-        self.is_open = False
-        self._seen = ("", "", False)
+    _pin: InstructorPin | None
+    is_open: bool = False
+    _seen: tuple[str, str, bool] = "", "", False
 
     @property
     def has_pin(self) -> bool:

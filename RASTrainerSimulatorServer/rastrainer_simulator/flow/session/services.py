@@ -41,19 +41,17 @@ class FlowServices:
     pin: InstructorPin | None = None
 
 
+@dataclass(eq=False)
 class SimulationReload:
     """Has the simulation continue with other settings, or on another head, between two trials."""
 
-    def __init__(
-        self, services: FlowServices, control_loop: ControlLoop, complain: Callable[[str], None]
-    ) -> None:
-        self._services = services
-        self._control_loop = control_loop
-        self._complain = complain
-        self._wanted: SimulationSettings | None = None
-        self._asked: SimulationSettings | None = None
-        self._begins_in_s = 0.0
-        self._answer: Future[Answer] | None = None
+    _services: FlowServices
+    _control_loop: ControlLoop
+    _complain: Callable[[str], None]
+    _wanted: SimulationSettings | None = None
+    _asked: SimulationSettings | None = None
+    _begins_in_s: float = 0.0
+    _answer: Future[Answer] | None = None
 
     @property
     def is_under_way(self) -> bool:

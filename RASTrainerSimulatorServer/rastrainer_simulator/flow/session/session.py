@@ -6,7 +6,7 @@ import logging
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import Future
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -57,6 +57,7 @@ TUTORIAL_VIEW = Orbit(zoom=1.7)
 """Farther away than in a trial: the tip starts above the head and must be visible."""
 
 
+@dataclass(eq=False, repr=False)
 class TrainingSession:
     """The trainee's choices and the services behind the pages.
 
@@ -68,46 +69,38 @@ class TrainingSession:
         practiced: task and point of the latest practice; no point for the tutorial.
     """
 
-    def __init__(
-        self,
-        control_loop: ControlLoop,
-        controls: Controls,
-        services: FlowServices,
-        preferences: Preferences,
-        happened: Callable[[FeedbackEvent], None],
-    ) -> None:
-        self.trainee = ""
-        self.mode = Mode.DESKTOP.value
-        self.procedure = ""
-        self.method = RegistrationMethod.FIDUCIALS
-        self.has_read_introduction = False
-        self.preferences = preferences
-        self.texts = Texts(LANGUAGES[preferences.language])
+    control_loop: ControlLoop
+    controls: Controls
+    services: FlowServices
+    preferences: Preferences
+    happened: Callable[[FeedbackEvent], None]
+    trainee: str = ""
+    mode: str = Mode.DESKTOP.value
+    procedure: str = ""
+    method: RegistrationMethod = RegistrationMethod.FIDUCIALS
+    has_read_introduction: bool = False
+    tutorial: Tutorial | None = None
+    practiced: tuple[str, str] = TRIAL_RUN, ""
+    picture_share: float | None = None
+    goes_on_blind: str = ""
+    view: TrialView = field(default_factory=TrialView)
+    ghost: TrialGhost = field(default_factory=TrialGhost)
+    places: TracePlaces = field(default_factory=TracePlaces)
+    notices: Notices = field(default_factory=Notices)
+    _asked: list[tuple[str, Future[Answer]]] = field(default_factory=list)
+    _noted: CurriculumMessage | None = None
+
+    def __post_init__(self) -> None:
+        services, loop = self.services, self.control_loop
+        self.texts = Texts(LANGUAGES[self.preferences.language])
         self.history = TraineeHistory(services.records)
-        scoring = control_loop.submit, services.records, services.is_slicer_connected
-        self.local_scorer = (
-            LocalScorer(*scoring, self.history.own) if services.scores_alone else None
-        )
-        self.happened = happened
-        self.pages = OpenPages(happened)
-        self.operator = OperatorDevice(controls, self.texts)
-        self.view = TrialView()
-        self.ghost = TrialGhost()
-        self.places = TracePlaces()
-        self.tutorial: Tutorial | None = None
-        self.screen_sticks = self.operator.screen_sticks
+        scoring = loop.submit, services.records, services.is_slicer_connected, self.history.own
+        self.local_scorer = LocalScorer(*scoring) if services.scores_alone else None
+        self.pages = OpenPages(self.happened)
+        self.operator = OperatorDevice(self.controls, self.texts)
         self.lock = InstructorLock(services.pin)
-        self.reload = SimulationReload(services, control_loop, self.complain)
-        self.services = services
-        self.control_loop = control_loop
-        self.controls = controls
-        self.practiced = TRIAL_RUN, ""
-        self._asked: list[tuple[str, Future[Answer]]] = []
-        self.notices = Notices()
-        self.picture_share: float | None = None
-        self.goes_on_blind = ""
-        self._noted: CurriculumMessage | None = None
-        self.state: SimulationState = control_loop.latest
+        self.reload = SimulationReload(services, loop, self.complain)
+        self.state: SimulationState = loop.latest
 
     def say(self, key: str, **values: object) -> str:
         """Return a sentence in the trainee's language."""
@@ -133,10 +126,6 @@ class TrainingSession:
     @property
     def has_open_trial(self) -> bool:
         return self.training.phase in OPEN_PHASES
-
-    @property
-    def tip(self) -> Vector:
-        return tuple(self.state.tool_tip_to_world[:3, 3].tolist())
 
     @property
     def scenario(self) -> Scenario:

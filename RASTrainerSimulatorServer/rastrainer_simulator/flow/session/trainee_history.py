@@ -73,8 +73,8 @@ class TraineeHistory:
 
     Attributes:
         done: tasks by trainee and scenario.
-        skipped_runs: trainees and scenarios whose tasks do not wait for the trial run.
-        skipped_tutorials: trainees whose trial run does not wait for the tutorial.
+        skipped: trainees whose trial run does not wait for the tutorial, as (trainee, ""), and
+            whose tasks do not wait for the trial run, each with the scenario.
         latest_trainees: who trained here before the simulator was started, the last first.
     """
 
@@ -83,8 +83,7 @@ class TraineeHistory:
 
         Unusable files are ignored. Scores are read when first asked for.
         """
-        self.skipped_runs: set[tuple[str, str]] = set()
-        self.skipped_tutorials: set[str] = set()
+        self.skipped: set[tuple[str, str]] = set()
         self.learned: dict[str, TutorialOutcome] = {}
         self._records = records
         self._journals: dict[str, list[Path]] = defaultdict(list)
@@ -102,7 +101,7 @@ class TraineeHistory:
 
     def needs_no_trial_run(self, trainee: str, scenario: str) -> bool:
         head = trainee, scenario
-        return head in self.skipped_runs or bool(self.done[head])
+        return head in self.skipped or bool(self.done[head])
 
     def missing_before(
         self, trainee: str, scenario: str, task: str, order: Sequence[str]

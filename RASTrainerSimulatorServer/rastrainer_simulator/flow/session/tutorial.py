@@ -30,7 +30,6 @@ from rastrainer_simulator.vectors import (
     in_meters,
     in_millimeters,
     subtract,
-    vector,
 )
 from rastrainer_simulator.viewpoint.view_control import FRONT, Orbit
 
@@ -231,16 +230,16 @@ class TouchPractice:
             _moment(state), state.proximity, obstacle, training, goal, self._of_trials
         )
         is_on_point = stage in (TouchStage.ON_SKIN, TouchStage.PRESSED)
-        is_beside = is_on_point and distance(_tip(state), goal or ZERO) > CENTERED_M
+        is_beside = is_on_point and distance(state.tip, goal or ZERO) > CENTERED_M
         radius = self._of_trials.acceptance_radius
-        is_at_rest = self._rest is not None and distance(_tip(state), self._rest) <= radius
+        is_at_rest = self._rest is not None and distance(state.tip, self._rest) <= radius
         if is_beside or (stage is TouchStage.ELSEWHERE and is_at_rest):
             stage = TouchStage.NEAR
         return replace(state, training=training, touch=stage)
 
     def off_center_mm(self, state: SimulationState) -> float | None:
         """Return how far from a point's center the tip is on the skin, mm; None elsewhere."""
-        goal, tip = self.training.goal_of(self.training.state), _tip(state)
+        goal, tip = self.training.goal_of(self.training.state), state.tip
         if goal is None or state.tip_clearance > self._settings.skin_tolerance:
             return None
         off = distance(tip, goal)
@@ -249,11 +248,7 @@ class TouchPractice:
 
 
 def _moment(state: SimulationState) -> TouchMoment:
-    return TouchMoment(state.sim_time, _tip(state), state.tip_clearance, state.depth)
-
-
-def _tip(state: SimulationState) -> Vector:
-    return vector(state.tool_tip_to_world[:3, 3].tolist())
+    return TouchMoment(state.sim_time, state.tip, state.tip_clearance, state.depth)
 
 
 class Tutorial:
@@ -303,8 +298,7 @@ class Tutorial:
     @property
     def practice(self) -> TouchPractice:
         """The present practice: first a single point, then the guided points."""
-        is_guided = self.step in (TutorialStep.GUIDED, *OF_PRACTICE, None)
-        return self._guided if is_guided else self._first
+        return self._guided if self.has_learned_view else self._first
 
     @property
     def step(self) -> TutorialStep | None:
