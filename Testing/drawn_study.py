@@ -8,7 +8,12 @@ import numpy as np
 
 from rastrainer.study.study_data import StudyData
 from rastrainer.trial.trial_row import TrialRow
-from rastrainer_simulator.virtual.outcome_model import OutcomeModel, draw_outcomes, model_scores
+from rastrainer_simulator.virtual.outcome_model import (
+    OutcomeModel,
+    draw,
+    model_scores,
+    trial_numbers,
+)
 from rastrainer_simulator.virtual.population import pseudonym
 
 
@@ -24,7 +29,8 @@ def draw_study(
     `orders` are the modes in the order of each trainee; by default that of `modes` for all.
     """
     orders = orders or [tuple(modes)] * trainees
-    times, errors = draw_outcomes(model, trainees, modes, random, orders)
+    numbers = trial_numbers(orders, modes, len(model.task_times_s))
+    times, errors, _, _ = draw(model, modes, random, numbers)
     scores = model_scores(model, times, errors)
     rows = [
         TrialRow(

@@ -98,17 +98,9 @@ def _comment(kind: type) -> str:
 
 
 def _constant(name: str, value: Any) -> str:
-    plain = _plain(value)
-    ending = " as const" if isinstance(plain, (list, dict)) else ""
-    return f"export const {name} = {json.dumps(plain)}{ending};"
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {_plain(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, (tuple, frozenset)):
-        return [_plain(item) for item in value]
-    return value.value if isinstance(value, Enum) else value
+    ending = " as const" if isinstance(value, (Mapping, tuple, frozenset)) else ""
+    text = json.dumps(value, default=lambda it: dict(it) if isinstance(it, Mapping) else list(it))
+    return f"export const {name} = {text}{ending};"
 
 
 def page_types() -> str:

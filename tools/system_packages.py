@@ -31,60 +31,39 @@ import subprocess
 found = subprocess.run(["fc-list", ":lang=zh-cn"], capture_output=True, check=True)
 raise SystemExit(found.stdout == b"")
 """
-OPENIGTLINK_HEADER = Path("/usr/include/openigtlink/igtlMessageHeader.h")
-FONTS = Path("/usr/share/fonts/truetype")
-REAL_HEADS = {
-    "mricron-data": Path("/usr/share/mricron/templates/ch2.nii.gz"),
-    "invesalius-examples": Path("/usr/share/doc/invesalius-examples/examples/Cranium.inv3"),
-}
-"""An MRI and a CT, only for tests; `make soak` makes scenarios of them."""
-
 WAIT = ("-o", "DPkg::Lock::Timeout=300")
 """For another installation to end, s: many machines look for updates when they start."""
+
+EVERY, TESTS, SOAK = ("demo", "simulator", "test", "soak"), ("test", "soak"), ("soak",)
+QT_LIBRARIES = ["libegl1", "libgl1", "libfontconfig1", "libxkbcommon0", "libdbus-1-3"]
+MRI = Path("/usr/share/mricron/templates/ch2.nii.gz")
+CT = Path("/usr/share/doc/invesalius-examples/examples/Cranium.inv3")
+NEEDED = (
+    (EVERY, lambda: _loads("libgomp.so.1"), ["libgomp1"]),
+    (EVERY, lambda: _runs(RENDER_ONE_PICTURE), ["libegl1", "libgl1-mesa-dri", "libxcursor1"]),
+    (EVERY[1:], lambda: _loads("libGLX.so.0"), ["libgl1", "libglx-mesa0"]),
+    (["simulator"], lambda: not os.environ.get("DISPLAY") or _runs(FIND_BROWSER), ["chromium"]),
+    (TESTS, lambda: shutil.which("g++"), ["g++", "libc6-dev"]),
+    (TESTS, lambda: shutil.which("cmake"), ["cmake"]),
+    (TESTS, Path("/usr/include/openigtlink/igtlMessageHeader.h").exists, ["libopenigtlink-dev"]),
+    (TESTS, lambda: shutil.which("Xvfb"), ["xvfb"]),
+    (TESTS, lambda: shutil.which("chromium"), ["chromium"]),
+    (TESTS, Path("/usr/share/fonts/truetype").is_dir, ["fonts-dejavu-core"]),
+    (TESTS, lambda: _runs(FIND_CHINESE_FONT), ["fontconfig", "fonts-wqy-microhei"]),
+    (TESTS, lambda: _runs(OPEN_QT, QT_QPA_PLATFORM="offscreen"), QT_LIBRARIES),
+    # An MRI and a CT, only for tests; `make soak` makes scenarios of them.
+    (SOAK, MRI.exists, ["mricron-data"]),
+    (SOAK, CT.exists, ["invesalius-examples"]),
+    (SOAK, lambda: any(Path("/usr/lib/postgresql").glob("*/bin/initdb")), ["postgresql"]),
+    (SOAK, lambda: _loads("libusb-1.0.so.0"), ["libusb-1.0-0"]),  # By Open3D, a peer.
+)
+"""The make targets that need something, whether it is there, and the Debian packages of it."""
 
 
 def missing_packages(target: str) -> list[str]:
     """Return the Debian packages that `target` needs and that are missing."""
-    wanted = []
-    if not _loads("libgomp.so.1"):
-        wanted += ["libgomp1"]
-    if not _runs(RENDER_ONE_PICTURE):
-        wanted += ["libegl1", "libgl1-mesa-dri", "libxcursor1"]
-    if target in ("simulator", "test", "soak") and not _loads("libGLX.so.0"):
-        wanted += ["libgl1", "libglx-mesa0"]
-    if target == "simulator" and os.environ.get("DISPLAY") and not _runs(FIND_BROWSER):
-        wanted += ["chromium"]
-    if target in ("test", "soak"):
-        wanted += _for_tests()
-    if target == "soak":
-        wanted += [package for package, file in REAL_HEADS.items() if not file.exists()]
-        if not list(Path("/usr/lib/postgresql").glob("*/bin/initdb")):
-            wanted += ["postgresql"]
-        if not _loads("libusb-1.0.so.0"):  # By Open3D, a peer.
-            wanted += ["libusb-1.0-0"]
-    return wanted
-
-
-def _for_tests() -> list[str]:
-    """Return the missing packages of the tests."""
-    wanted = []
-    if shutil.which("g++") is None:
-        wanted += ["g++", "libc6-dev"]
-    if shutil.which("cmake") is None:
-        wanted += ["cmake"]
-    if not OPENIGTLINK_HEADER.exists():
-        wanted += ["libopenigtlink-dev"]
-    if shutil.which("Xvfb") is None:
-        wanted += ["xvfb"]
-    if shutil.which("chromium") is None:
-        wanted += ["chromium"]
-    if not FONTS.is_dir():
-        wanted += ["fonts-dejavu-core"]
-    if not _runs(FIND_CHINESE_FONT):
-        wanted += ["fontconfig", "fonts-wqy-microhei"]
-    if not _runs(OPEN_QT, QT_QPA_PLATFORM="offscreen"):
-        wanted += ["libegl1", "libgl1", "libfontconfig1", "libxkbcommon0", "libdbus-1-3"]
-    return wanted
+    needed = (row[1:] for row in NEEDED if target in row[0])
+    return [package for is_there, packages in needed if not is_there() for package in packages]
 
 
 def _loads(library: str) -> bool:

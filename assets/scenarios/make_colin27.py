@@ -8,6 +8,7 @@ voxels are compared, since other versions of zlib pack the same voxels otherwise
 """
 
 import argparse
+import filecmp
 import hashlib
 import sys
 import tempfile
@@ -16,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.errors import RASTrainerError
-from rastrainer.head.mesh import HeadMesh, write_head_mesh
+from rastrainer.head.mesh import write_head_mesh
 from rastrainer.head.volume import read_nrrd, write_nrrd
 from rastrainer.slicer.head.head_draft import makeDraft
 from rastrainer_headless.volume_files import readVolume
@@ -24,7 +25,7 @@ from rastrainer_headless.volume_files import readVolume
 MRI = Path("/usr/share/mricron/templates/ch2.nii.gz")
 MRI_SHA256 = "a009051127f64dc3dd554d5f5b589870ea72106d9642c21b4e7093e478cfc309"
 FOLDER = Path(__file__).parent / "colin27"
-HEAD, SKULL, VOLUME = FOLDER / "head.ply", FOLDER / "skull.ply", FOLDER / "volume.nrrd"
+HEAD, SKULL, VOLUME = "head.ply", "skull.ply", "volume.nrrd"
 
 
 def main() -> int:
@@ -49,31 +50,25 @@ def make(mri: Path, check: bool) -> int:
     draft, _ = makeDraft(
         readVolume(mri), progress=lambda step, share: print(f"{share:4.0%}  {step}")
     )
-    if check:
-        values, matrix = read_nrrd(VOLUME)
-        volume = draft.volume
+    volume = draft.volume
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary) if check else FOLDER
+        write_head_mesh(folder / HEAD, draft.head)
+        write_head_mesh(folder / SKULL, draft.skull)
+        write_nrrd(folder / VOLUME, volume.values, volume.ijk_to_ras)
+        if not check:
+            size = (FOLDER / VOLUME).stat().st_size
+            print(f"{draft.method}\nwindow {volume.window:g}, level {volume.level:g}, {size} bytes")
+            return 0
         same = {
-            "head": _is_same_mesh(HEAD, draft.head),
-            "skull": _is_same_mesh(SKULL, draft.skull),
-            "volume": np.array_equal(values, volume.values)
-            and np.array_equal(matrix, volume.ijk_to_ras),
+            **{name: filecmp.cmp(folder / name, FOLDER / name, False) for name in (HEAD, SKULL)},
+            VOLUME: all(
+                map(np.array_equal, read_nrrd(folder / VOLUME), read_nrrd(FOLDER / VOLUME))
+            ),
         }
-        for what, is_same in same.items():
-            print(f"The committed {what} {'is the same' if is_same else 'differs'}.")
-        return 0 if all(same.values()) else 1
-    write_head_mesh(HEAD, draft.head)
-    write_head_mesh(SKULL, draft.skull)
-    write_nrrd(VOLUME, draft.volume.values, draft.volume.ijk_to_ras)
-    window, level = draft.volume.window, draft.volume.level
-    print(f"{draft.method}\nwindow {window:g}, level {level:g}, {VOLUME.stat().st_size} bytes")
-    return 0
-
-
-def _is_same_mesh(path: Path, mesh: HeadMesh) -> bool:
-    with tempfile.TemporaryDirectory() as folder:
-        again = Path(folder) / path.name
-        write_head_mesh(again, mesh)
-        return again.read_bytes() == path.read_bytes()
+    for name, is_same in same.items():
+        print(f"The committed {Path(name).stem} {'is the same' if is_same else 'differs'}.")
+    return 0 if all(same.values()) else 1
 
 
 if __name__ == "__main__":

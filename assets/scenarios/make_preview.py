@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import vtk
+from scipy.spatial import geometric_slerp
 from vtk.util.numpy_support import numpy_to_vtk
 
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
@@ -110,12 +111,8 @@ def _way(mesh: HeadMesh, task: Task) -> np.ndarray:
     outward = outward / radii[:, None]
     way = []
     for start, end in pairwise(task.fiducials - center):
-        weights = np.linspace(0, 1, 24)[:, None]
-        a, b = start / np.linalg.norm(start), end / np.linalg.norm(end)
-        angle = np.arccos(np.clip(a @ b, -1, 1))
-        directions = (np.sin((1 - weights) * angle) * a + np.sin(weights * angle) * b) / np.sin(
-            angle
-        )
+        ends = start / np.linalg.norm(start), end / np.linalg.norm(end)
+        directions = geometric_slerp(*ends, np.linspace(0, 1, 24))
         radius = [np.sort(radii[np.argsort(-(outward @ d))[:3]])[1] for d in directions]
         way.append(center + directions * (np.array(radius)[:, None] + 1.5))
     return np.concatenate(way)

@@ -19,7 +19,7 @@ import trimesh
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import write_json, write_text
 from rastrainer.head.mesh import HeadMesh, mesh_crossings, read_head_mesh, write_head_mesh
-from rastrainer.procedure.checks import distances_to_no_go, planned_bone
+from rastrainer.procedure.checks import measure_lines, planned_bone
 from rastrainer.procedure.geometry import axis_distance_mm, segment_distances_mm, skull_angle_deg
 from rastrainer.procedure.plan import (
     Checkpoint,
@@ -36,6 +36,9 @@ from rastrainer_simulator.authoring.procedure_plan import is_guide_held
 from rastrainer_simulator.authoring.task_set import smooth_places
 
 FOLDER = Path(__file__).parent / "colin27"
+Point = tuple[float, float, float]
+WantedTrajectory = tuple[str, Point, Point]
+"""Name, target (R, A, S in mm), and the direction from it to the entry that is preferred."""
 
 HEAD_SPACE = (
     "The MRI is in the space of the MNI (stereotaxic, not warped), so the coordinates are only as "
@@ -59,21 +62,12 @@ SCHEMATIC = (
 
 
 @dataclass(frozen=True)
-class WantedTrajectory:
-    """A target (R, A, S in mm), and the direction from it to the entry that is preferred."""
-
-    name: str
-    target: tuple[float, float, float]
-    toward: tuple[float, float, float]
-
-
-@dataclass(frozen=True)
 class Tube:
     """A schematic structure: a course through points (R, A, S) and a radius, mm."""
 
     name: str
     radius: float
-    course: tuple[tuple[float, float, float], ...]
+    course: tuple[Point, ...]
 
 
 VENTRICLE = ((9, 30, 0), (12, 20, 12), (12, 5, 20), (14, -12, 23), (18, -30, 21), (24, -42, 12))
@@ -125,7 +119,7 @@ class Planner:
 
     def trajectories(
         self,
-        wanted: list[WantedTrajectory],
+        wanted: tuple[WantedTrajectory, ...],
         no_go: list[HeadMesh],
         diameter_mm: float,
         safety_mm: float,
@@ -133,22 +127,21 @@ class Planner:
         """Return the trajectories with the best entries that are free and within reach."""
         found: list[ProcedureTrajectory] = []
         for one in wanted:
-            for trajectory in self._by_cost(one, diameter_mm, safety_mm):
+            for trajectory in self._by_cost(*one, diameter_mm, safety_mm):
                 if self._is_free(trajectory, no_go, found) and is_guide_held(
                     self.planning, trajectory, self.poses
                 ):
                     found.append(trajectory)
                     break
             else:
-                raise SystemExit(f"{one.name}: no entry was found.")
+                raise SystemExit(f"{one[0]}: no entry was found.")
         return tuple(found)
 
     def _by_cost(
-        self, wanted: WantedTrajectory, diameter_mm: float, safety_mm: float
+        self, name: str, target: Point, toward: Point, diameter_mm: float, safety_mm: float
     ) -> Iterator[ProcedureTrajectory]:
         """Yield trajectories: steep to the skull, near the preferred direction, and short."""
-        target = np.array(wanted.target)
-        toward = np.array(wanted.toward) / np.linalg.norm(wanted.toward)
+        target, toward = np.array(target), np.array(toward) / np.linalg.norm(toward)
         out = np.random.default_rng(27).normal(size=(CANDIDATES, 3))
         out /= np.linalg.norm(out, axis=1)[:, None]
         costs = []
@@ -157,7 +150,7 @@ class Planner:
             if len(crossings) != 1:
                 continue
             entry = (target + crossings[0].distance_mm * direction).round(2)
-            one = ProcedureTrajectory(wanted.name, entry, target, diameter_mm, safety_mm)
+            one = ProcedureTrajectory(name, entry, target, diameter_mm, safety_mm)
             bone = planned_bone(one, self.skull)
             if bone is None or bone.inner_mm is None:
                 continue
@@ -170,7 +163,7 @@ class Planner:
             )
             costs.append((float(cost), tuple(entry.tolist())))
         for _cost, entry in sorted(costs):
-            yield ProcedureTrajectory(wanted.name, np.array(entry), target, diameter_mm, safety_mm)
+            yield ProcedureTrajectory(name, np.array(entry), target, diameter_mm, safety_mm)
 
     def _is_free(
         self,
@@ -250,7 +243,7 @@ PLANS = (
         "Biopsy of a frontal lesion",
         ProcedureKind.BIOPSY,
         "Target: the center of a made-up lesion in the right frontal white matter.",
-        [WantedTrajectory("Right frontal lesion", (28.0, 30.0, 24.0), (0.4, 0.35, 0.8))],
+        (("Right frontal lesion", (28.0, 30.0, 24.0), (0.4, 0.35, 0.8)),),
         (SINUS, "right-ventricle"),
         2.1,
         3.0,
@@ -260,12 +253,10 @@ PLANS = (
         "Deep brain stimulation of both subthalamic nuclei",
         ProcedureKind.DBS,
         STN,
-        [
-            WantedTrajectory(
-                "Left subthalamic nucleus", (-12.58, -13.41, -5.87), (-0.3, 0.5, 0.85)
-            ),
-            WantedTrajectory("Right subthalamic nucleus", (12.58, -13.41, -5.87), (0.3, 0.5, 0.85)),
-        ],
+        (
+            ("Left subthalamic nucleus", (-12.58, -13.41, -5.87), (-0.3, 0.5, 0.85)),
+            ("Right subthalamic nucleus", (12.58, -13.41, -5.87), (0.3, 0.5, 0.85)),
+        ),
         (SINUS, "left-ventricle", "right-ventricle"),
         1.27,
         2.0,
@@ -275,13 +266,13 @@ PLANS = (
         "Stereo-EEG of the right hemisphere",
         ProcedureKind.SEEG,
         AAL,
-        [
-            WantedTrajectory("Right hippocampus", (28.23, -19.78, -10.33), (0.35, -0.85, 0.35)),
-            WantedTrajectory("Right insula", (38.02, 6.25, 2.08), (0.15, 0.6, 0.8)),
-            WantedTrajectory("Right anterior cingulate", (7.46, 37.01, 15.84), (0.6, 0.5, 0.6)),
-            WantedTrajectory("Right middle cingulate", (7.02, -8.83, 39.79), (0.6, 0.2, 0.8)),
-            WantedTrajectory("Right posterior cingulate", (6.44, -41.81, 21.87), (0.5, -0.6, 0.6)),
-        ],
+        (
+            ("Right hippocampus", (28.23, -19.78, -10.33), (0.35, -0.85, 0.35)),
+            ("Right insula", (38.02, 6.25, 2.08), (0.15, 0.6, 0.8)),
+            ("Right anterior cingulate", (7.46, 37.01, 15.84), (0.6, 0.5, 0.6)),
+            ("Right middle cingulate", (7.02, -8.83, 39.79), (0.6, 0.2, 0.8)),
+            ("Right posterior cingulate", (6.44, -41.81, 21.87), (0.5, -0.6, 0.6)),
+        ),
         (SINUS, "right-mca", "right-pca"),
         0.8,
         3.0,
@@ -314,20 +305,14 @@ def table_of(procedures: list[Procedure]) -> str:
         "|---|---|---|---|---|---|",
     ]
     for procedure in procedures:
-        skull = FOLDER / "skull.ply"
-        meshes = read_procedure_meshes(procedure, skull)
-        for one in procedure.trajectories:
-            bone = planned_bone(one, meshes.skull)
-            assert bone is not None
-            point = one.entry_ras + bone.outer_mm * one.direction
-            distance, name = min(
-                (distance, name) for name, distance in distances_to_no_go(one, meshes).items()
-            )
-            target = ", ".join(f"{value:g}" for value in one.target_ras)
+        meshes = read_procedure_meshes(procedure, FOLDER / "skull.ply")
+        lines = measure_lines(procedure, meshes)
+        for trajectory, line in zip(procedure.trajectories, lines, strict=True):
+            target = ", ".join(f"{value:g}" for value in trajectory.target_ras)
+            nearest = line.nearest_no_go
             rows.append(
-                f"| {procedure.title} | {one.name} | {target} | {one.length_mm:.0f} | "
-                f"{skull_angle_deg(meshes.skull, point, one.direction):.0f} | "
-                f"{distance:.1f}, {name} |"
+                f"| {procedure.title} | {line.name} | {target} | {line.length_mm:.0f} | "
+                f"{line.skull_angle_deg:.0f} | {line.no_go_mm[nearest]:.1f}, {nearest} |"
             )
     return "\n".join(rows) + "\n"
 

@@ -68,22 +68,6 @@ class OutcomeModel:
     mode_bias_mm: Mapping[str, float] = field(default_factory=dict)
 
 
-def draw_outcomes(
-    model: OutcomeModel,
-    trainees: int,
-    modes: Sequence[str],
-    random: np.random.Generator,
-    orders: Sequence[Sequence[str]] | None = None,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return times in s and RMSE in mm, both (trainees, modes, tasks) float.
-
-    `orders` are the modes in the order of each trainee; by default all follow `modes`.
-    """
-    numbers = trial_numbers(orders or [tuple(modes)] * trainees, modes, len(model.task_times_s))
-    times, errors, _, _ = draw(model, modes, random, numbers)
-    return times, errors
-
-
 def trial_numbers(orders: Sequence[Sequence[str]], modes: Sequence[str], tasks: int) -> np.ndarray:
     """Return the number of each trial if all tasks are done in turn, mode by mode.
 
@@ -206,7 +190,8 @@ def rejection_rates(
     """
     random = np.random.default_rng(seed)
     orders = orders or [tuple(modes)] * trainees
-    drawn = [draw_outcomes(model, trainees, modes, random, orders) for _ in range(studies)]
+    numbers = trial_numbers(orders, modes, len(model.task_times_s))
+    drawn = [draw(model, modes, random, numbers)[:2] for _ in range(studies)]
     times, errors = (np.array(values) for values in zip(*drawn, strict=True))
     outcomes = (times, errors, model_scores(model, times, errors))
     # Periods between the modes of each trainee.

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from rastrainer.commands import CommandName, check_arguments
-from rastrainer.errors import RASTrainerError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.journal.entries import AT_ZERO, Line, iso
 from rastrainer.journal.folder import SUFFIX
@@ -40,21 +39,17 @@ from rastrainer_simulator.state import (
 from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.virtual.population import TrialJob
 from rastrainer_simulator.virtual.scripted_trainee import (
+    LONGEST_TRIAL_S,
     Action,
     Observation,
     ScriptedTrainee,
     Skill,
+    TrialStoppedError,
 )
 from rastrainer_simulator.virtual.virtual_procedure import ProcedureHands, VirtualProcedure
 
-LONGEST_S = 1800.0
-
 OnStep = Callable[[Simulation, SimulationState, OperatorInput, StepResult], Any]
 """Called with the simulation, the state before, the input and the result of each step."""
-
-
-class UnfinishedTrialError(RASTrainerError):
-    """The scripted trainee did not touch all fiducials in half an hour of simulated time."""
 
 
 def play_virtual_trial(
@@ -93,10 +88,10 @@ def play_virtual_trial(
     own = {} if trial_id is None else {"trialId": trial_id}
     state = step((CommandName.START_TASK, start), **own).state
     while state.training.phase is not Phase.REGISTERED:
-        if state.elapsed > LONGEST_S:
-            raise UnfinishedTrialError(
+        if state.elapsed > LONGEST_TRIAL_S:
+            raise TrialStoppedError(
                 f"The scripted trainee of seed {seed} did not finish {task_name} in "
-                f"{LONGEST_S:g} s: it is at point {state.training.next_point}."
+                f"{LONGEST_TRIAL_S:g} s: it is at point {state.training.next_point}."
             )
         seen = Observation(
             sim_time_s=state.sim_time,
@@ -160,7 +155,7 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
             *(simulation, job.task, job.seed, job.skill, settings.step_s, record_step),
             *(job.trainee, Mode(job.mode), job.trial_id),
         )
-    except UnfinishedTrialError:
+    except TrialStoppedError:
         # The next trial needs a simulation without an open trial.
         _simulation.cache_clear()
         return PlayedTrial(job, None)

@@ -14,6 +14,7 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.commands import CommandName
+from rastrainer.errors import RASTrainerError
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.protocol import SPEED_LIMIT_MM_S, Phase
 from rastrainer.scenario.scenario import Scenario
@@ -33,7 +34,13 @@ JOG_DURATION_S = 0.1
 STUCK_AFTER_S = 12.0
 """Time limit of aiming at a fiducial: after that, the trainee touches where the tip is."""
 
+LONGEST_TRIAL_S = 1800.0
+
 Action = tuple[str, dict[str, Any]]
+
+
+class TrialStoppedError(RASTrainerError):
+    """The trial could not be played to its end."""
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rastrainer.commands import CommandName
-from rastrainer.errors import RASTrainerError
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import String, Transform
 from rastrainer.igtl.message import Message
@@ -20,14 +19,15 @@ from rastrainer.protocol import PROTOCOL_VERSION, DeviceName, Mode, Phase, Proxi
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.touch_registration import GivenPoints, register_trial
-from rastrainer_simulator.virtual.scripted_trainee import Observation, ScriptedTrainee, Skill
+from rastrainer_simulator.virtual.scripted_trainee import (
+    LONGEST_TRIAL_S,
+    Observation,
+    ScriptedTrainee,
+    Skill,
+    TrialStoppedError,
+)
 
 ANSWER_TIMEOUT_S = 60.0
-LONGEST_TRIAL_S = 1800.0
-
-
-class TrialStoppedError(RASTrainerError):
-    """The trial could not be played to its end."""
 
 
 class ScriptedTrial(NamedTuple):
@@ -126,7 +126,6 @@ PAST_INNER_MM = 1.0
 DRILL_MM_S, INSERT_MM_S, LONGEST_FEED_S = 5.0, 10.0, 2.0
 SLOW_FROM_MM, SLOW_MM_S = 2.0, 1.0
 NEAR_MM = 0.1
-STATE_TIMEOUT_S = 60.0
 MAX_FEEDS = 200
 
 
@@ -207,6 +206,6 @@ def _feed(client: Client, tool: str, to_mm: float, fastest_mm_s: float) -> None:
 def _wait(client: Client, is_wanted: Callable[[Mapping[str, Any]], bool]) -> Mapping[str, Any]:
     """Return the first state that is wanted."""
     found = client.wait_for(
-        DeviceName.SIM_STATE, lambda message: is_wanted(_state(message)), STATE_TIMEOUT_S
+        DeviceName.SIM_STATE, lambda message: is_wanted(_state(message)), ANSWER_TIMEOUT_S
     )
     return _state(found)

@@ -9,11 +9,14 @@ from __future__ import annotations
 import contextlib
 import multiprocessing
 import signal
+import threading
 import traceback
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
-from multiprocessing.connection import Connection, wait
+from concurrent.futures import CancelledError, ThreadPoolExecutor
+from itertools import islice
+from multiprocessing.connection import Connection
+from multiprocessing.context import SpawnProcess
 from typing import Any
 
 from rastrainer.errors import InputError, RASTrainerError
@@ -33,110 +36,85 @@ def run_on_workers(
 ) -> Iterator[Any]:
     """Yield the result of each job, in their order; the processes end with the iterator.
 
-    `function` can be pickled; its exceptions are raised here.
+    `function` can be pickled; its exceptions are raised here, in the turn of their job.
     """
-    pool = _Pool(function, workers, name_of)
+    jobs, pool, threads = iter(jobs), _Pool(function, name_of), ThreadPoolExecutor(workers)
     try:
-        yield from pool.results(jobs)
+        coming = deque(threads.submit(pool.do, job) for job in islice(jobs, AHEAD * workers))
+        while coming:
+            result = coming.popleft().result()
+            coming.extend(threads.submit(pool.do, job) for job in islice(jobs, 1))
+            yield result
     finally:
-        for worker in pool.workers:
-            worker.end()
-
-
-@dataclass
-class _Task:
-    place: int
-    job: Any
-    attempts: int = 0
-
-
-class _Worker:
-    """One process, the pipe to it, and its task."""
-
-    def __init__(self, function: Callable[[Any], Any]) -> None:
-        # Not forked: collision meshes and threads of numpy do not survive that.
-        context = multiprocessing.get_context("spawn")
-        self.connection, theirs = context.Pipe()
-        self.process = context.Process(target=_work, args=(theirs, function), daemon=True)
-        self.task: _Task | None = None
-        with _interrupts_blocked():
-            self.process.start()
-        theirs.close()
-
-    def send(self, task: _Task) -> None:
-        task.attempts += 1
-        self.task = task
-        # A dead process is noticed below, at the pipe's end.
-        with contextlib.suppress(OSError):
-            self.connection.send(task.job)
-
-    def end(self) -> int | None:
-        """End the process if it still runs, and return its exit code."""
-        self.connection.close()
-        self.process.terminate()
-        self.process.join()
-        return self.process.exitcode
+        pool.close()
+        threads.shutdown(cancel_futures=True)
 
 
 class _Pool:
-    def __init__(
-        self, function: Callable[[Any], Any], workers: int, name_of: Callable[[Any], str]
-    ) -> None:
-        self._function, self._most, self._name_of = function, workers, name_of
-        self.workers: list[_Worker] = []
-        self._again: deque[_Task] = deque()
-        self._done: dict[int, tuple[Any, Exception | None]] = {}
+    """The processes, each with the pipe to it; a thread waits for the job of each busy one."""
 
-    def results(self, jobs: Iterable[Any]) -> Iterator[Any]:
-        tasks = (_Task(place, job) for place, job in enumerate(jobs))
-        turn = given = 0
-        while True:
-            count = sum(worker.task is not None for worker in self.workers)
-            while count < self._most and (self._again or given < turn + AHEAD * self._most):
-                task = self._again.popleft() if self._again else next(tasks, None)
-                if task is None:
-                    break
-                given = max(given, task.place + 1)
-                idle = next((worker for worker in self.workers if worker.task is None), None)
-                if idle is None:
-                    idle = _Worker(self._function)
-                    self.workers.append(idle)
-                idle.send(task)
-                count += 1
-            busy = [(worker, task) for worker in self.workers if (task := worker.task) is not None]
-            if not busy:
-                return
-            ready = wait([worker.connection for worker, _ in busy])
-            for worker, task in busy:
-                if worker.connection in ready:
-                    self._receive(worker, task)
-            while turn in self._done:
-                # An error waits for its turn, too: earlier results are not lost.
-                result, error = self._done.pop(turn)
-                if error is not None:
-                    raise error
-                yield result
-                turn += 1
+    def __init__(self, function: Callable[[Any], Any], name_of: Callable[[Any], str]) -> None:
+        self._function, self._name_of = function, name_of
+        self._workers: dict[Connection, SpawnProcess] = {}
+        self._idle: list[Connection] = []
+        self._is_closed = False
+        # Processes are started and ended one after the other: each looks after all of them.
+        self._lock = threading.Lock()
 
-    def _receive(self, worker: _Worker, task: _Task) -> None:
-        """Take the result; if the process died, have another process repeat its job."""
-        with contextlib.suppress(EOFError, OSError):
-            self._done[task.place] = worker.connection.recv()
-            worker.task = None
-            return
-        self.workers.remove(worker)
-        # It closed its end: it is dead or about to die.
-        worker.process.join()
-        exit_code = worker.end()
-        if task.attempts < ATTEMPTS:
-            self._again.append(task)
-            return
+    def do(self, job: Any) -> Any:
+        """Return the result of a job; if its process dies, another one repeats it."""
+        exit_code: int | None = None
+        for _attempt in range(ATTEMPTS):
+            connection = self._idle_or_new()
+            try:
+                connection.send(job)
+                result, error = connection.recv()
+            except (EOFError, OSError):
+                # It closed its end: it is dead or about to die.
+                with self._lock:
+                    process = self._workers.pop(connection)
+                    process.join()
+                    exit_code = process.exitcode
+                    connection.close()
+                continue
+            self._idle.append(connection)
+            if error is not None:
+                raise error
+            return result
         cause = f" (the last with exit status {exit_code})"
         if exit_code is not None and exit_code < 0:
             with contextlib.suppress(ValueError):
                 cause = f" (the last by {signal.Signals(-exit_code).name})"
-        sentence = died_message(self._name_of(task.job), cause)
-        self._done[task.place] = None, WorkerDiedError(sentence)
+        raise WorkerDiedError(died_message(self._name_of(job), cause))
+
+    def _idle_or_new(self) -> Connection:
+        with self._lock:
+            if self._is_closed:
+                raise CancelledError
+            if self._idle:
+                return self._idle.pop()
+            # Not forked: collision meshes and threads of numpy do not survive that.
+            context = multiprocessing.get_context("spawn")
+            ours, theirs = context.Pipe()
+            process = context.Process(target=_work, args=(theirs, self._function), daemon=True)
+            if hasattr(signal, "pthread_sigmask"):
+                # Ctrl-C is not for this thread, nor for a process that is starting, which inherits.
+                signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            process.start()
+            theirs.close()
+            self._workers[ours] = process
+            return ours
+
+    def close(self) -> None:
+        """End all processes; the threads that wait for one notice it at the pipe's end."""
+        with self._lock:
+            self._is_closed = True
+            for process in self._workers.values():
+                process.terminate()
+            for process in self._workers.values():
+                process.join()
+            for connection in self._idle:
+                connection.close()
 
 
 def died_message(job: str, cause: str) -> str:
@@ -165,16 +143,3 @@ def _work(connection: Connection, function: Callable[[Any], Any]) -> None:
                 text = f"A worker process failed:\n{traceback.format_exc()}"
                 outcome = None, RuntimeError(text)
             connection.send(outcome)
-
-
-@contextlib.contextmanager
-def _interrupts_blocked() -> Iterator[None]:
-    """Block Ctrl-C for a process that is being started, which inherits this."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
