@@ -20,6 +20,7 @@ from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.robot.model import RobotModel, load_robot
 
 DEFAULT_SCENARIO = ("scenarios", "colin27")
+_LEFT_OUT = ("volume", "skull", "procedures", "landmarks")
 
 
 @dataclass(frozen=True)
@@ -92,13 +93,14 @@ def scenario_sha256(scenario: Scenario) -> str:
     It excludes the parts that may be added to a scenario with recorded trials: the volume, which
     the simulator never reads, landmarks, skull and procedures.
     """
-    left_out = ["volume", "skull", "procedures", "landmarks"]
+    content = (scenario.folder / FILE_NAME).read_bytes()
+    values = json.loads(content)
+    kept = {name: values[name] for name in values if name not in _LEFT_OUT}
+    if kept != values:
+        content = (json.dumps(kept, indent=2, ensure_ascii=False) + "\n").encode()
     whole = hashlib.sha256()
-    for content in (
-        _without(scenario.folder / FILE_NAME, left_out),
-        scenario.head.read_bytes(),
-    ):
-        whole.update(hashlib.sha256(content).digest())
+    for each in (content, scenario.head.read_bytes()):
+        whole.update(hashlib.sha256(each).digest())
     for task in scenario.tasks:
         whole.update(task.name.encode() + task.fiducials.astype("<f8").tobytes())
     return whole.hexdigest()
@@ -111,13 +113,3 @@ def landmarks_sha256(scenario: Scenario) -> str:
         name = json.dumps(landmark.name).encode()
         whole.update(name + np.asarray(landmark.position_ras, dtype="<f8").tobytes())
     return whole.hexdigest()
-
-
-def _without(path: Path, names: list[str]) -> bytes:
-    """Return a `scenario.json` as it would be written without some fields."""
-    content = path.read_bytes()
-    values = json.loads(content)
-    if not any(name in values for name in names):
-        return content
-    kept = {name: value for name, value in values.items() if name not in names}
-    return (json.dumps(kept, indent=2, ensure_ascii=False) + "\n").encode()

@@ -35,7 +35,6 @@ from rastrainer.procedure.record import UsedRegistration
 from rastrainer.protocol import PROCEDURE_PHASES, AbortReason, Phase
 from rastrainer.trial.record import AbortedTrial, TouchedPoint, TrialRecord
 from rastrainer_simulator.core.interrupted_trial import (
-    MALFORMED,
     InterruptedTrial,
     refusing_malformed,
 )
@@ -90,9 +89,8 @@ class ArchivedTrial:
     def revealed(self) -> dict[str, Any]:
         if self.registration is None or self.truth is None:
             raise InputError("No registration of the trial was submitted.")
-        matrix = np.array(self.registration["matrix"], dtype=np.float64).reshape(4, 4)
         touches = ((point.label, point.position_mm) for point in self.record.points)
-        return self.truth.revealed(matrix, touches)
+        return self.truth.revealed(self.registration["matrix"], touches)
 
     def after(
         self, command: str, arguments: Mapping[str, Any]
@@ -124,7 +122,7 @@ def interrupted_attempt(reading: JournalReading) -> AbortedTrial | None:
     lines = tuple(reading.lines())
     if not lines or InterruptedTrial.of(lines) is None:
         return None
-    with refusing_malformed(MALFORMED):
+    with refusing_malformed():
         return _aborted(reading.header, lines)
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime, timezone
 from typing import Annotated, Any, ClassVar, NamedTuple
@@ -26,8 +26,6 @@ from rastrainer.protocol import Mode, Phase, Proximity, RegistrationMethod
 
 FORMAT = "rastrainer-trial-journal"
 FORMAT_VERSION = 1
-LINES_PER_PAUSE = 10
-"""They take about 0.3 ms."""
 GUIDED_TOUCHES = 3
 _LARGEST = 2**53
 
@@ -113,19 +111,6 @@ def read_line(values: Mapping[str, Any]) -> Line:
         raise InputError(f"A journal entry is malformed: it has the kind {json.dumps(kind)[:40]}.")
     what = f"A journal entry is malformed: {kind}"
     return Line(record_from_json(Stamp, values, what), record_from_json(KINDS[kind], values, what))
-
-
-def read_lines(
-    entries: Iterable[Mapping[str, Any]], pause: Callable[[], None] = lambda: None
-) -> Iterator[Line]:
-    """Yield the lines of decoded JSON objects.
-
-    `pause` is called regularly; it may block, to let other threads run.
-    """
-    for number_of_line, values in enumerate(entries):
-        if number_of_line % LINES_PER_PAUSE == 0:
-            pause()
-        yield read_line(values)
 
 
 @dataclass(frozen=True)

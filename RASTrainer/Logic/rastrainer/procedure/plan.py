@@ -131,13 +131,6 @@ class Procedure:
     no_go: Annotated[tuple[NoGoStructure, ...], named_once(0, MAX_NO_GO)] = ()
     checkpoints: Annotated[tuple[Checkpoint, ...], named_once(0, MAX_CHECKPOINTS)] = ()
 
-    def trajectory(self, name: str) -> ProcedureTrajectory:
-        for trajectory in self.trajectories:
-            if trajectory.name == name:
-                return trajectory
-        names = ", ".join(trajectory.name for trajectory in self.trajectories)
-        raise InputError(f"The procedure {self.name} has no trajectory {name!r}; it has {names}.")
-
     def sha256(self, skull: Path) -> str:
         """Return a hash of what a trial with this procedure depends on, for a journal's header.
 
