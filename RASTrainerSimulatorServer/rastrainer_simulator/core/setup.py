@@ -7,10 +7,11 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from rastrainer.journal.entries import JournalHeader, RecordedContent, RecordedMethod, RecordedSetup
+from rastrainer.journal.entries import JournalHeader, RecordedContent, RecordedMethod
 from rastrainer.json_records import record_to_json
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import FILE_NAME, Scenario, load_scenario
@@ -41,19 +42,19 @@ class SimulationSetup:
 
     def recorded(
         self, procedure: str = "", method: RegistrationMethod = RegistrationMethod.FIDUCIALS
-    ) -> RecordedSetup:
+    ) -> dict[str, Any]:
+        """Return the part of a trial's `JournalHeader` that identifies this setup."""
         by_landmarks = method is not RegistrationMethod.FIDUCIALS
-        return RecordedSetup(
-            RecordedContent(self.scenario.name, self.scenario_sha256),
-            self.robot.name,
-            record_to_json(self.settings, with_defaults=True),
-            RecordedContent(procedure, self.procedure_sha256.get(procedure, ""))
-            if procedure
-            else None,
-            RecordedMethod(method, self.landmarks_sha256) if by_landmarks else None,
-        )
+        sha256 = self.procedure_sha256.get(procedure, "")
+        return {
+            "scenario": RecordedContent(self.scenario.name, self.scenario_sha256),
+            "robot": self.robot.name,
+            "settings": record_to_json(self.settings, with_defaults=True),
+            "procedure": RecordedContent(procedure, sha256) if procedure else None,
+            "method": RecordedMethod(method, self.landmarks_sha256) if by_landmarks else None,
+        }
 
-    def difference(self, recorded: RecordedSetup | JournalHeader) -> str:
+    def difference(self, recorded: JournalHeader) -> str:
         """Return what a trial was recorded with that is not the same here, "" for nothing."""
         procedure, method = recorded.procedure, recorded.method
         if recorded.scenario.sha256 != self.scenario_sha256:

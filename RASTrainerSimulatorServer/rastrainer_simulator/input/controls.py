@@ -36,10 +36,8 @@ _REPEATED = (ControlName.UP, ControlName.DOWN, ControlName.LEFT, ControlName.RIG
 class ControlsListener:
     """Callbacks for operations.
 
-    Attributes:
-        input_pressed: returns whether an input was consumed, as while a control is rebound.
-        taken_over: a source has taken control from another operator.
-        refused: a source wants to operate without control.
+    `input_pressed` returns whether an input was consumed, as while a control is rebound. A source
+    has `taken_over` the control from another operator, or is `refused`, as it has no control.
     """
 
     pressed: Callable[[ControlName], None]

@@ -123,7 +123,7 @@ class TrialEntries:
             session=session,
             before=before.starting_point,
             versions=entries.records.versions,
-            **vars(simulation.setup.recorded(procedure, training.method)),
+            **simulation.setup.recorded(procedure, training.method),
         )
         entries._append(at, header)
         return entries
