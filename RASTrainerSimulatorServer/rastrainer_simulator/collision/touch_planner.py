@@ -55,8 +55,7 @@ class PlanReach:
             begin = np.asarray(entry, dtype=float)
             along = end - begin
             if np.linalg.norm(along) > SHORTEST_TRAJECTORY_M:
-                ends = (begin, end)
-                is_held = all(self._has_room(each, along) for each in ends)
+                is_held = all(self._has_room(each, along) for each in (begin, end))
                 return PlanAnswer(is_held, "" if is_held else NOT_ALONG)
         for _leaning, direction in tool_directions(_UP):
             if self._has_room(end, direction):

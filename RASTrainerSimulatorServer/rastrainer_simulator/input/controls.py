@@ -53,11 +53,7 @@ class Controls:
     gamepad, the keys and the mouse of its windows; the keys, pad and controllers of one page)
     share it. Another station's input does nothing, except that pressing `menu` takes the control
     over once the holder has been idle for `IDLE_S` seconds, if it `may_be_taken`. A holder that is
-    unplugged or leaves gives the control up.
-
-    Attributes:
-        bindings: which input does what; may be exchanged at any time.
-        holder: the source that drives the arm; None until someone acts.
+    unplugged or leaves gives the control up. `bindings` may be exchanged at any time.
     """
 
     def __init__(

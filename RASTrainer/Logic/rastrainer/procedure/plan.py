@@ -79,12 +79,9 @@ _Point = Annotated[np.ndarray, point(RAS_LIMIT_MM)]
 
 @dataclass(frozen=True)
 class ProcedureTrajectory:
-    """The planned straight path of one instrument.
+    """The planned straight path of one instrument from near the skin to its tip's target.
 
-    Attributes:
-        entry_ras: (3,) float, mm, near the skin.
-        target_ras: (3,) float, mm, where the instrument's tip is to be.
-        safety_mm: least planned distance of the instrument's surface to a no-go structure.
+    `safety_mm` is the least planned distance of its surface to a no-go structure.
     """
 
     name: _Name
