@@ -41,7 +41,7 @@ def is_guide_held(
         pose = pose_head(planning.collision, head_to_world)
         entry = transforms.apply(pose, trajectory.entry_ras / MM_PER_M).tolist()
         direction = (pose[:3, :3] @ trajectory.direction).tolist()
-        if not planning.reach.judge_guide(entry, direction, STAND_OFFS_M).reachable:
+        if not planning.reach.can_hold_guide(entry, direction, STAND_OFFS_M):
             return False
     return True
 

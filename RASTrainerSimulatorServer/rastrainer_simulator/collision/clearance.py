@@ -274,14 +274,11 @@ def sight_clearances(
 class LineOfSight:
     """Finds what the head, the table and one posture of the arm leave visible; World, m."""
 
-    def __init__(
-        self, head: HeadClearance, arm: ArmCapsules, posed: PosedArm, table_height: float
-    ) -> None:
+    def __init__(self, head: HeadClearance, arm: ArmCapsules, posed: PosedArm) -> None:
         self._head = head
         count = arm.link_count
         self._links = posed.ends[:count], arm.radii[:count]
         self._tool = posed.ends[count:], arm.radii[count:]
-        self._lowest = table_height + ABOVE_TABLE_M
 
     def is_free(self, eye: Vector, place: Vector) -> bool:
         """Return whether a point is seen from an eye past head, links and table.
@@ -292,7 +289,7 @@ class LineOfSight:
         return self.is_past_head(eye, place) and bool(off_links[0] > 0.0)
 
     def is_past_head(self, eye: Vector, place: Vector) -> bool:
-        return eye[2] > self._lowest and not self._head.is_crossed(eye, place)
+        return eye[2] > ABOVE_TABLE_M and not self._head.is_crossed(eye, place)
 
     def off_links(self, eyes: np.ndarray, place: np.ndarray) -> np.ndarray:
         """Return how far the lines from eyes (m, 3) to a place (3,) pass the links, (m,), m."""

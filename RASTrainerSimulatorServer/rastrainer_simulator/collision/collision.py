@@ -34,28 +34,27 @@ def stand_pose(head_to_world: np.ndarray, base: np.ndarray) -> np.ndarray:
 class TableClearance:
     """The least distance of the moving links and the tool to the table and to the stand."""
 
-    def __init__(self, arm: ArmCapsules, stand_radius: float, table_height: float) -> None:
+    def __init__(self, arm: ArmCapsules, stand_radius: float) -> None:
         self._arm = arm
-        self._table = table_height
         self._stand_radius = stand_radius
         self._stand: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
         self._distance_bounds = DistanceBounds(len(arm.capsules))
         fixed = np.where(arm.joints > 0, 0.0, -math.inf)
-        self._below = arm.radii + table_height + fixed
+        self._below = arm.radii + fixed
         self._around = arm.reach + stand_radius + fixed
 
     def put_stand_under(self, base: np.ndarray) -> None:
         """Put the stand under the middle of the head's base (3,) float, World."""
         x, y, top = base.tolist()
         top -= self._stand_radius  # The column is a capsule: its round end fills up to the base.
-        upright = self._stand_radius > 0.0 and top > self._table
-        self._stand = ((x, y, self._table), (x, y, top)) if upright else None
+        upright = self._stand_radius > 0.0 and top > 0.0
+        self._stand = ((x, y, 0.0), (x, y, top)) if upright else None
         self._distance_bounds.forget()
 
     def nearest(self, posed: PosedArm, traveled: float) -> float:
         """Return the least signed distance, m, at most FAR; the arm has moved `traveled` m."""
         # The tip is no part of a capsule.
-        best = min(FAR, posed.tip[2] - self._table)
+        best = min(FAR, posed.tip[2])
         for row in self._distance_bounds.due(traveled, partial(self._bounds, posed)):
             start, end = posed.ends[row].tolist()
             distance = min(start[2], end[2]) - self._below[row]
@@ -123,22 +122,18 @@ class Collision:
         head_vertices: np.ndarray,
         head_triangles: np.ndarray,
         stand_radius: float = 0.04,
-        table_height: float = 0.0,
     ) -> None:
         """Build the shapes; takes about half a second for a head of 60,000 triangles.
 
-        Args:
-            head_vertices: (n, 3) float, m, head frame, whose z points to the head's top.
-            head_triangles: (m, 3) int, a closed surface.
-            stand_radius: of the upright column under the middle of the head's base, m; 0: no stand.
-            table_height: of the table top, m; the robot's base is fixed to it and is not checked.
+        The head, (n, 3) float, m, and (m, 3) int, is closed, and its z points to its top. A column
+        of `stand_radius`, m, is under the middle of its base; 0: no stand. The table top is at z =
+        0; the robot's base is fixed to it and is not checked.
         """
         self._arm = ArmCapsules(shape)
         self._head = HeadClearance(HeadSurface(head_vertices, head_triangles), self._arm)
         self.nearest_to_point = self._head.nearest_to_point
         self._self = SelfClearance(self._arm)
-        self.table_height = table_height
-        self._table = TableClearance(self._arm, stand_radius, table_height)
+        self._table = TableClearance(self._arm, stand_radius)
         self._ends = np.zeros((len(self._arm.capsules), 2, 3))
         self._traveled = 0.0
         self.set_head_pose(np.eye(4))
@@ -194,7 +189,7 @@ class Collision:
 
     def line_of_sight(self, link_to_world: Mapping[str, np.ndarray]) -> LineOfSight:
         """Return what determines which points are seen while the arm has such a posture."""
-        return LineOfSight(self._head, self._arm, self._arm.pose(link_to_world), self.table_height)
+        return LineOfSight(self._head, self._arm, self._arm.pose(link_to_world))
 
     def nearest_to_shaft(
         self, link_to_world: Mapping[str, np.ndarray], limit: float

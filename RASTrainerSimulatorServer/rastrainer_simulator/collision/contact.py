@@ -39,6 +39,10 @@ from rastrainer_simulator.vectors import (
 
 TOLERANCE = 2e-5
 """Deepest overlap, m, of tip or shaft that is tolerated: the next tick undoes it."""
+_PARTS = (
+    *(("tip", "tip_m", -TOLERANCE), ("shaft", "shaft_m", -TOLERANCE)),
+    *(("links", "links_m", 0.0), ("self", "self_m", 0.0), ("table", "table_m", 0.0)),
+)
 
 _CORRECTIONS = 3
 _SHORTEST_SHARE = 0.05
@@ -123,7 +127,7 @@ class Contact:
 
     def _slide(self, start: Moved, tip: Vector, displacement: Vector) -> Slide:
         clearance, reach = start.clearance, length(displacement) + REST
-        above = tip[2] - self._collision.table_height
+        above = tip[2]
         others = []
         shaft = clearance.shaft
         if shaft is None and clearance.shaft_m < reach:
@@ -138,16 +142,10 @@ class Contact:
 
 def _broken(start: Clearance, end: Clearance) -> str:
     """Return the first part that overlaps more than it may, "" where none does."""
-    if end.tip_m < -TOLERANCE and end.tip_m < start.tip_m:
-        return "tip"
-    if end.shaft_m < -TOLERANCE and end.shaft_m < start.shaft_m:
-        return "shaft"
-    if end.links_m < 0.0 and end.links_m < start.links_m:
-        return "links"
-    if end.self_m < 0.0 and end.self_m < start.self_m:
-        return "self"
-    if end.table_m < 0.0 and end.table_m < start.table_m:
-        return "table"
+    for part, clearance, tolerated in _PARTS:
+        now = getattr(end, clearance)
+        if now < tolerated and now < getattr(start, clearance):
+            return part
     return ""
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.head.mesh import HeadMesh
 from rastrainer.transforms import apply, rigid
 from rastrainer_simulator.robot.meshes import load_meshes
 from rastrainer_simulator.robot.model import RobotModel, read_prepared
@@ -38,10 +39,7 @@ def surface_points(vertices: np.ndarray, triangles: np.ndarray, spacing: float) 
 
     `vertices` is (n, 3) float, `triangles` (m, 3) int.
     """
-    edges = np.sort(
-        np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-    )
-    start, end = vertices[np.unique(edges, axis=0).T]
+    start, end = vertices[HeadMesh(vertices, triangles).edges.T]
     counts = np.ceil(np.linalg.norm(end - start, axis=1) / spacing).astype(int) + 1
     if counts.sum() > _MAX_POINTS:
         raise InputError(

@@ -23,9 +23,6 @@ _UP = np.array([0.0, 0.0, 1.0])
 
 OUT_OF_REACH = "The target is out of the robot's reach."
 NO_ROOM = "The robot reaches the target, but its links come too close to the head or the table."
-NOT_BEFORE = (
-    "The robot cannot hold the guide on the line before its entry; choose another entry point."
-)
 NOT_ALONG = "The robot cannot hold its tool along the whole trajectory; choose another entry point."
 
 
@@ -58,25 +55,23 @@ class PlanReach:
             begin = np.asarray(entry, dtype=float)
             along = end - begin
             if np.linalg.norm(along) > SHORTEST_TRAJECTORY_M:
-                ends = (begin, end)
-                is_held = all(self._has_room(each, along) for each in ends)
+                is_held = all(self._has_room(each, along) for each in (begin, end))
                 return PlanAnswer(is_held, "" if is_held else NOT_ALONG)
         for _leaning, direction in tool_directions(_UP):
             if self._has_room(end, direction):
                 return PlanAnswer(True, "")
         return PlanAnswer(False, NO_ROOM)
 
-    def judge_guide(
+    def can_hold_guide(
         self, entry: Sequence[float], direction: Sequence[float], stand_offs: Iterable[float]
-    ) -> PlanAnswer:
+    ) -> bool:
         """Return whether the guide can be held on a line before the head, in its present pose.
 
         Entry and direction (a unit vector into the head) are (3,) float, World; `stand_offs` are
         distances of the guide's tip from the entry, m.
         """
         begin, along = np.asarray(entry, dtype=float), np.asarray(direction, dtype=float)
-        is_held = all(self._has_room(begin - each * along, along) for each in stand_offs)
-        return PlanAnswer(is_held, "" if is_held else NOT_BEFORE)
+        return all(self._has_room(begin - each * along, along) for each in stand_offs)
 
     def _has_room(self, position: np.ndarray, direction: np.ndarray) -> bool:
         solution = self._fabrik.solve(position.tolist(), direction.tolist(), q_start=self._home)

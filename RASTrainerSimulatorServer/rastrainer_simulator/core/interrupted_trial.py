@@ -47,7 +47,7 @@ from rastrainer_simulator.vectors import ZERO, vector
 
 
 @contextlib.contextmanager
-def refusing_malformed(sentence: str) -> Iterator[None]:
+def refusing_malformed(sentence: str = "A journal entry is malformed") -> Iterator[None]:
     """Raise InputError with a sentence if a journal's entries are malformed: forged, or foreign."""
     try:
         yield
@@ -55,9 +55,6 @@ def refusing_malformed(sentence: str) -> Iterator[None]:
         raise
     except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
         raise InputError(f"{sentence} ({error!r}).") from None
-
-
-MALFORMED = "A journal entry is malformed"
 
 
 def seed_of(header: JournalHeader) -> int:
@@ -133,12 +130,11 @@ class InterruptedTrial:
     point: StartingPoint
     q: tuple[float, ...] | None
     proximity: Proximity
-    is_within_reach: bool
-    obstacle: str
+    reach: Reach
     feed: Feed = NO_FEED
 
     @classmethod
-    @refusing_malformed(MALFORMED)
+    @refusing_malformed()
     def of(cls, lines: Sequence[Line]) -> InterruptedTrial | None:
         """Read the lines of a journal; None if no trial is open."""
         if any(isinstance(line.entry, Registered | Aborted | Attempt) for line in lines):
@@ -168,8 +164,7 @@ class InterruptedTrial:
             point=StartingPoint(last.tick, last.sim_time_s, 0, camera),
             q=q,
             proximity=proximity,
-            is_within_reach=reach.is_within_reach,
-            obstacle=reach.obstacle,
+            reach=reach,
             feed=recorded.feed,
         )
 

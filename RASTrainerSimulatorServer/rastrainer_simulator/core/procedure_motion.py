@@ -132,7 +132,7 @@ class ProcedureMotion:
         assert procedure.registration is not None, "it is accepted"
         assert procedure.present is not None, "the phase has a trajectory"
         line, stand_off = procedure.present.line, stand_off_mm / MM_PER_M
-        if not self._reach.judge_guide(line.entry, line.direction, [stand_off]).reachable:
+        if not self._reach.can_hold_guide(line.entry, line.direction, [stand_off]):
             return say("line out of reach", stand_off=stand_off_mm)
         plan = RegisteredPlan.of(procedure.registration.matrix)
         assert plan is not None, "what is in use is rigid"

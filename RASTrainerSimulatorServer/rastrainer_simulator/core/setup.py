@@ -7,10 +7,11 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from rastrainer.journal.entries import JournalHeader, RecordedContent, RecordedMethod, RecordedSetup
+from rastrainer.journal.entries import JournalHeader, RecordedContent, RecordedMethod
 from rastrainer.json_records import record_to_json
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import FILE_NAME, Scenario, load_scenario
@@ -20,6 +21,7 @@ from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.robot.model import RobotModel, load_robot
 
 DEFAULT_SCENARIO = ("scenarios", "colin27")
+_LEFT_OUT = ("volume", "skull", "procedures", "landmarks")
 
 
 @dataclass(frozen=True)
@@ -40,19 +42,19 @@ class SimulationSetup:
 
     def recorded(
         self, procedure: str = "", method: RegistrationMethod = RegistrationMethod.FIDUCIALS
-    ) -> RecordedSetup:
+    ) -> dict[str, Any]:
+        """Return the part of a trial's `JournalHeader` that identifies this setup."""
         by_landmarks = method is not RegistrationMethod.FIDUCIALS
-        return RecordedSetup(
-            RecordedContent(self.scenario.name, self.scenario_sha256),
-            self.robot.name,
-            record_to_json(self.settings, with_defaults=True),
-            RecordedContent(procedure, self.procedure_sha256.get(procedure, ""))
-            if procedure
-            else None,
-            RecordedMethod(method, self.landmarks_sha256) if by_landmarks else None,
-        )
+        sha256 = self.procedure_sha256.get(procedure, "")
+        return {
+            "scenario": RecordedContent(self.scenario.name, self.scenario_sha256),
+            "robot": self.robot.name,
+            "settings": record_to_json(self.settings, with_defaults=True),
+            "procedure": RecordedContent(procedure, sha256) if procedure else None,
+            "method": RecordedMethod(method, self.landmarks_sha256) if by_landmarks else None,
+        }
 
-    def difference(self, recorded: RecordedSetup | JournalHeader) -> str:
+    def difference(self, recorded: JournalHeader) -> str:
         """Return what a trial was recorded with that is not the same here, "" for nothing."""
         procedure, method = recorded.procedure, recorded.method
         if recorded.scenario.sha256 != self.scenario_sha256:
@@ -92,13 +94,14 @@ def scenario_sha256(scenario: Scenario) -> str:
     It excludes the parts that may be added to a scenario with recorded trials: the volume, which
     the simulator never reads, landmarks, skull and procedures.
     """
-    left_out = ["volume", "skull", "procedures", "landmarks"]
+    content = (scenario.folder / FILE_NAME).read_bytes()
+    values = json.loads(content)
+    kept = {name: values[name] for name in values if name not in _LEFT_OUT}
+    if kept != values:
+        content = (json.dumps(kept, indent=2, ensure_ascii=False) + "\n").encode()
     whole = hashlib.sha256()
-    for content in (
-        _without(scenario.folder / FILE_NAME, left_out),
-        scenario.head.read_bytes(),
-    ):
-        whole.update(hashlib.sha256(content).digest())
+    for each in (content, scenario.head.read_bytes()):
+        whole.update(hashlib.sha256(each).digest())
     for task in scenario.tasks:
         whole.update(task.name.encode() + task.fiducials.astype("<f8").tobytes())
     return whole.hexdigest()
@@ -111,13 +114,3 @@ def landmarks_sha256(scenario: Scenario) -> str:
         name = json.dumps(landmark.name).encode()
         whole.update(name + np.asarray(landmark.position_ras, dtype="<f8").tobytes())
     return whole.hexdigest()
-
-
-def _without(path: Path, names: list[str]) -> bytes:
-    """Return a `scenario.json` as it would be written without some fields."""
-    content = path.read_bytes()
-    values = json.loads(content)
-    if not any(name in values for name in names):
-        return content
-    kept = {name: value for name, value in values.items() if name not in names}
-    return (json.dumps(kept, indent=2, ensure_ascii=False) + "\n").encode()

@@ -122,8 +122,8 @@ class Simulation:
         self._training.resume_trial(interrupted.revision_before, interrupted.steps)
         self._put_in_place(interrupted.q)
         self._proximity = interrupted.proximity
-        self._is_within_reach = interrupted.is_within_reach
-        self._obstacle = interrupted.obstacle
+        self._is_within_reach = interrupted.reach.is_within_reach
+        self._obstacle = interrupted.reach.obstacle
         self._procedure_motion.reset(interrupted.feed)
         self._camera = point.camera or self._camera
         self.state = self._state(point.tick, point.sim_time_s, Motion.NONE)

@@ -103,9 +103,8 @@ class Bindings:
         return self.gamepad if device is InputDevice.GAMEPAD else self.keyboard
 
     def with_table(self, device: InputDevice, table: Table) -> Bindings:
-        if device is InputDevice.GAMEPAD:
-            return replace(self, gamepad=table)
-        return replace(self, keyboard=table)
+        is_pad = device is InputDevice.GAMEPAD
+        return replace(self, gamepad=table) if is_pad else replace(self, keyboard=table)
 
     def control(
         self, device: InputDevice, name: str, situation: ControlContext

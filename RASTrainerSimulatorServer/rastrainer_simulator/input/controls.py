@@ -36,10 +36,8 @@ _REPEATED = (ControlName.UP, ControlName.DOWN, ControlName.LEFT, ControlName.RIG
 class ControlsListener:
     """Callbacks for operations.
 
-    Attributes:
-        input_pressed: returns whether an input was consumed, as while a control is rebound.
-        taken_over: a source has taken control from another operator.
-        refused: a source wants to operate without control.
+    `input_pressed` returns whether an input was consumed, as while a control is rebound. A source
+    has `taken_over` the control from another operator, or is `refused`, as it has no control.
     """
 
     pressed: Callable[[ControlName], None]
@@ -55,11 +53,7 @@ class Controls:
     gamepad, the keys and the mouse of its windows; the keys, pad and controllers of one page)
     share it. Another station's input does nothing, except that pressing `menu` takes the control
     over once the holder has been idle for `IDLE_S` seconds, if it `may_be_taken`. A holder that is
-    unplugged or leaves gives the control up.
-
-    Attributes:
-        bindings: which input does what; may be exchanged at any time.
-        holder: the source that drives the arm; None until someone acts.
+    unplugged or leaves gives the control up. `bindings` may be exchanged at any time.
     """
 
     def __init__(

@@ -119,7 +119,6 @@ class ControlLoop:
         self.statistics = LoopStatistics()
         self.thread = threading.Thread(target=self._run, name="control loop", daemon=True)
         self._is_stopping = threading.Event()
-        self._is_over = False
         self.latest: SimulationState = self._state
         """The last published state."""
 
@@ -153,8 +152,6 @@ class ControlLoop:
             # Drawn outside of the simulation: a seed used twice must not make one trial of two.
             arguments.setdefault("trialId", str(uuid.uuid4()))
         self._arrived.append(OperatorCommand(name, arguments, ticket, sender))
-        if self._is_over:
-            self._answers.refuse_all(SHUTTING_DOWN)
         return future
 
     def begin_replacement(self) -> Future[Answer]:
@@ -170,8 +167,6 @@ class ControlLoop:
         assert self.is_being_replaced, "a trial could be open"
         ticket, future = self._answers.expect()
         self._successor = (simulation, ticket)
-        if self._is_over:
-            self._answers.refuse_all(SHUTTING_DOWN)
         return future
 
     def end_replacement(self) -> None:
@@ -288,5 +283,4 @@ class ControlLoop:
         self._writer.shutdown(wait=True)
         for answer in self._held.publishable(StepResult(self._state), None)[0].answers:
             self._answers.give(answer)
-        self._is_over = True
         self._answers.refuse_all(SHUTTING_DOWN)

@@ -176,11 +176,14 @@ class PendingAnswers:
     def __init__(self) -> None:
         self._tickets = itertools.count(1)
         self._futures: dict[int, Future[Answer]] = {}
+        self._over = ""
 
     def expect(self) -> tuple[int, Future[Answer]]:
         future: Future[Answer] = Future()
         ticket = next(self._tickets)
         self._futures[ticket] = future
+        if self._over:
+            self.give(Answer(ticket, False, self._over))
         return ticket, future
 
     def give(self, answer: Answer) -> None:
@@ -189,5 +192,7 @@ class PendingAnswers:
             future.set_result(answer)
 
     def refuse_all(self, sentence: str) -> None:
+        """Refuse what waits for an answer, and all that follows."""
+        self._over = sentence
         for ticket in tuple(self._futures):
             self.give(Answer(ticket, False, sentence))

@@ -42,11 +42,17 @@ def precise_timing(is_first_in_line: bool) -> Iterator[None]:
     sys.setswitchinterval(SWITCH_INTERVAL_S)
     if is_first_in_line:
         raise_thread_priority(FIRST)
+    # Windows has timers of 15.6 ms by default, which is four ticks.
+    if sys.platform == "win32":
+        import ctypes
+
+        ctypes.windll.winmm.timeBeginPeriod(1)
     try:
-        with _fine_timer():
-            yield
+        yield
     finally:
         sys.setswitchinterval(interval)
+        if sys.platform == "win32":
+            ctypes.windll.winmm.timeEndPeriod(1)
 
 
 def raise_thread_priority(priority: int = SECOND) -> None:
@@ -68,21 +74,6 @@ def raise_thread_priority(priority: int = SECOND) -> None:
         policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK
         with contextlib.suppress(PermissionError):
             os.sched_setscheduler(0, policy, os.sched_param(priority))
-
-
-@contextlib.contextmanager
-def _fine_timer() -> Iterator[None]:
-    """Ask Windows for timers of 1 ms; its default of 15.6 ms is four ticks."""
-    if sys.platform != "win32":
-        yield
-        return
-    import ctypes
-
-    ctypes.windll.winmm.timeBeginPeriod(1)
-    try:
-        yield
-    finally:
-        ctypes.windll.winmm.timeEndPeriod(1)
 
 
 LATE_S = 0.001

@@ -34,7 +34,6 @@ from rastrainer.procedure.record import UsedRegistration
 from rastrainer.protocol import PROCEDURE_PHASES, AbortReason, Phase
 from rastrainer.trial.record import AbortedTrial, TouchedPoint, TrialRecord
 from rastrainer_simulator.core.interrupted_trial import (
-    MALFORMED,
     InterruptedTrial,
     refusing_malformed,
 )
@@ -88,9 +87,8 @@ class ArchivedTrial:
     def revealed(self) -> dict[str, Any]:
         if self.registration is None or self.truth is None:
             raise InputError("No registration of the trial was submitted.")
-        matrix = np.array(self.registration["matrix"], dtype=np.float64).reshape(4, 4)
         touches = ((point.label, point.position_mm) for point in self.record.points)
-        return self.truth.revealed(matrix, touches)
+        return self.truth.revealed(self.registration["matrix"], touches)
 
     def after(
         self, command: str, arguments: Mapping[str, Any], sender: str
@@ -118,7 +116,7 @@ class ArchivedTrial:
         return None, self
 
 
-@refusing_malformed(MALFORMED)
+@refusing_malformed()
 def interrupted_attempt(reading: JournalReading) -> AbortedTrial | None:
     """Return the record of the trial of an open journal; None if the trial is over.
 

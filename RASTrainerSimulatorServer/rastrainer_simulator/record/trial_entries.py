@@ -123,7 +123,7 @@ class TrialEntries:
             session=session,
             before=before.starting_point,
             versions=versions_of(simulation),
-            **vars(simulation.setup.recorded(procedure, training.method)),
+            **simulation.setup.recorded(procedure, training.method),
         )
         entries = cls(simulation, header, at.utc, dt)
         entries._append(at, header)

@@ -100,11 +100,8 @@ class Moving:
             self._stalled += dt
         if self._stalled < STALLED_AFTER:
             return None
-        return (
-            MotionOutcome.REACHED
-            if remaining <= NEAR and turn <= ARRIVED
-            else MotionOutcome.BLOCKED
-        )
+        is_there = remaining <= NEAR and turn <= ARRIVED
+        return MotionOutcome.REACHED if is_there else MotionOutcome.BLOCKED
 
 
 VIA = 1e-3

@@ -34,12 +34,6 @@ class Truth(RecordedTruth):
     def in_head(self, point: np.ndarray) -> np.ndarray:
         return self.head_to_world[:3, :3].T @ (point - self.head_to_world[:3, 3])
 
-    def target_error_mm(self, world_to_head: np.ndarray) -> float:
-        """Return the true TRE, mm: |WorldToHead · HeadToWorld(target) − target|."""
-        return float(
-            np.linalg.norm(true_errors(world_to_head, self.head_to_world, self.target_ras))
-        )
-
     def touch_errors_mm(
         self, touches: Iterable[tuple[str, tuple[float, float, float]]]
     ) -> dict[str, float]:
@@ -52,12 +46,18 @@ class Truth(RecordedTruth):
         }
 
     def revealed(
-        self, world_to_head: np.ndarray, touches: Iterable[tuple[str, tuple[float, float, float]]]
+        self, matrix: Sequence[float], touches: Iterable[tuple[str, tuple[float, float, float]]]
     ) -> dict[str, Any]:
-        """Return the data of the answer to SubmitRegistration, ready for JSON."""
+        """Return the data of the answer to SubmitRegistration, ready for JSON.
+
+        `matrix` is WorldToHead, 16 floats, mm. The true TRE is |WorldToHead · HeadToWorld(target) −
+        target|, mm.
+        """
+        world_to_head = np.array(matrix, dtype=float).reshape(4, 4)
+        errors = true_errors(world_to_head, self.head_to_world, self.target_ras)
         return {
             "headToWorld": [float(value) for value in self.head_to_world.ravel()],
-            "trueTreMm": self.target_error_mm(world_to_head),
+            "trueTreMm": float(np.linalg.norm(errors)),
             "touchErrorsMm": self.touch_errors_mm(touches),
             **({} if self.skin.is_none else {"skin": record_to_json(self.skin)}),
         }

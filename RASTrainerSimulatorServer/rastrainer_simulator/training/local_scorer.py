@@ -57,8 +57,7 @@ Job = tuple[str, Phase, int]
 class LocalScorer:
     """Watches for a trial that no Slicer registers or scores, and does it in a thread.
 
-    Attributes:
-        problem: why the present trial cannot be registered or scored, a sentence; empty otherwise.
+    `problem` is the sentence about why that is not possible; empty otherwise.
     """
 
     def __init__(

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from rastrainer.commands import CommandName
 from rastrainer.journal.entries import AcceptedCheckpoint, Rejected
 from rastrainer.procedure.record import MAX_ATTEMPTS, MAX_TOUCHED_CHECKPOINTS, UsedRegistration
-from rastrainer.protocol import STAND_OFF_LIMIT_MM, Phase, TouchRule
+from rastrainer.protocol import STAND_OFF_LIMIT_MM, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import Event, OperatorCommand, TrainingState
 from rastrainer_simulator.texts.texts import say
@@ -149,15 +149,9 @@ class ProcedurePhases:
             plan = RegisteredPlan.of(procedure.registration.matrix)
         if plan is not None and checkpoints:
             name, error = plan.nearest_checkpoint(checkpoints, now.tip)
-        place: dict[str, Any] = {
-            "checkpoint": name,
-            "position_mm": in_millimeters(now.tip),
-            "clearance_mm": MM_PER_M * now.tip_clearance,
-            "depth_mm": MM_PER_M * now.depth,
-        }
+        place = {"checkpoint": name, **now.place}
         before = sum(len(each.checkpoints) for each in procedure.attempts)
         radius = self._settings.checkpoint_radius
-        is_above = now.tip_clearance > self._touches.skin_tolerance
         sentence = ""
         if procedure.registration is None:
             sentence = say("not in use yet")
@@ -168,7 +162,7 @@ class ProcedurePhases:
         elif error > radius:
             away, within = MM_PER_M * error, MM_PER_M * radius
             sentence = say("too far from checkpoints", name=name, distance=away, radius=within)
-        elif self._touches.touch_rule is TouchRule.ON_SKIN and is_above:
+        elif self._touches.is_above(now):
             sentence = say("above a checkpoint", height=MM_PER_M * now.tip_clearance)
         if sentence:
             event = Event(now.sim_time, Rejected(**place, message=sentence))

@@ -6,8 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-import numpy as np
-
 from rastrainer.journal.entries import (
     Ahead,
     Entry,
@@ -116,7 +114,7 @@ def given(state: TrainingState) -> dict[str, Any]:
 def revealed(truth: Truth, state: TrainingState, matrix: tuple[float, ...]) -> dict[str, Any]:
     """Return the truth that a registration reveals; `matrix` is WorldToHead, 16 floats, mm."""
     touches = ((touch.label, in_millimeters(touch.position)) for touch in state.touches)
-    return truth.revealed(np.array(matrix, dtype=float).reshape(4, 4), touches)
+    return truth.revealed(matrix, touches)
 
 
 def trial_data(state: TrainingState, truth: Truth) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from rastrainer.commands import AFTER_THE_TOUCHES, COMMANDS, CommandName
 from rastrainer.json_checks import Setting
@@ -24,7 +25,7 @@ from rastrainer.trial.scoring import DEPTH_LIMIT_MM
 from rastrainer_simulator.state import OperatorCommand, TouchStage, TrainingState
 from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training.feed import NO_FEED, Feed
-from rastrainer_simulator.vectors import ZERO, Vector, distance
+from rastrainer_simulator.vectors import ZERO, Vector, distance, in_millimeters
 
 RECORDING_FAILED = "RecordingFailed"
 """Used by the control loop to undo what could not be written; clients cannot send it."""
@@ -122,6 +123,10 @@ class TrainingSettings:
         is_marked = method is RegistrationMethod.FIDUCIALS
         return self.acceptance_radius if is_marked else self.landmark_radius
 
+    def is_above(self, now: TouchMoment) -> bool:
+        """Return whether the tip is above the skin, and the rule is that it has to be on it."""
+        return self.touch_rule is TouchRule.ON_SKIN and now.tip_clearance > self.skin_tolerance
+
 
 @dataclass(frozen=True)
 class TouchMoment:
@@ -140,6 +145,15 @@ class TouchMoment:
     depth: float = 0.0
     direction: Vector = ZERO
     feed: Feed = NO_FEED
+
+    @property
+    def place(self) -> dict[str, Any]:
+        """Where a touch is, in mm, as the journal has it."""
+        return {
+            "position_mm": in_millimeters(self.tip),
+            "clearance_mm": MM_PER_M * self.tip_clearance,
+            "depth_mm": MM_PER_M * self.depth,
+        }
 
 
 def refused_touch(
@@ -162,8 +176,7 @@ def refused_touch(
         most = max(TOLD_MM, TOLD_RADII * radius_mm)
         key = "too far" if away_mm <= most else "much too far"
         return say(key, point=next_point, distance=away_mm, most=f"{most:g}", radius=radius_mm)
-    is_above = now.tip_clearance > settings.skin_tolerance
-    if settings.touch_rule is TouchRule.ON_SKIN and is_above:
+    if settings.is_above(now):
         return say("above the skin", point=next_point, height=MM_PER_M * now.tip_clearance)
     return None
 

@@ -19,7 +19,6 @@ from rastrainer.journal.entries import (
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import PROCEDURE_PHASES, TRACED_METHODS, Phase
 from rastrainer.scenario.scenario import method_of, task_by_method
-from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import Event, OperatorCommand, TrainingState
 from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training import tracing
@@ -267,12 +266,8 @@ class Training:
         assert label is not None
         assert task is not None, "the phase allows no touch before a task is chosen"
         sentence = refused_touch(now, label, self._head.fiducials, self._settings, state.method)
-        place: dict[str, Any] = {
-            "label": label,
-            **tracing.tip_places(now.tip, measured := self._head.measured(now.tip)),
-            "clearance_mm": MM_PER_M * now.tip_clearance,
-            "depth_mm": MM_PER_M * now.depth,
-        }
+        measured = self._head.measured(now.tip)
+        place = {"label": label, **now.place, **tracing.tip_places(now.tip, measured)}
         if sentence is not None:
             self.state = replace(state, rejected=state.rejected + 1)
             event = Event(now.sim_time, Rejected(**place, message=sentence))

@@ -43,7 +43,7 @@ def test_a_written_procedure_is_read_again(folder):
     assert scenario.procedure("dbs-1") is procedure
     assert procedure.kind is ProcedureKind.DBS
     assert procedure_json(procedure) == procedure_json(made_up_procedure())
-    left = procedure.trajectory("Left")
+    left = procedure.trajectories[0]
     assert left.length_mm == 70.0
     assert left.direction.tolist() == [0.0, 0.0, -1.0]
     assert not left.entry_ras.flags.writeable

@@ -10,7 +10,7 @@ import pytest
 
 from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
-from rastrainer.journal.entries import read_lines
+from rastrainer.journal.entries import read_line
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.journal.recording import Recording
 from rastrainer.protocol import Phase, Proximity
@@ -264,9 +264,9 @@ def test_a_forged_journal_is_refused_with_a_message(simulation, tmp_path, change
     reading.entries[0]["seed"] = reading.seed
     near = at(1.0, proximity(Proximity.PROXIMITY, Proximity.FREE), reading.entries[-1]["tick"])
     entries = [*reading.entries, near.to_json()]
-    assert InterruptedTrial.of(tuple(read_lines(entries))) is not None
+    assert InterruptedTrial.of(tuple(map(read_line, entries))) is not None
     for entry in entries:
         if entry["kind"] == change["kind"]:
             entry.update(change)
     with pytest.raises(InputError, match="malformed"):
-        InterruptedTrial.of(tuple(read_lines(entries)))
+        InterruptedTrial.of(tuple(map(read_line, entries)))

@@ -10,7 +10,7 @@ import pytest
 from rastrainer import transforms
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
-from rastrainer.journal.entries import MotionEnd, read_lines
+from rastrainer.journal.entries import MotionEnd, read_line
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.journal.recording import Recording, WholeRecording, read_track
 from rastrainer.json_records import record_from_json, record_to_json
@@ -324,7 +324,7 @@ def test_a_forged_procedure_is_refused_with_a_message(drilled, kind, change):
         if entry["kind"] == kind:
             entry.update(change)
     with pytest.raises(InputError):
-        InterruptedTrial.of(tuple(read_lines(entries)))
+        InterruptedTrial.of(tuple(map(read_line, entries)))
 
 
 def test_a_journal_of_another_procedure_is_neither_replayed_nor_resumed(finished, planned):

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime, timezone
 from typing import Annotated, Any, ClassVar, NamedTuple
@@ -26,8 +26,6 @@ from rastrainer.protocol import Mode, Phase, Proximity, RegistrationMethod
 
 FORMAT = "rastrainer-trial-journal"
 FORMAT_VERSION = 1
-LINES_PER_PAUSE = 10
-"""They take about 0.3 ms."""
 GUIDED_TOUCHES = 3
 _LARGEST = 2**53
 
@@ -78,11 +76,7 @@ KINDS: dict[str, type[Entry]] = {}
 
 
 class Entry:
-    """The content of a line, without its times.
-
-    Attributes:
-        own_keys_first: how many of its keys are written before the times.
-    """
+    """The content of a line, without its times, before which `own_keys_first` keys are written."""
 
     kind: ClassVar[str]
     own_keys_first: ClassVar[int] = 0
@@ -115,27 +109,9 @@ def read_line(values: Mapping[str, Any]) -> Line:
     return Line(record_from_json(Stamp, values, what), record_from_json(KINDS[kind], values, what))
 
 
-def read_lines(
-    entries: Iterable[Mapping[str, Any]], pause: Callable[[], None] = lambda: None
-) -> Iterator[Line]:
-    """Yield the lines of decoded JSON objects.
-
-    `pause` is called regularly; it may block, to let other threads run.
-    """
-    for number_of_line, values in enumerate(entries):
-        if number_of_line % LINES_PER_PAUSE == 0:
-            pause()
-        yield read_line(values)
-
-
 @dataclass(frozen=True)
 class PlayingSession:
-    """The options with which the simulator was started.
-
-    Attributes:
-        speed: simulated seconds in a second; None is as fast as possible.
-        is_seeded: whether the seeds of the heads' poses were chosen (`--seed`), not drawn.
-    """
+    """Simulated seconds in a second, None for as fast as possible; whether seeds were chosen."""
 
     speed: Annotated[float | None, number(0, 1e6)]
     is_seeded: bool
@@ -177,17 +153,6 @@ class RecordedMethod:
     landmarks_sha256: Words
 
 
-@dataclass(frozen=True)
-class RecordedSetup:
-    """Identifies the setup of a trial; `settings` are the simulator's, as JSON."""
-
-    scenario: RecordedContent
-    robot: Words
-    settings: Object
-    procedure: RecordedContent | None = None
-    method: RecordedMethod | None = None
-
-
 @dataclass(frozen=True, kw_only=True)
 class JournalHeader(Entry, kind="header", own_keys_first=4):
     """The first line.
@@ -195,6 +160,7 @@ class JournalHeader(Entry, kind="header", own_keys_first=4):
     Attributes:
         tick_s: length of a tick.
         before: the state before the first step.
+        settings: the simulator's.
         seed: of the head's pose. It is not written here but in the line that ends the trial, and
             until then in the file next to the journal.
     """

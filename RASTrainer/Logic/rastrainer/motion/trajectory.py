@@ -24,12 +24,8 @@ TOUCHING_MM, RELEASED_MM = 0.05, 0.3
 
 @dataclass(frozen=True)
 class Interval:
-    """A time interval and the tool's distance to the head in it.
-
-    Attributes:
-        least_clearance_mm: smallest signed distance of tool and head.
-        greatest_depth_mm: how far the commanded motion went into the head at most.
-    """
+    """A time interval, the smallest signed distance of tool and head in it, and the largest depth
+    of the commanded motion in the head."""
 
     start_s: float
     end_s: float
@@ -38,7 +34,6 @@ class Interval:
 
     @property
     def duration_s(self) -> float:
-        """How long it lasted."""
         return self.end_s - self.start_s
 
 

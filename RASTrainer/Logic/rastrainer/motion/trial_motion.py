@@ -43,13 +43,11 @@ WIDTH_FACTOR = 4.133
 
 @dataclass(frozen=True)
 class Throughput:
-    """Speed and accuracy of pointing in one number.
+    """Speed and accuracy of pointing in one number: mean of effective index of difficulty over
+    movement time.
 
-    Attributes:
-        bits_per_s: Mean of effective index of difficulty over movement time.
-        effective_width_mm: We = 4.133·RMS distance of the end points from their targets, along
-            the task axes.
-        effective_distances_mm: De of each movement, along its task axis.
+    Along the task axes, the effective width is 4.133·RMS distance of the end points from their
+    targets, and an effective distance that of each movement.
     """
 
     bits_per_s: float

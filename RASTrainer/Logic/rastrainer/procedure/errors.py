@@ -66,12 +66,8 @@ _Count = Annotated[int, whole_number(0, 1_000_000)]
 
 @dataclass(frozen=True)
 class SplitError:
-    """An error from the planned to the reached point: lengths, and vectors in RAS.
-
-    Attributes:
-        by_registration_ras: from the planned point to where the registration put it.
-        by_hand_ras: from there to the point that was reached.
-    """
+    """An error from the planned point to where the registration put it, and by hand from there to
+    the reached point: lengths, and vectors in RAS."""
 
     mm: _Length
     by_registration_mm: _Length

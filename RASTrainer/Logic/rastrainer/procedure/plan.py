@@ -79,12 +79,9 @@ _Point = Annotated[np.ndarray, point(RAS_LIMIT_MM)]
 
 @dataclass(frozen=True)
 class ProcedureTrajectory:
-    """The planned straight path of one instrument.
+    """The planned straight path of one instrument from near the skin to its tip's target.
 
-    Attributes:
-        entry_ras: (3,) float, mm, near the skin.
-        target_ras: (3,) float, mm, where the instrument's tip is to be.
-        safety_mm: least planned distance of the instrument's surface to a no-go structure.
+    `safety_mm` is the least planned distance of its surface to a no-go structure.
     """
 
     name: _Name
@@ -130,13 +127,6 @@ class Procedure:
     trajectories: Annotated[tuple[ProcedureTrajectory, ...], named_once(1, MAX_TRAJECTORIES)]
     no_go: Annotated[tuple[NoGoStructure, ...], named_once(0, MAX_NO_GO)] = ()
     checkpoints: Annotated[tuple[Checkpoint, ...], named_once(0, MAX_CHECKPOINTS)] = ()
-
-    def trajectory(self, name: str) -> ProcedureTrajectory:
-        for trajectory in self.trajectories:
-            if trajectory.name == name:
-                return trajectory
-        names = ", ".join(trajectory.name for trajectory in self.trajectories)
-        raise InputError(f"The procedure {self.name} has no trajectory {name!r}; it has {names}.")
 
     def sha256(self, skull: Path) -> str:
         """Return a hash of what a trial with this procedure depends on, for a journal's header.

@@ -77,9 +77,7 @@ SAME = 1e-9
 class UsedRegistration:
     """A registration by its numbers: one by which the plan is shown, or the final one of a trial.
 
-    Attributes:
-        matrix: WorldToHead, 16 numbers, row by row, mm; rigid in a record.
-        expected_tre_mm: at the scenario's target.
+    WorldToHead is rigid in a record. The TRE is expected at the scenario's target.
     """
 
     matrix: Annotated[tuple[float, ...], _rigid_matrix]

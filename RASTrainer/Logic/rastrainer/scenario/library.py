@@ -37,12 +37,9 @@ _PNG_START = struct.Struct(">8s4x4sII")
 
 @dataclass(frozen=True)
 class ListedScenario:
-    """An entry in a list of scenarios.
+    """An entry in a list of scenarios; `problem` is why one is unusable, and empty otherwise.
 
-    Attributes:
-        name, title: of the scenario; the folder's name if it is unusable.
-        preview: path of its picture, a PNG; None if missing or unusable.
-        problem: why it is unusable; empty otherwise.
+    Name and title of an unusable one are its folder's. `preview` is its picture, a PNG.
     """
 
     name: str

@@ -29,13 +29,9 @@ LABELS = tuple(str(number) for number in range(1, FIDUCIAL_COUNT + 1))
 class Task:
     """A task for trainees, as in `scenario.json`, and its fiducials from a separate file.
 
-    Attributes:
-        name: such as "trial-run" or "task-1", for commands and records.
-        title: for people.
-        complexity: index from `rastrainer_simulator.authoring.touch_order`.
-        shortest_path_mm: from `rastrainer_simulator.authoring.touch_order`, or None.
-        labels: "1" to "15", in touch order.
-        fiducials: (15, 3) float, RAS mm, in touch order.
+    The name, such as "trial-run" or "task-1", is for commands and records. Complexity and shortest
+    path are from `rastrainer_simulator.authoring.touch_order`. Labels, "1" to "15", and fiducials,
+    (15, 3) float, RAS mm, are in touch order.
     """
 
     name: Annotated[str, identifier]

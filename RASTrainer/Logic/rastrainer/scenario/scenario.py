@@ -95,13 +95,7 @@ def _amounts_of_skin(value: Any) -> Any:
 
 @dataclass(frozen=True)
 class Camera:
-    """A view, in World.
-
-    Attributes:
-        position_mm: (3,) float, the eye.
-        focal_point_mm: (3,) float, the center of the picture.
-        view_up: (3,) float, unit vector.
-    """
+    """A view, in World, (3,) float each: the eye, the picture's center, and a unit vector."""
 
     position_mm: Annotated[np.ndarray, point(WORLD_LIMIT_MM)]
     focal_point_mm: Annotated[np.ndarray, point(WORLD_LIMIT_MM)]
@@ -126,13 +120,7 @@ class Stand:
 
 @dataclass(frozen=True)
 class Provenance:
-    """The origin of the head.
-
-    Attributes:
-        source: the images and their authors.
-        method: how the head was made from them.
-        license: with the notice that it requires.
-    """
+    """The origin of the head: images and authors, how it was made, license and its notice."""
 
     source: Annotated[str, text(4000)]
     method: Annotated[str, text(4000)]

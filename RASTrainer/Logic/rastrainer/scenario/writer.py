@@ -158,12 +158,7 @@ class DraftFile:
 
 @dataclass(frozen=True)
 class HeadDraft:
-    """A head and how it was made.
-
-    Attributes:
-        head: closed, with a flat base, RAS mm.
-        method: how it was made, for the provenance.
-    """
+    """A head, closed, with a flat base, RAS mm, and how it was made, for the provenance."""
 
     head: HeadMesh
     method: str
