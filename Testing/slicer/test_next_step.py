@@ -7,6 +7,7 @@ import pytest
 from rastrainer.protocol import PROCEDURE_PHASES, Phase, StepKind
 from rastrainer.sections.next_step_logic import NextAction, Section, WorkflowState, nextStep
 from rastrainer.sections.simulator_logic import freePort
+from rastrainer.sections.trial_status import TrialStatus
 from rastrainer.slicer.link.link_status import LinkState, LinkStatus
 from rastrainer.slicer.program.simulator_program import ProgramState
 from Testing.slicer.simulator_double import SimulatorDouble
@@ -17,9 +18,7 @@ def link(state):
 
 
 OFF = WorkflowState(link(LinkState.OFF))
-CONNECTED = WorkflowState(
-    link(LinkState.CONNECTED), ProgramState.READY, taskTitle="Task 1", total=15
-)
+CONNECTED = WorkflowState(link(LinkState.CONNECTED), ProgramState.READY, taskTitle="Task 1")
 CHOSEN = replace(CONNECTED, trainee="T001", hasTrainees=True)
 PRACTICED = replace(CHOSEN, hasPracticed=True)
 
@@ -59,12 +58,20 @@ JOURNEY = [
     ),
     (CONNECTED, "New trainee", Section.TRAINEES),
     (CHOSEN, "Start the trial run", Section.TRAINING),
-    (replace(CHOSEN, phase="running"), "Pause", Section.TRAINING),
-    (replace(CHOSEN, phase="paused"), "Resume", Section.TRAINING),
-    (replace(CHOSEN, phase="complete"), "Waiting…", Section.REGISTRATION),
-    (replace(CHOSEN, phase="registered"), "Scoring…", Section.REGISTRATION),
-    (replace(PRACTICED, phase="scored", hasNewResult=True), "Show result", Section.REGISTRATION),
-    (replace(PRACTICED, phase="scored", isResultShown=True), "Start Task 1", Section.SCORE),
+    (replace(CHOSEN, trial=TrialStatus(phase="running")), "Pause", Section.TRAINING),
+    (replace(CHOSEN, trial=TrialStatus(phase="paused")), "Resume", Section.TRAINING),
+    (replace(CHOSEN, trial=TrialStatus(phase="complete")), "Waiting…", Section.REGISTRATION),
+    (replace(CHOSEN, trial=TrialStatus(phase="registered")), "Scoring…", Section.REGISTRATION),
+    (
+        replace(PRACTICED, trial=TrialStatus(phase="scored"), hasNewResult=True),
+        "Show result",
+        Section.REGISTRATION,
+    ),
+    (
+        replace(PRACTICED, trial=TrialStatus(phase="scored"), isResultShown=True),
+        "Start Task 1",
+        Section.SCORE,
+    ),
 ]
 
 
@@ -104,7 +111,11 @@ SPECIAL = {
     "disconnected from its own": (OFF, {"program": ProgramState.READY}, NextAction.CONNECT),
     "being set up": (OFF, {"isBeingSetUp": True}, NextAction.WAIT),
     "nobody chosen": (CONNECTED, {"hasTrainees": True}, NextAction.CHOOSE_TRAINEE),
-    "not scored": (PRACTICED, {"phase": "registered", "isUnscored": True}, NextAction.START_TASK),
+    "not scored": (
+        PRACTICED,
+        {"trial": TrialStatus(phase="registered"), "isUnscored": True},
+        NextAction.START_TASK,
+    ),
     "aborted step": (
         PRACTICED,
         {"studyStep": StepKind.TRIAL, "needsRepeatReason": True},
@@ -126,13 +137,13 @@ def test_the_line_says_what_is_wrong():
     assert (absent.action, absent.sentence[:20]) == (NextAction.WAIT, "The link is absent. ")
     found = step_of(OFF, runningSentence="One runs already.")
     assert (found.action, found.sentence) == (NextAction.CONNECT_TO_RUNNING, "One runs already.")
-    silent = step_of(CHOSEN, link=link(LinkState.STALE), phase="running")
+    silent = step_of(CHOSEN, link=link(LinkState.STALE), trial=TrialStatus(phase="running"))
     assert (silent.action, silent.section) == (NextAction.WAIT, Section.TRAINING)
 
 
 @pytest.mark.parametrize("phase", [phase.value for phase in Phase])
 def test_each_phase_of_a_trial_has_a_title_a_sentence_and_an_action(phase):
-    found = step_of(CHOSEN, phase=phase, touched=15)
+    found = step_of(CHOSEN, trial=TrialStatus(phase=phase, touched=15))
     assert found.title
     assert found.sentence
     if phase in PROCEDURE_PHASES:

@@ -81,16 +81,16 @@ class NewScenarioOptions:
         return HeadSettings(threshold=self.threshold, baseMm=self.cutMm)
 
 
+@dataclass(frozen=True)
 class ScenarioMaker:
     """Shows the head in a volume, and makes a scenario of it.
 
     `progress` may raise to cancel: then nothing is left behind.
     """
 
-    def __init__(self, scene: Any, files: ScenarioFiles, run: Run) -> None:
-        self._scene = scene
-        self._files = files
-        self._run = run
+    scene: Any
+    files: ScenarioFiles
+    run: Run
 
     def preview(self, options: NewScenarioOptions, progress: Progress) -> list[str]:
         """Show the head that is found, and return warnings, one sentence each.
@@ -101,9 +101,9 @@ class ScenarioMaker:
         from rastrainer.slicer.head.volume import showSegment
 
         volume, settings = options.volume, options.headSettings
-        found, skin, warnings = findSkin(self._run, volume, settings, progress)
-        draft = Role.HEAD_SEGMENT.make(self._scene)
-        model = Role.HEAD_PREVIEW.make(self._scene)
+        found, skin, warnings = findSkin(self.run, volume, settings, progress)
+        draft = Role.HEAD_SEGMENT.make(self.scene)
+        model = Role.HEAD_PREVIEW.make(self.scene)
         for node in (draft, model):
             # It is shown where it was found.
             node.SetAndObserveTransformNodeID(None)
@@ -119,7 +119,7 @@ class ScenarioMaker:
     def make(self, options: NewScenarioOptions, progress: Progress) -> tuple[Scenario, list[str]]:
         """Make a scenario, and return it with warnings."""
         warnings: list[str] = []
-        scenario = self._files.add(
+        scenario = self.files.add(
             options.name, lambda folder: warnings.extend(self._plan(options, progress, folder))
         )
         self._hidePreview(options.volume)
@@ -142,12 +142,12 @@ class ScenarioMaker:
         words = [f"--title={options.name}", f"--source={source}", f"--license={terms}"]
         lists, leftOut = list[Any](), list[str]()
         if options.isHandPlaced:
-            lists, leftOut = handPlacedLists(self._scene, options.targets)
+            lists, leftOut = handPlacedLists(self.scene, options.targets)
 
         def make(report: Progress) -> tuple[HeadDraft, list[str]]:
             kept = {"segment": segment, "hasVolume": options.hasVolume}
             found = image, settings, options.hasSkull
-            made: tuple[HeadDraft, list[str]] = self._run(MAKE_DRAFT, report, *found, **kept)
+            made: tuple[HeadDraft, list[str]] = self.run(MAKE_DRAFT, report, *found, **kept)
             return made
 
         with tempfile.TemporaryDirectory() as temporary:
@@ -159,13 +159,13 @@ class ScenarioMaker:
                 write_markups(path, usedPoints(node, worldPoints(node), labelsOf(node)))
             words += ["--tasks", *map(str, tasks)] if tasks else []
             words += ["--check"] if folder is None else []
-            command = self._files.simulator.command([])
+            command = self.files.simulator.command([])
             folder = folder or Path(temporary, "none")
             return [*leftOut, *planScenario(make, folder, words, command, progress)]
 
     def _hidePreview(self, volume: Any) -> None:
         """Hide the head as found, and a rendering of its volume: the result is shown instead."""
-        for node in (*Role.HEAD_SEGMENT.all(self._scene), *Role.HEAD_PREVIEW.all(self._scene)):
+        for node in (*Role.HEAD_SEGMENT.all(self.scene), *Role.HEAD_PREVIEW.all(self.scene)):
             node.SetDisplayVisibility(False)
         for index in range(volume.GetNumberOfDisplayNodes()):
             display = volume.GetNthDisplayNode(index)

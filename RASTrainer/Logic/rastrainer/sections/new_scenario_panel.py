@@ -215,9 +215,13 @@ class LandmarksPanel(Panel):
         self._work = CancelableWork(ui.proposeLandmarksButton, propose, failure, *shows)
         fillComboBox(ui.landmarkNameComboBox, ENTRIES, FACE_LANDMARKS[0])
         connectClick(ui.showLandmarksButton, self.show, _("The landmarks cannot be shown."))
-        connectClick(ui.placeLandmarkButton, self.place, _("No landmark can be placed."))
-        ui.removeLandmarkButton.connect("clicked()", self.remove)
-        ui.undoLandmarkButton.connect("clicked()", self.undo)
+        points, names, table = self._logic.points, ui.landmarkNameComboBox, ui.landmarksTable
+        place, failure = ui.placeLandmarkButton, _("No landmark can be placed.")
+        connectClick(place, lambda: points.startPlacing(chosenData(names)), failure)
+        ui.removeLandmarkButton.connect("clicked()", lambda: points.remove(table.currentRow()))
+        ui.undoLandmarkButton.connect("clicked()", points.undo)
+        for button in (ui.removeLandmarkButton, ui.undoLandmarkButton):
+            button.connect("clicked()", self.showState)
         check = partial(self._run, self._logic.check)
         connectClick(ui.checkLandmarksButton, check, _("The landmarks were not checked."))
         connectClick(ui.saveLandmarksButton, self.save, _("The landmarks were not saved."))
@@ -232,18 +236,6 @@ class LandmarksPanel(Panel):
             raise InputError(_("{title} has no landmarks.").format(title=scenario.title))
         self._logic.points.show(scenario.landmarks)
         self._showMessage("")
-        self.showState()
-
-    def place(self) -> None:
-        """Let the next click in a view place the chosen landmark."""
-        self._logic.points.startPlacing(chosenData(self._ui.landmarkNameComboBox))
-
-    def remove(self) -> None:
-        self._logic.points.remove(self._ui.landmarksTable.currentRow())
-        self.showState()
-
-    def undo(self) -> None:
-        self._logic.points.undo()
         self.showState()
 
     def save(self) -> None:

@@ -5,11 +5,12 @@ One button leads from an empty Slicer to a score; each step can also be done in 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
 
-from rastrainer.protocol import OPEN_PHASES, Phase, StepKind
+from rastrainer.protocol import Phase, StepKind
 from rastrainer.sections.training_logic import LOADING, tutorialSentence
+from rastrainer.sections.trial_status import TrialStatus
 from rastrainer.slicer.link.link_status import LinkState, LinkStatus
 from rastrainer.slicer.program.simulator_program import ProgramState
 from rastrainer.slicer.translation import _
@@ -81,9 +82,7 @@ class WorkflowState:
     hasPracticed: bool = False
     isLearning: bool = False
     taskTitle: str = ""
-    phase: str = Phase.IDLE.value
-    touched: int = 0
-    total: int = 0
+    trial: TrialStatus = field(default_factory=TrialStatus)
     isLoading: bool = False
     isUnscored: bool = False
     hasNewResult: bool = False
@@ -97,10 +96,10 @@ def nextStep(now: WorkflowState) -> NextStep:
     """Return the next thing to do."""
     if now.link.state is not LinkState.CONNECTED:
         return _untilConnected(now)
-    isScoring = now.phase == Phase.REGISTERED.value and not now.isUnscored
-    if now.phase in OPEN_PHASES or isScoring:
-        step = _DURING_TRIAL[now.phase]
-        text = step.sentence.format(touched=now.touched, total=now.total)
+    trial = now.trial
+    if trial.isOpen or (trial.phase == Phase.REGISTERED.value and not now.isUnscored):
+        step = _DURING_TRIAL[trial.phase]
+        text = step.sentence.format(touched=trial.touched, total=trial.total)
         return replace(step, sentence=text)
     if now.hasNewResult:
         text = _("The trial of {trainee} is scored.").format(trainee=now.trainee)
@@ -146,7 +145,7 @@ def _untilConnected(now: WorkflowState) -> NextStep:
         return NextStep(NextAction.WAIT, title, now.programSentence, here)
     if now.link.state in (LinkState.NOT_INSTALLED, LinkState.WRONG_VERSION):
         return NextStep(NextAction.WAIT, _("Not connected"), text, here)
-    if now.link.state is LinkState.STALE and now.phase in OPEN_PHASES:
+    if now.link.state is LinkState.STALE and now.trial.isOpen:
         return NextStep(NextAction.WAIT, _("Waiting…"), text, Section.TRAINING)
     if now.runningSentence and now.link.state in (LinkState.OFF, LinkState.ABSENT):
         text = now.runningSentence

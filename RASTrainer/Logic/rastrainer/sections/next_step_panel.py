@@ -101,9 +101,7 @@ class NextStepPanel(Panel):
             runningSentence=simulator.running.sentence if simulator.running.canConnect else "",
             isLearning=bool(self._now.trainee) and session.training.learner == self._now.trainee,
             taskTitle=session.taskTitle,
-            phase=trial.phase,
-            touched=trial.touched,
-            total=trial.total,
+            trial=trial,
             isLoading=session.training.loadings > 0,
         )
         color, word = LINK_LOOKS[now.link.state]

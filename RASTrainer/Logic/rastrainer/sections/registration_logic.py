@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
@@ -109,6 +109,7 @@ Request = Callable[[], Comparison]
 LISTS = (Role.CAPTURED_POINTS, Role.FIXED_FIDUCIALS, Role.TARGET)
 
 
+@dataclass(eq=False)
 class RegistrationLogic:
     """Registers two lists of the scene whenever one of them changes.
 
@@ -122,20 +123,19 @@ class RegistrationLogic:
         isHeadColored: the head shows the target error to expect.
     """
 
-    def __init__(self, scene: Any, work: BackgroundWork) -> None:
-        self.changed = Signal()
-        self.comparison: Comparison | None = None
-        self.problem = ""
-        self.kind = RIGID
-        self.isHeadColored = False
-        self._scene = scene
-        self._work = work
-        self._chosen = ["", "", ""]
-        self._history: list[Choices] = [Choices()]
-        self._seen: tuple = ()
-        self._surface: tuple = ()
-        self._skin: SkinNormals | None = None
-        self._request: Request | None = None
+    scene: Any
+    work: BackgroundWork
+    changed: Signal = field(default_factory=Signal)
+    comparison: Comparison | None = None
+    problem: str = ""
+    kind: str = RIGID
+    isHeadColored: bool = False
+    _chosen: tuple[str, ...] = "", "", ""
+    _history: tuple[Choices, ...] = (Choices(),)
+    _seen: tuple = ()
+    _surface: tuple = ()
+    _skin: SkinNormals | None = None
+    _request: Request | None = None
 
     @property
     def choices(self) -> Choices:
@@ -149,20 +149,21 @@ class RegistrationLogic:
     @property
     def transform(self) -> Any | None:
         """The transform node of the result, if there is one."""
-        return Role.WORLD_TO_HEAD.find(self._scene)
+        return Role.WORLD_TO_HEAD.find(self.scene)
 
     def lists(self) -> list[Any | None]:
         """Return the moving points, the fixed points, and the list whose first is the target.
 
         The lists of the trial and its task stand in for lists that are not chosen.
         """
-        chosen = [self._scene.GetNodeByID(each) if each else None for each in self._chosen]
+        chosen = [self.scene.GetNodeByID(each) if each else None for each in self._chosen]
         pairs = zip(chosen, LISTS, strict=True)
-        return [node or kind.find(self._scene) for node, kind in pairs]
+        return [node or kind.find(self.scene) for node, kind in pairs]
 
     def chooseLists(self, *lists: Any | None) -> None:
         """Choose `lists`; None means the list of the trial or its task."""
-        former, self._chosen = self._chosen, [node.GetID() if node else "" for node in lists]
+        former = self._chosen
+        self._chosen = tuple(node.GetID() if node else "" for node in lists)
         if self._chosen[:2] != former[:2]:
             self.reset()
 
@@ -179,22 +180,22 @@ class RegistrationLogic:
     def change(self, choices: Choices) -> None:
         """Register the pairs with these changes."""
         if choices != self.choices:
-            self._history.append(choices)
+            self._history += (choices,)
             self._compute()
 
     def undo(self) -> None:
         if self.canUndo:
-            self._history.pop()
+            self._history = self._history[:-1]
             self._compute()
 
     def reset(self) -> None:
         """Forget the changes: another trial comes next."""
-        self._history = [Choices()]
+        self._history = (Choices(),)
         self._seen = ()
 
     def forgetScene(self) -> None:
         """Forget lists and result: the scene was cleared, and the next nodes may have their IDs."""
-        self._chosen = ["", "", ""]
+        self._chosen = "", "", ""
         self.reset()
         self._compute()
 
@@ -208,7 +209,7 @@ class RegistrationLogic:
         tasks = [node and node.GetAttribute(TASK_ATTRIBUTE) for node in (moving, fixed)]
         movingList = snapshot(moving, slicer.util.arrayFromMarkupsControlPoints)
         lists = movingList, snapshot(fixed), snapshot(target)
-        return *lists, *tasks, surfaceOf(Role.HEAD_MODEL.find(self._scene))
+        return *lists, *tasks, surfaceOf(Role.HEAD_MODEL.find(self.scene))
 
     def _compute(self) -> None:
         """Register the lists as they are now; a running computation is outdated."""
@@ -218,13 +219,13 @@ class RegistrationLogic:
         # The key of the present registration, so that lists that change back count as changed.
         self._seen = self._snapshot()
         self._request = None
-        head = Role.HEAD_MODEL.find(self._scene)
+        head = Role.HEAD_MODEL.find(self.scene)
         if surfaceOf(head) != self._surface:
             self._surface, self._skin = surfaceOf(head), readSkin(head)
         skin = self._skin
         if skin is not None and fixed is not None and not skin.knows(worldPoints(fixed)):
             # Before they are touched: it takes long.
-            self._work.do(partial(skin.findNormals, worldPoints(fixed)), lambda _none: None)
+            self.work.do(partial(skin.findNormals, worldPoints(fixed)), lambda _none: None)
         try:
             checkSameTask(moving, fixed)
             pairs = readPairs(moving, fixed, self.choices)
@@ -238,7 +239,7 @@ class RegistrationLogic:
         points = slicer.util.arrayFromModelPoints(head).astype(float) if isColored else None
         request = partial(compareFits, pairs, self.choices, self.kind, place, skin, points)
         self._request = request
-        self._work.do(
+        self.work.do(
             lambda: request() if request is self._request else None,
             partial(self._take, request),
             lambda error: self._refuse(error) if request is self._request else None,
@@ -246,7 +247,7 @@ class RegistrationLogic:
 
     def _refuse(self, error: Exception) -> None:
         self.comparison, self.problem, self._request = None, str(error), None
-        clearResidualArrows(self._scene)
+        clearResidualArrows(self.scene)
         self._colorHead(None)
         self.changed.emit()
 
@@ -254,29 +255,29 @@ class RegistrationLogic:
         """Show a comparison, each part in a separate turn, unless it is outdated."""
         if comparison is None:
             return
-        scene, shown = self._scene, comparison.shown
-
-        def inTurn(show: Callable[[], object]) -> None:
-            def showIfWanted() -> None:
-                if request is self._request and None not in self.lists()[:2]:
-                    show()
-
-            self._work.later(showIfWanted)
+        scene, shown = self.scene, comparison.shown
 
         def finish() -> None:
             self.comparison, self.problem = comparison, ""
             self.changed.emit()
 
-        inTurn(lambda: placeWorld(scene, shown.matrix, shown.kind, *self.lists()[:2]))
-        inTurn(lambda: showResiduals(scene, shown, comparison.leaveOneOut.get(shown.kind)))
-        inTurn(lambda: showFits(scene, comparison.fits, comparison.errors))
-        inTurn(lambda: showResidualArrows(scene, shown))
-        inTurn(lambda: self._colorHead(comparison.headErrors))
-        inTurn(finish)
+        def showIfWanted(show: Callable[[], object]) -> None:
+            if request is self._request and None not in self.lists()[:2]:
+                show()
+
+        for show in (
+            lambda: placeWorld(scene, shown.matrix, shown.kind, *self.lists()[:2]),
+            lambda: showResiduals(scene, shown, comparison.leaveOneOut.get(shown.kind)),
+            lambda: showFits(scene, comparison.fits, comparison.errors),
+            lambda: showResidualArrows(scene, shown),
+            lambda: self._colorHead(comparison.headErrors),
+            finish,
+        ):
+            self.work.later(partial(showIfWanted, show))
 
     def _colorHead(self, errors: np.ndarray | None) -> None:
         """Color the head by errors at its points, or show its own color where there are none."""
-        head = Role.HEAD_MODEL.find(self._scene)
+        head = Role.HEAD_MODEL.find(self.scene)
         if head is None:
             return
         if errors is None or not self.isHeadColored:

@@ -7,9 +7,10 @@ import json
 import os
 import tempfile
 from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
@@ -98,30 +99,30 @@ def _stamp(path: Path) -> tuple[int, int]:
     return 0, 0
 
 
+@dataclass(frozen=True)
 class ScenarioFiles:
     """Scenarios on disk, which the simulator's program writes, each into a folder of `library`.
 
     `progress` is called while it works: it may let the application draw, and may raise to cancel.
     """
 
-    def __init__(self, simulator: SimulatorLogic, cache: ScenarioCache, library: Path) -> None:
-        self.simulator = simulator
-        self._cache = cache
-        self._library = library
+    simulator: SimulatorLogic
+    cache: ScenarioCache
+    library: Path
 
     def add(self, title: str, make: Callable[[Path], object]) -> Scenario:
         """Return the scenario that `make` makes in the folder it is given."""
-        folder = self._library / self._cache.newName(title)
+        folder = self.library / self.cache.newName(title)
         make(folder)
         return load_scenario(folder)
 
     def importScenario(self, package: Path, progress: Progress = no_progress) -> Scenario:
-        unpacked = inBackground(lambda report: unpack(package, self._library, report), progress)
+        unpacked = inBackground(lambda report: unpack(package, self.library, report), progress)
         return load_scenario(unpacked)
 
     def drawFaceRemoval(self, name: str, picture: Path, progress: Progress = no_progress) -> str:
         """Draw a head before and after its face is removed; return a sentence on the picture."""
-        folder = str(self._cache.find(name).folder)
+        folder = str(self.cache.find(name).folder)
         return self.run(["pack", folder, os.devnull, "--picture", str(picture)], progress)
 
     def exportScenario(
@@ -137,7 +138,7 @@ class ScenarioFiles:
         Unless the head keeps its face and skull, the user has seen what `drawFaceRemoval` has
         drawn. Title, name and source may be the patient's name.
         """
-        words = ["pack", str(self._cache.find(name).folder), str(package)]
+        words = ["pack", str(self.cache.find(name).folder), str(package)]
         words += ["--keep-face"] if keepsFace else ["--yes"]
         words += ["--keep-names"] if keepsNames else []
         return self.run(words, progress)
@@ -149,7 +150,7 @@ class ScenarioFiles:
 
         `plan` are arguments of `rastrainer scenario plan`, such as `--landmarks` with a file.
         """
-        words = ["plan", str(self._cache.find(name).folder), f"--title={title}", *plan]
+        words = ["plan", str(self.cache.find(name).folder), f"--title={title}", *plan]
         return self.add(title, lambda folder: self.run([*words, "-o", str(folder)], progress))
 
     def run(self, words: list[str], progress: Progress, mayFail: bool = False) -> str:
@@ -177,24 +178,7 @@ def planArguments(*planned: Any | None) -> list[str]:
 LIMIT_BYTES = 1 << 20
 
 
-class ComparedMethod(NamedTuple):
-    """How a method has registered the trials; mm, root mean squares over trials.
-
-    `low` and `high` are medians of the ends of the 95 % interval of the target error, and `held` is
-    the share of the intervals that hold the true error.
-    """
-
-    name: str
-    low: float
-    high: float
-    residual: float
-    expected: float
-    true: float
-    held: float
-
-
-KEYS = ("residual_mm", "expected_tre_mm", "true_tre_mm", "interval_holds_share")
-"""Keys of the last four fields above, in the program's output."""
+KEYS = ("residual_mm", "true_tre_mm", "expected_tre_mm", "interval_holds_share")
 
 
 def compareMethods(
@@ -203,10 +187,12 @@ def compareMethods(
     trials: int,
     skinShiftMm: float,
     progress: Progress = no_progress,
-) -> list[ComparedMethod]:
+) -> dict[str, tuple[float, ...]]:
     """Return how each method for which a head has the points registers simulated trials.
 
-    `skinShiftMm` is the RMS shift between imaging and operation.
+    `skinShiftMm` is the RMS shift between imaging and operation. The numbers of a method are root
+    mean squares over trials of residual, true and expected target error, mm; the share of the 95 %
+    intervals that hold the true error; and medians of the interval's ends, mm.
     """
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary) / "methods"
@@ -215,9 +201,10 @@ def compareMethods(
         simulator.run(words, progress)
         compared = read_json(folder / "methods.json", LIMIT_BYTES)
     try:
-        return [
-            ComparedMethod(name, *map(float, [*values["interval_mm"], *map(values.get, KEYS)]))
-            for name, values in compared["methods"].items()
-        ]
+        numbers = {}
+        for name, values in compared["methods"].items():
+            low, high = values["interval_mm"]
+            numbers[name] = tuple(map(float, (*map(values.get, KEYS), low, high)))
+        return numbers
     except (KeyError, TypeError, ValueError, AttributeError):
         raise InputError(_("The simulator's program has a different version.")) from None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -33,56 +34,54 @@ if TYPE_CHECKING:
     from rastrainer.slicer.head.volume import HeadBody, HeadSettings
 
 
+@dataclass(eq=False)
 class ScenarioLogic:
     """Shows scenarios, other heads and the robot in the scene.
 
     Attributes:
+        run: runs the functions that look for heads and read the robot, the latter in `work`.
         robotShown: emits nothing when the whole robot is in the scene.
         problemFound: emits a sentence if the robot's files cannot be used.
     """
 
-    def __init__(
-        self, scene: Any, cache: ScenarioCache, robotFolder: Path, run: Run, work: BackgroundWork
-    ) -> None:
-        """`run` runs the functions that look for heads and read the robot, the latter in `work`."""
-        self.robotShown = Signal()
-        self.problemFound = Signal()
-        self._scene = scene
-        self._cache = cache
-        self._robotFolder = robotFolder
-        self._run = run
-        self._work = work
-        self._links: tuple[LinkMesh, ...] = ()
-        self._isRobotComing = False
+    scene: Any
+    cache: ScenarioCache
+    robotFolder: Path
+    run: Run
+    work: BackgroundWork
+    robotShown: Signal = field(default_factory=Signal)
+    problemFound: Signal = field(default_factory=Signal)
+    _links: tuple[LinkMesh, ...] = ()
+    _isRobotComing: bool = False
 
     def show(
         self, scenarioName: str, taskName: str, then: Callable[[], None] = lambda: None
     ) -> None:
         """Show a scenario's head and a task's fiducials in the next turns; then call `then`."""
-        scenario, later = self._cache.find(scenarioName), self._work.changeScene
+        scenario, later = self.cache.find(scenarioName), self.work.changeScene
         scenario.task(taskName)  # Raises before anything is shown.
-        showScenario(self._scene, scenario, later)
-        later(partial(showImages, self._scene))
-        later(partial(showTask, self._scene, scenario, taskName))
-        later(partial(showOnlyTouchesOf, self._scene, scenario.name, taskName))
+        showScenario(self.scene, scenario, later)
+        later(partial(showImages, self.scene))
+        later(partial(showTask, self.scene, scenario, taskName))
+        later(partial(showOnlyTouchesOf, self.scene, scenario.name, taskName))
         later(partial(self._showPlace, scenario, taskName))
         later(then)
 
     def _showPlace(self, scenario: Scenario, taskName: str) -> None:
-        fixed = showTask(self._scene, scenario, taskName)
-        placed = Role.WORLD_TO_HEAD.find(self._scene)
+        fixed = showTask(self.scene, scenario, taskName)
+        placed = Role.WORLD_TO_HEAD.find(self.scene)
         if placed is None or placed.GetAttribute(KIND_ATTRIBUTE) == PLANNED:
-            showPlannedPlace(self._scene, scenario, fixed)
+            showPlannedPlace(self.scene, scenario, fixed)
 
     def useHead(self, node: Any, progress: Progress = no_progress) -> tuple[Any, list[str]]:
         """Make a model, or the skin of a volume, the displayed head; return it with warnings.
 
         The head that was one before is hidden, and is no longer ours to fill.
         """
-        model, warnings, former = node, list[str](), Role.HEAD_MODEL.find(self._scene)
+        model, warnings, former = node, list[str](), Role.HEAD_MODEL.find(self.scene)
         if node.IsA("vtkMRMLVolumeNode"):
-            _body, mesh, warnings = findSkin(self._run, node, None, progress)
-            model = Role.HEAD_MODEL.add(self._scene, f"Head of {node.GetName()}")
+            _body, mesh, warnings = findSkin(self.run, node, None, progress)
+            model = Role.HEAD_MODEL.add(self.scene, f"Head of {node.GetName()}")
             model.SetAndObservePolyData(meshPolyData(mesh))
             model.GetDisplayNode().SetColor(SKIN_COLOR)
         if former is not None and former is not model:
@@ -98,20 +97,20 @@ class ScenarioLogic:
             self._isRobotComing = False
             self.problemFound.emit(_("The robot cannot be shown. {problem}").format(problem=error))
 
-        setRobotVisible(self._scene, shown)
+        setRobotVisible(self.scene, shown)
         self._isRobotComing = shown
-        if shown and (self._links or not missingLinks(self._scene)):
+        if shown and (self._links or not missingLinks(self.scene)):
             self._addLinks(self._links)
         elif shown:
-            check, folder = self._work.checkWanted, self._robotFolder
-            self._work.do(lambda: self._run(READ_LINKS, check, folder), self._addLinks, refuse)
+            check, folder = self.work.checkWanted, self.robotFolder
+            self.work.do(lambda: self.run(READ_LINKS, check, folder), self._addLinks, refuse)
 
     def forgetScene(self) -> None:
         self._isRobotComing = False
 
     @property
     def isRobotShown(self) -> bool:
-        node = Role.LINKS[0].find(self._scene)
+        node = Role.LINKS[0].find(self.scene)
         return self._isRobotComing or (node is not None and bool(node.GetDisplayVisibility()))
 
     def _addLinks(self, links: tuple[LinkMesh, ...]) -> None:
@@ -119,19 +118,19 @@ class ScenarioLogic:
         self._links = links
 
         def addMissing(number: int) -> None:
-            if self._isRobotComing and number in missingLinks(self._scene):
-                addLink(self._scene, number, links[number])
+            if self._isRobotComing and number in missingLinks(self.scene):
+                addLink(self.scene, number, links[number])
                 # At once, so that the views can be moved to it.
-                followPlacement(self._scene)
+                followPlacement(self.scene)
 
         def finish() -> None:
             if self._isRobotComing:
                 self._isRobotComing = False
                 self.robotShown.emit()
 
-        for number in missingLinks(self._scene):
-            self._work.later(partial(addMissing, number))
-        self._work.later(finish)
+        for number in missingLinks(self.scene):
+            self.work.later(partial(addMissing, number))
+        self.work.later(finish)
 
 
 FIND_SKIN = "rastrainer.slicer.head.head_draft:findSkin"

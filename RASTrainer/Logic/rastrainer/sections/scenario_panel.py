@@ -78,19 +78,17 @@ class ScenarioPanel(Panel):
         setSilently(self._ui.robotCheckBox, "checked", self._logic.isRobotShown)
 
     def show(self) -> None:
+        def showTarget() -> None:
+            self._session.slices.show(scenario.target.position_ras)
+            fitThreeDViews()
+
         with showErrors(_("The scenario cannot be shown.")):
-            name = chosenData(self._ui.scenarioComboBox)
-            target = self._scenarios.find(name).target.position_ras
-
-            def showTarget() -> None:
-                self._session.slices.show(target)
-                fitThreeDViews()
-
-            self._logic.show(name, self._session.task, showTarget)
+            scenario = chosenScenario(self._ui, self._session)
+            self._logic.show(scenario.name, self._session.task, showTarget)
 
     def loadIntoSimulator(self) -> None:
         with showErrors(_("The scenario was not loaded.")):
-            scenario = self._scenarios.find(chosenData(self._ui.scenarioComboBox))
+            scenario = chosenScenario(self._ui, self._session)
             asked = _("The simulator was asked to load {title}.")
             loaded = _("The simulator now uses {title}.").format(title=scenario.title)
             self._showMessage(asked.format(title=scenario.title))
@@ -193,7 +191,7 @@ class ScenarioPanel(Panel):
         self._chooseTask()
 
     def _chooseTask(self, _index: int = 0) -> None:
-        scenario = self._scenarios.find(chosenData(self._ui.scenarioComboBox))
+        scenario = chosenScenario(self._ui, self._session)
         task = scenario.task(chosenData(self._ui.taskComboBox))
         self._session.chooseTask(task, scenario)
         text = _("{count} fiducials, complexity {complexity:.2f}; target: {target}.")
@@ -250,11 +248,11 @@ class MethodsPanel(Panel):
         if found is not None:
             interval, percent = _("{low} to {high}"), _("{share} %")
             rows = []
-            for each in found:
-                lengths = (fixed(mm, 2) for mm in (each.residual, each.true, each.expected))
-                ends = interval.format(low=fixed(each.low, 2), high=fixed(each.high, 2))
-                held = percent.format(share=fixed(100.0 * each.held, 0))
-                rows.append((METHOD_NAMES.get(each.name, each.name), *lengths, ends, held))
+            for name, (*lengths, share, low, high) in found.items():
+                shown = (fixed(mm, 2) for mm in lengths)
+                ends = interval.format(low=fixed(low, 2), high=fixed(high, 2))
+                held = percent.format(share=fixed(100.0 * share, 0))
+                rows.append((METHOD_NAMES.get(name, name), *shown, ends, held))
             fillTable(ui.methodsTable, rows)
             text = _(
                 "Residuals of different methods are of different points: they do not show which "

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -38,40 +39,35 @@ SLICES_A_TURN = 4
 """States of a closed scene's replay, which are released gradually."""
 
 
+@dataclass(eq=False)
 class ReplayLogic:
     """Feedback on stored trials, and their replay, for which the journals must be here.
 
     Attributes:
+        robot: the folder of the URDF.
+        isBeingScored: whether a trial will get its feedback with its score.
         feedbackFound: emits nothing, whenever the feedback on another trial is known.
         shown: emits nothing, whenever another trial is shown, with its touches to be registered.
         procedureShown: emits `ProcedureOutcome`, `ProcedureRecord` and `RevealedTruth` of that
             trial; None for each that it has not.
     """
 
-    def __init__(
-        self,
-        services: TrialServices,
-        robot: Path,
-        isTrialOpen: Callable[[], bool],
-        isBeingScored: Callable[[str], bool],
-    ) -> None:
-        """`robot` is the folder of the URDF; a trial that is being scored gets feedback by that."""
-        self.feedbackFound = Signal()
-        self.shown = Signal()
-        self.procedureShown = Signal()
-        self._isTrialOpen = isTrialOpen
-        self._services = services
-        self._robot = robot
-        self._isBeingScored = isBeingScored
-        self._awaitedId = ""
-        self._known: tuple[str, TrialFeedback | Exception | None] = ("", None)
-        self._until: float | None = None
+    services: TrialServices
+    robot: Path
+    isTrialOpen: Callable[[], bool]
+    isBeingScored: Callable[[str], bool]
+    feedbackFound: Signal = field(default_factory=Signal)
+    shown: Signal = field(default_factory=Signal)
+    procedureShown: Signal = field(default_factory=Signal)
+    _awaitedId: str = ""
+    _known: tuple[str, TrialFeedback | Exception | None] = "", None
+    _until: float | None = None
 
     def feedback(self, trial: StoredTrial) -> TrialFeedback | None:
         """Return the feedback on a trial; None while it is being prepared."""
-        trialId, work = trial.record.trial_id, self._services.work
+        trialId, work = trial.record.trial_id, self.services.work
         if self._known[0] != trialId:
-            if self._isBeingScored(trialId):
+            if self.isBeingScored(trialId):
                 self._awaitedId = trialId
                 return None
             self._known = trialId, None
@@ -97,7 +93,7 @@ class ReplayLogic:
 
     def keepStates(self) -> None:
         """Have the states of the replay released slice by slice, before the scene is closed."""
-        slices, later = emptyReplay(self._services.scene), self._services.work.later
+        slices, later = emptyReplay(self.services.scene), self.services.work.later
 
         def release() -> None:
             if list(itertools.islice(slices, SLICES_A_TURN)):
@@ -125,15 +121,15 @@ class ReplayLogic:
             inBackground(partial(self._track, trialId), progress)
             raise InputError(_("The journal does not say when the worst touch was made."))
         self._put(trial, progress)
-        goTo(self._services.scene, interval[0])
+        goTo(self.services.scene, interval[0])
         self._play(interval[1])
 
     def process(self) -> None:
         """Stop where the worst touch was made; request feedback that no score has given."""
-        if self._awaitedId and not self._isBeingScored(self._awaitedId):
+        if self._awaitedId and not self.isBeingScored(self._awaitedId):
             self._awaitedId = ""
             self.feedbackFound.emit()
-        now, browser = moment(self._services.scene), findReplay(self._services.scene)
+        now, browser = moment(self.services.scene), findReplay(self.services.scene)
         if self._until is None or now is None or browser is None:
             return
         if now[0] >= self._until:
@@ -141,7 +137,7 @@ class ReplayLogic:
             self._until = None
 
     def _judge(self, trial: StoredTrial, progress: Progress) -> TrialFeedback:
-        services, record = self._services, trial.record
+        services, record = self.services, trial.record
         scenario = services.findScenario(record.scenario)
         analysis = services.run(EXPLAIN, progress, record, scenario, services.records)
         with services.openStudy() as study:
@@ -150,11 +146,11 @@ class ReplayLogic:
             return with_progress(scored, study).feedback
 
     def _track(self, trialId: str, progress: Progress) -> ReplayTrack:
-        return self._services.run(READ_TRACK, progress, self._services.records, trialId)
+        return self.services.run(READ_TRACK, progress, self.services.records, trialId)
 
     def _put(self, trial: StoredTrial, progress: Progress) -> None:
         record, rigid = trial.record, trial.registrations.get(RIGID)
-        services, scene = self._services, self._services.scene
+        services, scene = self.services, self.services.scene
         self._checkNoTrialIsOpen()
         if rigid is None:
             raise InputError(_("It is not known where the head was: the trial was not registered."))
@@ -166,7 +162,7 @@ class ReplayLogic:
             track = poses = None
             if not isThere:
                 track = self._track(record.trial_id, report)
-                poses = toolPoses(self._robot / URDF, track.q)
+                poses = toolPoses(self.robot / URDF, track.q)
             scenario, outcome = services.findScenario(record.scenario), None
             if record.procedure is not None and trial.truth is not None:
                 outcome = services.run(EXPLAIN_PROCEDURE, report, record, scenario, trial.truth)
@@ -201,12 +197,12 @@ class ReplayLogic:
         setTouchesVisible(scene, False)
 
     def _checkNoTrialIsOpen(self) -> None:
-        if self._isTrialOpen():
+        if self.isTrialOpen():
             raise InputError(_("A trial is in progress: replay another one when it is over."))
 
     def _play(self, until: float | None) -> None:
         self._until = until
-        browser = findReplay(self._services.scene)
+        browser = findReplay(self.services.scene)
         if browser is not None:
             browser.SetPlaybackLooped(False)
             browser.SetPlaybackActive(True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
@@ -98,42 +99,32 @@ DEVICES = {
 """Whose pose the views along the instrument follow, by the phase of a procedure."""
 
 
+@dataclass(eq=False)
 class SliceFollower:
     """Moves the slices just enough to go through a point; their orientation stays.
 
     By the settings, they jump to each point that is to be touched next, or stay at the tip of the
     tool. In a procedure they may lie along guide, drill and instrument, until these are done: one
-    across the instrument (probe's-eye view), two along it.
+    across the instrument (probe's-eye view), two along it. `later` has the views moved one after
+    the other, where they need not follow the tool.
     """
 
-    def __init__(
-        self,
-        scene: Any,
-        training: TrainingLogic,
-        settings: Settings,
-        clock: Callable[[], float] = time.monotonic,
-        later: CallLater = callNow,
-    ) -> None:
-        """`later` has the views moved one after the other, where they need not follow the tool."""
-        self.settings = settings
-        self._scene = scene
-        self._training = training
-        self._clock = clock
-        self._later = later
-        self._shownPoint: tuple[str, ...] = ()
-        self._place: np.ndarray | None = None
-        self._pose: np.ndarray | None = None
-        self._unaligned: dict[str, np.ndarray] = {}
-        self._lastJump = -PERIOD_S
+    scene: Any
+    training: TrainingLogic
+    settings: Settings
+    clock: Callable[[], float] = time.monotonic
+    later: CallLater = callNow
+    _shownPoint: tuple[str, ...] = ()
+    _place: np.ndarray | None = None
+    _pose: np.ndarray | None = None
+    _unaligned: dict[str, np.ndarray] = field(default_factory=dict)
+    _lastJump: float = -PERIOD_S
 
-    def show(self, place: ArrayLike) -> None:
+    def show(self, place: ArrayLike, later: CallLater | None = None) -> None:
         """Show a point, (3,) float, RAS mm."""
-        self._jump(place, self._later)
-
-    def _jump(self, place: ArrayLike, later: CallLater = callNow) -> None:
         self._place = np.array(place, dtype=float)
-        self._lastJump = self._clock()
-        jumpTo(self._scene, self._place.tolist(), later)
+        self._lastJump = self.clock()
+        jumpTo(self.scene, self._place.tolist(), later or self.later)
 
     def showAgain(self) -> None:
         if self._place is not None:
@@ -151,24 +142,24 @@ class SliceFollower:
     def _device(self) -> str | None:
         """Device whose pose the views along the instrument follow; None if they do not."""
         liesAlong = self.settings.get(SLICES_LIE_ALONG)
-        return DEVICES.get(self._training.status.phase) if liesAlong else None
+        return DEVICES.get(self.training.status.phase) if liesAlong else None
 
     def process(self) -> None:
         device = self._device
         if device is None and self._unaligned:
-            if self._training.status.phase == Phase.PAUSED.value:
+            if self.training.status.phase == Phase.PAUSED.value:
                 return
             self._restoreViews()
             self.showAgain()
         if device is not None or self.settings.get(SLICES_FOLLOW_TOOL):
             self._shownPoint = ()
-            pose = poseOnHead(self._scene, device or DeviceName.TOOL_TIP_TO_WORLD)
-            if pose is None or self._clock() < self._lastJump + PERIOD_S:
+            pose = poseOnHead(self.scene, device or DeviceName.TOOL_TIP_TO_WORLD)
+            if pose is None or self.clock() < self._lastJump + PERIOD_S:
                 return
             if device is not None:
                 self._alignViews(pose)
             elif _distance(pose[:3, 3], self._place) >= LEAST_MOVE_MM:
-                self._jump(pose[:3, 3])
+                self.show(pose[:3, 3], callNow)
         elif self.settings.get(SLICES_SHOW_NEXT_POINT):
             self._showNextPoint()
 
@@ -185,7 +176,7 @@ class SliceFollower:
             and _distance(outward, -former[:3, 2]) < LEAST_TURN
         ):
             return
-        self._pose, self._lastJump = pose, self._clock()
+        self._pose, self._lastJump = pose, self.clock()
         left, front = np.array([-1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
         across = left - (left @ outward) * outward
         if np.linalg.norm(across) < LEAST_ACROSS:
@@ -199,7 +190,7 @@ class SliceFollower:
             IN_LINE: (across, outward, upward),
             ACROSS: (-upward, outward, across),
         }
-        for view in nodesOfClass(self._scene, "vtkMRMLSliceNode"):
+        for view in nodesOfClass(self.scene, "vtkMRMLSliceNode"):
             if view.GetName() in axes:
                 matrix = view.GetSliceToRAS()
                 self._unaligned.setdefault(view.GetID(), slicer.util.arrayFromVTKMatrix(matrix))
@@ -208,7 +199,7 @@ class SliceFollower:
                 view.UpdateMatrices()
 
     def _restoreViews(self) -> None:
-        for view in filter(None, map(self._scene.GetNodeByID, self._unaligned)):
+        for view in filter(None, map(self.scene.GetNodeByID, self._unaligned)):
             former = self._unaligned[view.GetID()]
             slicer.util.updateVTKMatrixFromArray(view.GetSliceToRAS(), former)
             view.UpdateMatrices()
@@ -216,8 +207,8 @@ class SliceFollower:
         self._pose = None
 
     def _showNextPoint(self) -> None:
-        status = self._training.status
-        fixed = Role.FIXED_FIDUCIALS.find(self._scene)
+        status = self.training.status
+        fixed = Role.FIXED_FIDUCIALS.find(self.scene)
         point: tuple[str, ...] = ()
         task = "" if fixed is None else fixed.GetAttribute(TASK_ATTRIBUTE) or ""
         # The fiducials of a trial that has just started come a moment later than its first point.
