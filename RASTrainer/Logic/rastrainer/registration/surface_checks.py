@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -111,13 +112,12 @@ def thinned(trace: np.ndarray, most: int = MOST_USED) -> np.ndarray:
 
 def find_match_warnings(
     measures: MatchMeasures, residuals_mm: np.ndarray, is_inlier: np.ndarray
-) -> tuple[RegistrationWarning, ...]:
-    """Return what looks wrong with a match of n points, by their residuals and which are inliers.
+) -> Iterator[RegistrationWarning]:
+    """Yield what looks wrong with a match of n points, by their residuals and which are inliers.
 
     The codes are `slides`, `several-minima`, `not-converged`, `few-inliers`, `far-points` and
     `poor-fit`.
     """
-    found = []
     slide = measures.slide
     if slide.distance_mm > SLIDE_LIMIT_MM:
         message = (
@@ -126,24 +126,17 @@ def find_match_warnings(
             "however small residual and interval are; trace places that face other ways, such "
             "as nose, brows, temples and cheeks."
         )
-        found.append(RegistrationWarning("slides", (), message))
+        yield RegistrationWarning("slides", (), message)
     if measures.rivals or measures.best_starts < LEAST_BEST_SHARE * measures.starts:
         message = (
             f"Only {measures.best_starts} of {measures.starts} starts ended in this match; "
             f"others ended up to {measures.spread_mm:.1f} mm away at the head's center: "
             "check the three landmarks, and trace more of the face."
         )
-        found.append(RegistrationWarning("several-minima", (), message))
+        yield RegistrationWarning("several-minima", (), message)
     if not measures.converged:
         message = "The match had not settled when it was stopped."
-        found.append(RegistrationWarning("not-converged", (), message))
-    return (*found, *_misfits(measures, residuals_mm, is_inlier))
-
-
-def _misfits(
-    measures: MatchMeasures, residuals_mm: np.ndarray, is_inlier: np.ndarray
-) -> list[RegistrationWarning]:
-    found = []
+        yield RegistrationWarning("not-converged", (), message)
     off = np.flatnonzero(~is_inlier & (residuals_mm > FAR_POINT_MM))
     names = tuple(str(row + 1) for row in off)
     if measures.inlier_share < LEAST_INLIER_SHARE:
@@ -151,21 +144,20 @@ def _misfits(
             f"Only {measures.inlier_share:.0%} of the points lie on the surface; keep the tip "
             "on the skin while you draw."
         )
-        found.append(RegistrationWarning("few-inliers", names, message))
+        yield RegistrationWarning("few-inliers", names, message)
     elif len(off):
         those = f"{len(off)} points lie" if len(off) > 1 else f"Point {names[0]} lies"
         message = (
             f"{those} up to {residuals_mm[off].max():.1f} mm off the surface and "
             f"{'do' if len(off) > 1 else 'does'} not count."
         )
-        found.append(RegistrationWarning("far-points", names, message))
+        yield RegistrationWarning("far-points", names, message)
     if measures.rms_mm > POOR_RMS_MM:
         message = (
             f"The trace does not fit this head (residual {measures.rms_mm:.1f} mm); check that "
             "head and images are of the same person and that the landmarks were not exchanged."
         )
-        found.append(RegistrationWarning("poor-fit", (), message))
-    return found
+        yield RegistrationWarning("poor-fit", (), message)
 
 
 LEAST_NOISE_MM, ALIKE_MM = 1.0, 20.0

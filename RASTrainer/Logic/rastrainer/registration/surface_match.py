@@ -251,7 +251,7 @@ def _match(
         normals=normals,
         is_inlier=is_inlier,
         iterations=int(fit.iterations[0]),
-        warnings=find_match_warnings(measures, nearest.distances, is_inlier),
+        warnings=tuple(find_match_warnings(measures, nearest.distances, is_inlier)),
     )
 
 
