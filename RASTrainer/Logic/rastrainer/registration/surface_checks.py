@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from rastrainer.files.point_list import points_of
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.registration.fits import RIGID, extents, motions
 from rastrainer.registration.warnings import RegistrationWarning
+
+if TYPE_CHECKING:
+    from rastrainer.registration.surface_match import SurfaceMatch
 
 LEAST_POINTS, MOST_USED, MOST_POINTS = 30, 500, 100_000
 LEAST_EXTENT_MM = 10.0
@@ -26,30 +30,6 @@ LEAST_INLIER_SHARE = 0.8
 POOR_RMS_MM = 2.5
 LEAST_BEST_SHARE = 0.5
 FAR_POINT_MM = 3.0
-
-
-@dataclass(frozen=True)
-class MatchMeasures:
-    """How good a match is.
-
-    Attributes:
-        rms_mm: Root mean square of the inliers' residuals. It does not predict the target error.
-        converged: Whether the best fit has stopped moving.
-        best_starts: How many of the starts ended in the best minimum.
-        spread_mm: Largest distance at the head's center between the best and where another start
-            ended.
-        rivals: Number of minima elsewhere whose cost is at most twice the best minimum's.
-        slide: The direction in which the trace determines the head least.
-    """
-
-    rms_mm: float
-    inlier_share: float
-    converged: bool
-    starts: int
-    best_starts: int
-    spread_mm: float
-    rivals: int
-    slide: SurfaceSlide
 
 
 def check_trace(trace_mm: object) -> np.ndarray:
@@ -110,15 +90,13 @@ def thinned(trace: np.ndarray, most: int = MOST_USED) -> np.ndarray:
     return trace[np.linspace(0, len(trace) - 1, most).round().astype(int)]
 
 
-def find_match_warnings(
-    measures: MatchMeasures, residuals_mm: np.ndarray, is_inlier: np.ndarray
-) -> Iterator[RegistrationWarning]:
-    """Yield what looks wrong with a match of n points, by their residuals and which are inliers.
+def find_match_warnings(match: SurfaceMatch) -> Iterator[RegistrationWarning]:
+    """Yield what looks wrong with a match.
 
     The codes are `slides`, `several-minima`, `not-converged`, `few-inliers`, `far-points` and
     `poor-fit`.
     """
-    slide = measures.slide
+    slide = match.slide
     if slide.distance_mm > SLIDE_LIMIT_MM:
         message = (
             f"The match may slide: targets in the brain may be off by up to "
@@ -127,34 +105,34 @@ def find_match_warnings(
             "as nose, brows, temples and cheeks."
         )
         yield RegistrationWarning("slides", (), message)
-    if measures.rivals or measures.best_starts < LEAST_BEST_SHARE * measures.starts:
+    if match.rivals or match.best_starts < LEAST_BEST_SHARE * match.starts:
         message = (
-            f"Only {measures.best_starts} of {measures.starts} starts ended in this match; "
-            f"others ended up to {measures.spread_mm:.1f} mm away at the head's center: "
+            f"Only {match.best_starts} of {match.starts} starts ended in this match; "
+            f"others ended up to {match.spread_mm:.1f} mm away at the head's center: "
             "check the three landmarks, and trace more of the face."
         )
         yield RegistrationWarning("several-minima", (), message)
-    if not measures.converged:
+    if not match.converged:
         message = "The match had not settled when it was stopped."
         yield RegistrationWarning("not-converged", (), message)
-    off = np.flatnonzero(~is_inlier & (residuals_mm > FAR_POINT_MM))
+    off = np.flatnonzero(~match.is_inlier & (match.residuals_mm > FAR_POINT_MM))
     names = tuple(str(row + 1) for row in off)
-    if measures.inlier_share < LEAST_INLIER_SHARE:
+    if match.inlier_share < LEAST_INLIER_SHARE:
         message = (
-            f"Only {measures.inlier_share:.0%} of the points lie on the surface; keep the tip "
+            f"Only {match.inlier_share:.0%} of the points lie on the surface; keep the tip "
             "on the skin while you draw."
         )
         yield RegistrationWarning("few-inliers", names, message)
     elif len(off):
         those = f"{len(off)} points lie" if len(off) > 1 else f"Point {names[0]} lies"
         message = (
-            f"{those} up to {residuals_mm[off].max():.1f} mm off the surface and "
+            f"{those} up to {match.residuals_mm[off].max():.1f} mm off the surface and "
             f"{'do' if len(off) > 1 else 'does'} not count."
         )
         yield RegistrationWarning("far-points", names, message)
-    if measures.rms_mm > POOR_RMS_MM:
+    if match.rms_mm > POOR_RMS_MM:
         message = (
-            f"The trace does not fit this head (residual {measures.rms_mm:.1f} mm); check that "
+            f"The trace does not fit this head (residual {match.rms_mm:.1f} mm); check that "
             "head and images are of the same person and that the landmarks were not exchanged."
         )
         yield RegistrationWarning("poor-fit", (), message)

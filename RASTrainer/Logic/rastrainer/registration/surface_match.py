@@ -10,7 +10,7 @@ from numpy.random import default_rng
 from rastrainer import transforms
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.registration.surface_checks import (
-    MatchMeasures,
+    SurfaceSlide,
     check_start,
     check_surface,
     check_trace,
@@ -47,7 +47,7 @@ SAME_MINIMUM_MM = 0.5
 
 
 @dataclass(frozen=True, eq=False)
-class SurfaceMatch(MatchMeasures):
+class SurfaceMatch:
     """The fit of a trace to the surface of a head, and how far it can be trusted.
 
     Attributes:
@@ -58,7 +58,13 @@ class SurfaceMatch(MatchMeasures):
         residuals_mm: (n,) float, their lengths.
         normals: (n, 3) float, RAS, unit directions in which the residuals grow.
         is_inlier: (n,) bool, whether a point counts; the others are too far off.
-        warnings: What looks wrong, to be shown before the match is accepted.
+        rms_mm: Root mean square of the inliers' residuals. It does not predict the target error.
+        converged: Whether the best fit has stopped moving.
+        best_starts: How many of the starts ended in the best minimum.
+        spread_mm: Largest distance at the head's center between the best and where another start
+            ended.
+        rivals: Number of minima elsewhere whose cost is at most twice the best minimum's.
+        slide: The direction in which the trace determines the head least.
     """
 
     matrix: np.ndarray
@@ -69,7 +75,19 @@ class SurfaceMatch(MatchMeasures):
     normals: np.ndarray
     is_inlier: np.ndarray
     iterations: int
-    warnings: tuple[RegistrationWarning, ...]
+    rms_mm: float
+    inlier_share: float
+    converged: bool
+    starts: int
+    best_starts: int
+    spread_mm: float
+    rivals: int
+    slide: SurfaceSlide
+
+    @property
+    def warnings(self) -> tuple[RegistrationWarning, ...]:
+        """What looks wrong, to be shown before the match is accepted."""
+        return tuple(find_match_warnings(self))
 
 
 def match_surface(
@@ -229,20 +247,9 @@ def _match(
     score = costs(fit.distances_mm, gate)
     is_near = score <= RIVAL_COST * score[0] + 1e-9
     elsewhere = _apart(fit.matrices[0], fit.matrices, mesh) > OTHER_MINIMUM_MM
-    measures = MatchMeasures(
-        rms_mm=rms,
-        inlier_share=float(is_inlier.mean()),
-        converged=bool(fit.converged[0]),
-        starts=int(ended.sum()),
-        best_starts=int(ended[0]),
-        spread_mm=float(_apart(matrix, np.vstack([fit.matrices, hopeless]), mesh).max()),
-        rivals=int(np.count_nonzero(is_near & elsewhere)),
-        slide=slide_of(places[is_inlier], normals[is_inlier], rms, mesh),
-    )
     for values in (matrix, nearest.positions, nearest.distances, normals, is_inlier):
         values.flags.writeable = False
     return SurfaceMatch(
-        **vars(measures),
         matrix=matrix,
         trace_mm=trace,
         nearest_mm=nearest.positions,
@@ -251,7 +258,14 @@ def _match(
         normals=normals,
         is_inlier=is_inlier,
         iterations=int(fit.iterations[0]),
-        warnings=tuple(find_match_warnings(measures, nearest.distances, is_inlier)),
+        rms_mm=rms,
+        inlier_share=float(is_inlier.mean()),
+        converged=bool(fit.converged[0]),
+        starts=int(ended.sum()),
+        best_starts=int(ended[0]),
+        spread_mm=float(_apart(matrix, np.vstack([fit.matrices, hopeless]), mesh).max()),
+        rivals=int(np.count_nonzero(is_near & elsewhere)),
+        slide=slide_of(places[is_inlier], normals[is_inlier], rms, mesh),
     )
 
 

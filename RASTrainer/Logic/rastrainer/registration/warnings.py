@@ -120,7 +120,8 @@ def _faults_of_one(
             "point well away from it or choose rigid."
         )
         yield RegistrationWarning("nearly-coplanar", labels, message)
-    twins = tuple(itertools.compress(labels, same_places(points).any(axis=1)))
+    same = same_places(points)
+    twins = tuple(label for label, row in zip(labels, same, strict=True) if row.any())
     if twins:
         message = (
             f"Points {_listed(twins)} of the {which} points are at the same place as another of "

@@ -130,10 +130,10 @@ class Remedy:
 
 def remedyOf(warning: RegistrationWarning, registration: Registration, choices: Choices) -> Remedy:
     """Return a warning of a rigid registration with what one click can do about it."""
+    order = None
     if warning.code == "order":
         order = find_order(registration.moving_mm, registration.fixed_mm)
-        if order is None:
-            return Remedy(warning, "", choices)
+    if order is not None:
         labels = registration.labels
         names = {labels[source]: labels[row] for row, source in enumerate(order)}
         changed = {old: new for old, new in names.items() if old != new}
