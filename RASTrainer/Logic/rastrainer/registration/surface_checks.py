@@ -142,7 +142,6 @@ LEAST_NOISE_MM, ALIKE_MM = 1.0, 20.0
 """Standard deviation of what all points within a cube of so many mm are off alike, as skin is
 pressed and drawn along. Residuals do not show it, and more points in one place do not reduce it."""
 TARGETS_ASIDE_MM = 30.0
-"""Distance of the places where a slide is measured from the head's middle, along each axis."""
 NORMAL_95 = 1.96
 _LOOSEST_MM = 100.0
 _DIRECTIONS = ("left or right", "forward or back", "up or down")
@@ -175,6 +174,20 @@ class SurfaceSlide:
         return _DIRECTIONS[int(np.abs(self.direction).argmax())]
 
 
+def places_around(target: np.ndarray) -> np.ndarray:
+    """Return a target (3,) and places 30 mm around it, (7, 3) float, RAS mm.
+
+    At the target alone, a head that turns about it would seem well known.
+    """
+    steps = TARGETS_ASIDE_MM * np.vstack([np.zeros(3), np.eye(3), -np.eye(3)])
+    return np.asarray(target, dtype=float) + steps
+
+
+def pose_rows(places: np.ndarray, normals: np.ndarray, center: np.ndarray) -> np.ndarray:
+    """Return what points reveal about a pose that turns about a center: J (n, 6)."""
+    return np.concatenate([normals, np.cross(places - center, normals)], axis=1)
+
+
 def slide_of(
     places: np.ndarray, normals: np.ndarray, rms_mm: float, mesh: HeadMesh
 ) -> SurfaceSlide:
@@ -190,16 +203,15 @@ def slide_of(
     """
     noise = max(rms_mm, LEAST_NOISE_MM)
     center = places.mean(axis=0)
-    rows = np.concatenate([normals, np.cross(places - center, normals)], axis=1)
+    rows = pose_rows(places, normals, center)
     half = mesh.size / 2.0
     prior = (noise / _LOOSEST_MM) ** 2 * np.diag([1.0] * 3 + [float(half.max()) ** 2] * 3)
     cubes = np.floor(places / ALIKE_MM).astype(int)
     _, which, counts = np.unique(cubes, axis=0, return_inverse=True, return_counts=True)
     weighted = rows * np.asarray(1.0 / counts[which.reshape(-1)])[:, None]
     covariance = noise**2 * np.linalg.inv(weighted.T @ rows + prior)
-    steps = TARGETS_ASIDE_MM * np.vstack([np.zeros(3), np.eye(3), -np.eye(3)])
     variance, direction = max(
-        (_largest_move(covariance, mesh.middle + step - center) for step in steps),
+        (_largest_move(covariance, place - center) for place in places_around(mesh.middle)),
         key=lambda one: one[0],
     )
     sides = {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.random import default_rng
@@ -52,10 +52,8 @@ class SurfaceMatch:
 
     Attributes:
         matrix: (4, 4) float, rigid, World→RAS.
-        trace_mm: (n, 3) float, World, all points that were given.
-        nearest_mm: (n, 3) float, RAS, the nearest points of the surface.
-        residual_vectors_mm: (n, 3) float, RAS, T(p) − nearest.
-        residuals_mm: (n,) float, their lengths.
+        places_mm: (n, 3) float, RAS, where it puts the points that were given.
+        residuals_mm: (n,) float, their distances to the surface.
         normals: (n, 3) float, RAS, unit directions in which the residuals grow.
         is_inlier: (n,) bool, whether a point counts; the others are too far off.
         rms_mm: Root mean square of the inliers' residuals. It does not predict the target error.
@@ -68,13 +66,10 @@ class SurfaceMatch:
     """
 
     matrix: np.ndarray
-    trace_mm: np.ndarray
-    nearest_mm: np.ndarray
-    residual_vectors_mm: np.ndarray
+    places_mm: np.ndarray
     residuals_mm: np.ndarray
     normals: np.ndarray
     is_inlier: np.ndarray
-    iterations: int
     rms_mm: float
     inlier_share: float
     converged: bool
@@ -201,7 +196,6 @@ def _refined(
         fine = fit_to_surface(points, mesh, best.matrices, TOLERANCE_MM, gate_mm=gate)
     else:
         fine = lowest_nearby(points, mesh, best, TOLERANCE_MM, gate, seed)
-    fine = replace(fine, iterations=best.iterations + fine.iterations)
     return fine.joined(fit.taken(np.arange(1, len(fit.matrices))))
 
 
@@ -239,25 +233,22 @@ def _match(
     matrix = fit.matrices[0]
     places = transforms.apply(matrix, trace)
     nearest = mesh.tree.nearest(places)
-    residuals = places - nearest.positions
-    normals = plane_normals(mesh, residuals, nearest.distances, nearest.triangles)
+    offsets = places - nearest.positions
+    normals = plane_normals(mesh, offsets, nearest.distances, nearest.triangles)
     is_inlier = nearest.distances <= gate
     rms = float(np.sqrt(np.mean(nearest.distances[is_inlier] ** 2)))
     # Rivals lie elsewhere and fit hardly worse than the best one.
     score = costs(fit.distances_mm, gate)
     is_near = score <= RIVAL_COST * score[0] + 1e-9
     elsewhere = _apart(fit.matrices[0], fit.matrices, mesh) > OTHER_MINIMUM_MM
-    for values in (matrix, nearest.positions, nearest.distances, normals, is_inlier):
+    for values in (matrix, places, nearest.distances, normals, is_inlier):
         values.flags.writeable = False
     return SurfaceMatch(
         matrix=matrix,
-        trace_mm=trace,
-        nearest_mm=nearest.positions,
-        residual_vectors_mm=residuals,
+        places_mm=places,
         residuals_mm=nearest.distances,
         normals=normals,
         is_inlier=is_inlier,
-        iterations=int(fit.iterations[0]),
         rms_mm=rms,
         inlier_share=float(is_inlier.mean()),
         converged=bool(fit.converged[0]),
