@@ -20,8 +20,8 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.head.trial_head import SkinShift
-from rastrainer.registration.surface_checks import SLIDE_LIMIT_MM, places_around
-from rastrainer.registration.surface_match import SurfaceMatch, match_surface
+from rastrainer.registration.surface_checks import SLIDE_LIMIT_MM, SurfaceMatch, places_around
+from rastrainer.registration.surface_match import match_surface
 from Testing.domain.registration.traces import coarse_start, head_pose, places, random_walk
 from Testing.error_rates.measured import Measured, share_text
 from Testing.error_rates.row_files import play_missing, stored_rows

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,9 +13,6 @@ from rastrainer.files.point_list import points_of
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.registration.fits import RIGID, extents, motions
 from rastrainer.registration.warnings import RegistrationWarning
-
-if TYPE_CHECKING:
-    from rastrainer.registration.surface_match import SurfaceMatch
 
 LEAST_POINTS, MOST_USED, MOST_POINTS = 30, 500, 100_000
 LEAST_EXTENT_MM = 10.0
@@ -30,6 +26,45 @@ LEAST_INLIER_SHARE = 0.8
 POOR_RMS_MM = 2.5
 LEAST_BEST_SHARE = 0.5
 FAR_POINT_MM = 3.0
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceMatch:
+    """The fit of a trace to the surface of a head, and how far it can be trusted.
+
+    Attributes:
+        matrix: (4, 4) float, rigid, World→RAS.
+        places_mm: (n, 3) float, RAS, where it puts the points that were given.
+        residuals_mm: (n,) float, their distances to the surface.
+        normals: (n, 3) float, RAS, unit directions in which the residuals grow.
+        is_inlier: (n,) bool, whether a point counts; the others are too far off.
+        rms_mm: Root mean square of the inliers' residuals. It does not predict the target error.
+        converged: Whether the best fit has stopped moving.
+        best_starts: How many of the starts ended in the best minimum.
+        spread_mm: Largest distance at the head's center between the best and where another start
+            ended.
+        rivals: Number of minima elsewhere whose cost is at most twice the best minimum's.
+        slide: The direction in which the trace determines the head least.
+    """
+
+    matrix: np.ndarray
+    places_mm: np.ndarray
+    residuals_mm: np.ndarray
+    normals: np.ndarray
+    is_inlier: np.ndarray
+    rms_mm: float
+    inlier_share: float
+    converged: bool
+    starts: int
+    best_starts: int
+    spread_mm: float
+    rivals: int
+    slide: SurfaceSlide
+
+    @property
+    def warnings(self) -> tuple[RegistrationWarning, ...]:
+        """What looks wrong, to be shown before the match is accepted."""
+        return tuple(find_match_warnings(self))
 
 
 def check_trace(trace_mm: object) -> np.ndarray:

@@ -15,12 +15,10 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import POINTS_AT_ONCE, HeadMesh, nearest_vertices
 from rastrainer.protocol import MAX_TRACE_POINTS
-from rastrainer.registration.fits import RIGID, motions
-from rastrainer.registration.surface_checks import places_around, pose_rows
-from rastrainer.registration.surface_match import SurfaceMatch
+from rastrainer.registration.fits import PARAMETERS, RIGID, motions
+from rastrainer.registration.surface_checks import SurfaceMatch, places_around, pose_rows
 from rastrainer.registration.target_error import COMMON_BIAS_SD_MM, TargetError, error_of_covariance
 
-PARAMETERS = 6
 UNKNOWN_MM, UNKNOWN_RAD = 10.0, 0.2
 """Standard deviations of a pose before the first point, on each axis: what landmarks leave open."""
 USUAL_NOISE_MM = 0.5
@@ -65,7 +63,7 @@ def knowledge_of(match: SurfaceMatch) -> PoseKnowledge:
             "The trace leaves the head free to turn or slide; trace places that face other ways."
         )
     squares = float(np.sum(match.residuals_mm[match.is_inlier] ** 2))
-    dof = len(places) - PARAMETERS
+    dof = len(places) - PARAMETERS[RIGID]
     return PoseKnowledge(center, curvature, float(np.sqrt(squares / dof)), dof)
 
 

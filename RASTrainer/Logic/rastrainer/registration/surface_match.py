@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.random import default_rng
 
 from rastrainer import transforms
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.registration.surface_checks import (
-    SurfaceSlide,
+    SurfaceMatch,
     check_start,
     check_surface,
     check_trace,
-    find_match_warnings,
     slide_of,
     thinned,
 )
@@ -26,7 +23,6 @@ from rastrainer.registration.surface_fit import (
     lowest_nearby,
     plane_normals,
 )
-from rastrainer.registration.warnings import RegistrationWarning
 
 STARTS = 8
 START_SD_MM, START_SD_DEG = 5.0, 5.0
@@ -44,45 +40,6 @@ OTHER_MINIMUM_MM = 2.0
 """A minimum this far away at the head's center, and at most twice as costly, is a rival."""
 SAME_MINIMUM_MM = 0.5
 """Fits that differ by less at the head's center and at the trace are one minimum."""
-
-
-@dataclass(frozen=True, eq=False)
-class SurfaceMatch:
-    """The fit of a trace to the surface of a head, and how far it can be trusted.
-
-    Attributes:
-        matrix: (4, 4) float, rigid, World→RAS.
-        places_mm: (n, 3) float, RAS, where it puts the points that were given.
-        residuals_mm: (n,) float, their distances to the surface.
-        normals: (n, 3) float, RAS, unit directions in which the residuals grow.
-        is_inlier: (n,) bool, whether a point counts; the others are too far off.
-        rms_mm: Root mean square of the inliers' residuals. It does not predict the target error.
-        converged: Whether the best fit has stopped moving.
-        best_starts: How many of the starts ended in the best minimum.
-        spread_mm: Largest distance at the head's center between the best and where another start
-            ended.
-        rivals: Number of minima elsewhere whose cost is at most twice the best minimum's.
-        slide: The direction in which the trace determines the head least.
-    """
-
-    matrix: np.ndarray
-    places_mm: np.ndarray
-    residuals_mm: np.ndarray
-    normals: np.ndarray
-    is_inlier: np.ndarray
-    rms_mm: float
-    inlier_share: float
-    converged: bool
-    starts: int
-    best_starts: int
-    spread_mm: float
-    rivals: int
-    slide: SurfaceSlide
-
-    @property
-    def warnings(self) -> tuple[RegistrationWarning, ...]:
-        """What looks wrong, to be shown before the match is accepted."""
-        return tuple(find_match_warnings(self))
 
 
 def match_surface(
