@@ -20,10 +20,9 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, outward_normals
 from rastrainer.head.trial_head import SkinShift
 from rastrainer.number_text import fixed
-from rastrainer.registration.surface_checks import SLIDE_LIMIT_MM
+from rastrainer.registration.surface_checks import SLIDE_LIMIT_MM, places_around
 from rastrainer.registration.surface_error import (
     TraceGuide,
-    guided_targets,
     knowledge_of,
     surface_target_error,
 )
@@ -101,7 +100,7 @@ def play(name: str, how: str, points: int, shift_mm: float, seed: int) -> Drawn:
         match = match_surface(trace, head, coarse_start(random, pose, 2.0, 2.0))
     except InputError:
         return Drawn(name, how, points, shift_mm, seed, 0.0, 0.0, 0, 0.0, 0.0, REFUSED)
-    targets = guided_targets(head.middle)
+    targets = places_around(head.middle)
     off = np.linalg.norm(transforms.apply(match.matrix @ pose, targets) - targets, axis=1)
     error = surface_target_error(knowledge_of(match), targets[0])
     return Drawn(

@@ -20,8 +20,8 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.head.trial_head import SkinShift
-from rastrainer.registration.surface_checks import SLIDE_LIMIT_MM, TARGETS_ASIDE_MM
-from rastrainer.registration.surface_match import SurfaceMatch, match_surface
+from rastrainer.registration.surface_checks import SLIDE_LIMIT_MM, SurfaceMatch, places_around
+from rastrainer.registration.surface_match import match_surface
 from Testing.domain.registration.traces import coarse_start, head_pose, places, random_walk
 from Testing.error_rates.measured import Measured, share_text
 from Testing.error_rates.row_files import play_missing, stored_rows
@@ -115,7 +115,7 @@ def matched(
     drawn = drawn + SkinShift(shift_mm, seed).moved(skin, head)
     trace = transforms.apply(pose, drawn)
     match = match_surface(trace, head, coarse_start(random, pose, 2.0, 2.0), starts=1)
-    targets = head.middle + TARGETS_ASIDE_MM * np.vstack([np.zeros(3), np.eye(3), -np.eye(3)])
+    targets = places_around(head.middle)
     off = transforms.apply(match.matrix @ pose, targets) - targets
     return match, float(np.linalg.norm(off, axis=1).max())
 

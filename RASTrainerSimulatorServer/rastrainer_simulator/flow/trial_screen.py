@@ -25,7 +25,7 @@ from rastrainer.protocol import (
     StepKind,
 )
 from rastrainer.registration.fits import RIGID
-from rastrainer.registration.surface_match import SurfaceMatch
+from rastrainer.registration.surface_checks import SurfaceMatch
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study_messages import StudyStep
 from rastrainer.transforms import MM_PER_M

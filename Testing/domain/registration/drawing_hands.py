@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from rastrainer.head.mesh import HeadMesh
+from rastrainer.registration.surface_checks import places_around
 from rastrainer.registration.surface_error import (
     DAB,
     PoseKnowledge,
     TraceGuide,
-    guided_targets,
     knowledge_so_far,
 )
 
@@ -82,7 +82,7 @@ def expected_after(head: HeadMesh, places: np.ndarray) -> float:
     """Return the expected TRE after points on the skin (n, 3), RMS over the guided targets."""
     rows = np.argmin(np.linalg.norm(head.vertices - places[:, None], axis=2), axis=1)
     knowledge = knowledge_so_far(places, head.vertex_normals[rows], head)
-    return float(np.sqrt(np.mean(expected_mm(knowledge, guided_targets(TARGET)) ** 2)))
+    return float(np.sqrt(np.mean(expected_mm(knowledge, places_around(TARGET)) ** 2)))
 
 
 def _along_skin(head: HeadMesh, at: np.ndarray, heading: np.ndarray) -> np.ndarray:

@@ -57,8 +57,9 @@ def test_with_noise_the_residual_is_the_noise_and_the_error_small(head, face):
     assert 0.4 < match.rms_mm < 0.6
     assert error_at_center(match.matrix, pose, head) < 0.5
     placed = transforms.apply(match.matrix, trace)
-    assert np.allclose(placed - match.nearest_mm, match.residual_vectors_mm)
-    assert np.allclose(np.linalg.norm(match.residual_vectors_mm, axis=1), match.residuals_mm)
+    assert np.allclose(placed, match.places_mm)
+    feet = placed - match.residuals_mm[:, None] * match.normals
+    assert np.allclose(head.skin.tree.nearest(feet).distances, 0.0, atol=1e-6)
     assert np.allclose(np.linalg.norm(match.normals, axis=1), 1.0)
 
 

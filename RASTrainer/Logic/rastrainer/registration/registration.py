@@ -131,7 +131,7 @@ def register(
         fre_mm=float(np.sqrt(np.mean(residuals**2))),
         residual_vectors_mm=residual_vectors,
         residuals_mm=residuals,
-        warnings=find_warnings(moving, fixed, kind, labels),
+        warnings=tuple(find_warnings(moving, fixed, kind, labels)),
         weights=weights,
     )
 

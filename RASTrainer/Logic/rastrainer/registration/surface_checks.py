@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,11 +28,16 @@ LEAST_BEST_SHARE = 0.5
 FAR_POINT_MM = 3.0
 
 
-@dataclass(frozen=True)
-class MatchMeasures:
-    """How good a match is.
+@dataclass(frozen=True, eq=False)
+class SurfaceMatch:
+    """The fit of a trace to the surface of a head, and how far it can be trusted.
 
     Attributes:
+        matrix: (4, 4) float, rigid, World→RAS.
+        places_mm: (n, 3) float, RAS, where it puts the points that were given.
+        residuals_mm: (n,) float, their distances to the surface.
+        normals: (n, 3) float, RAS, unit directions in which the residuals grow.
+        is_inlier: (n,) bool, whether a point counts; the others are too far off.
         rms_mm: Root mean square of the inliers' residuals. It does not predict the target error.
         converged: Whether the best fit has stopped moving.
         best_starts: How many of the starts ended in the best minimum.
@@ -41,6 +47,11 @@ class MatchMeasures:
         slide: The direction in which the trace determines the head least.
     """
 
+    matrix: np.ndarray
+    places_mm: np.ndarray
+    residuals_mm: np.ndarray
+    normals: np.ndarray
+    is_inlier: np.ndarray
     rms_mm: float
     inlier_share: float
     converged: bool
@@ -49,6 +60,11 @@ class MatchMeasures:
     spread_mm: float
     rivals: int
     slide: SurfaceSlide
+
+    @property
+    def warnings(self) -> tuple[RegistrationWarning, ...]:
+        """What looks wrong, to be shown before the match is accepted."""
+        return tuple(find_match_warnings(self))
 
 
 def check_trace(trace_mm: object) -> np.ndarray:
@@ -109,16 +125,13 @@ def thinned(trace: np.ndarray, most: int = MOST_USED) -> np.ndarray:
     return trace[np.linspace(0, len(trace) - 1, most).round().astype(int)]
 
 
-def find_match_warnings(
-    measures: MatchMeasures, residuals_mm: np.ndarray, is_inlier: np.ndarray
-) -> tuple[RegistrationWarning, ...]:
-    """Return what looks wrong with a match of n points, by their residuals and which are inliers.
+def find_match_warnings(match: SurfaceMatch) -> Iterator[RegistrationWarning]:
+    """Yield what looks wrong with a match.
 
     The codes are `slides`, `several-minima`, `not-converged`, `few-inliers`, `far-points` and
     `poor-fit`.
     """
-    found = []
-    slide = measures.slide
+    slide = match.slide
     if slide.distance_mm > SLIDE_LIMIT_MM:
         message = (
             f"The match may slide: targets in the brain may be off by up to "
@@ -126,53 +139,44 @@ def find_match_warnings(
             "however small residual and interval are; trace places that face other ways, such "
             "as nose, brows, temples and cheeks."
         )
-        found.append(RegistrationWarning("slides", (), message))
-    if measures.rivals or measures.best_starts < LEAST_BEST_SHARE * measures.starts:
+        yield RegistrationWarning("slides", (), message)
+    if match.rivals or match.best_starts < LEAST_BEST_SHARE * match.starts:
         message = (
-            f"Only {measures.best_starts} of {measures.starts} starts ended in this match; "
-            f"others ended up to {measures.spread_mm:.1f} mm away at the head's center: "
+            f"Only {match.best_starts} of {match.starts} starts ended in this match; "
+            f"others ended up to {match.spread_mm:.1f} mm away at the head's center: "
             "check the three landmarks, and trace more of the face."
         )
-        found.append(RegistrationWarning("several-minima", (), message))
-    if not measures.converged:
+        yield RegistrationWarning("several-minima", (), message)
+    if not match.converged:
         message = "The match had not settled when it was stopped."
-        found.append(RegistrationWarning("not-converged", (), message))
-    return (*found, *_misfits(measures, residuals_mm, is_inlier))
-
-
-def _misfits(
-    measures: MatchMeasures, residuals_mm: np.ndarray, is_inlier: np.ndarray
-) -> list[RegistrationWarning]:
-    found = []
-    off = np.flatnonzero(~is_inlier & (residuals_mm > FAR_POINT_MM))
+        yield RegistrationWarning("not-converged", (), message)
+    off = np.flatnonzero(~match.is_inlier & (match.residuals_mm > FAR_POINT_MM))
     names = tuple(str(row + 1) for row in off)
-    if measures.inlier_share < LEAST_INLIER_SHARE:
+    if match.inlier_share < LEAST_INLIER_SHARE:
         message = (
-            f"Only {measures.inlier_share:.0%} of the points lie on the surface; keep the tip "
+            f"Only {match.inlier_share:.0%} of the points lie on the surface; keep the tip "
             "on the skin while you draw."
         )
-        found.append(RegistrationWarning("few-inliers", names, message))
+        yield RegistrationWarning("few-inliers", names, message)
     elif len(off):
         those = f"{len(off)} points lie" if len(off) > 1 else f"Point {names[0]} lies"
         message = (
-            f"{those} up to {residuals_mm[off].max():.1f} mm off the surface and "
+            f"{those} up to {match.residuals_mm[off].max():.1f} mm off the surface and "
             f"{'do' if len(off) > 1 else 'does'} not count."
         )
-        found.append(RegistrationWarning("far-points", names, message))
-    if measures.rms_mm > POOR_RMS_MM:
+        yield RegistrationWarning("far-points", names, message)
+    if match.rms_mm > POOR_RMS_MM:
         message = (
-            f"The trace does not fit this head (residual {measures.rms_mm:.1f} mm); check that "
+            f"The trace does not fit this head (residual {match.rms_mm:.1f} mm); check that "
             "head and images are of the same person and that the landmarks were not exchanged."
         )
-        found.append(RegistrationWarning("poor-fit", (), message))
-    return found
+        yield RegistrationWarning("poor-fit", (), message)
 
 
 LEAST_NOISE_MM, ALIKE_MM = 1.0, 20.0
 """Standard deviation of what all points within a cube of so many mm are off alike, as skin is
 pressed and drawn along. Residuals do not show it, and more points in one place do not reduce it."""
 TARGETS_ASIDE_MM = 30.0
-"""Distance of the places where a slide is measured from the head's middle, along each axis."""
 NORMAL_95 = 1.96
 _LOOSEST_MM = 100.0
 _DIRECTIONS = ("left or right", "forward or back", "up or down")
@@ -205,6 +209,20 @@ class SurfaceSlide:
         return _DIRECTIONS[int(np.abs(self.direction).argmax())]
 
 
+def places_around(target: np.ndarray) -> np.ndarray:
+    """Return a target (3,) and places 30 mm around it, (7, 3) float, RAS mm.
+
+    At the target alone, a head that turns about it would seem well known.
+    """
+    steps = TARGETS_ASIDE_MM * np.vstack([np.zeros(3), np.eye(3), -np.eye(3)])
+    return np.asarray(target, dtype=float) + steps
+
+
+def pose_rows(places: np.ndarray, normals: np.ndarray, center: np.ndarray) -> np.ndarray:
+    """Return what points reveal about a pose that turns about a center: J (n, 6)."""
+    return np.concatenate([normals, np.cross(places - center, normals)], axis=1)
+
+
 def slide_of(
     places: np.ndarray, normals: np.ndarray, rms_mm: float, mesh: HeadMesh
 ) -> SurfaceSlide:
@@ -220,16 +238,15 @@ def slide_of(
     """
     noise = max(rms_mm, LEAST_NOISE_MM)
     center = places.mean(axis=0)
-    rows = np.concatenate([normals, np.cross(places - center, normals)], axis=1)
+    rows = pose_rows(places, normals, center)
     half = mesh.size / 2.0
     prior = (noise / _LOOSEST_MM) ** 2 * np.diag([1.0] * 3 + [float(half.max()) ** 2] * 3)
     cubes = np.floor(places / ALIKE_MM).astype(int)
     _, which, counts = np.unique(cubes, axis=0, return_inverse=True, return_counts=True)
     weighted = rows * np.asarray(1.0 / counts[which.reshape(-1)])[:, None]
     covariance = noise**2 * np.linalg.inv(weighted.T @ rows + prior)
-    steps = TARGETS_ASIDE_MM * np.vstack([np.zeros(3), np.eye(3), -np.eye(3)])
     variance, direction = max(
-        (_largest_move(covariance, mesh.middle + step - center) for step in steps),
+        (_largest_move(covariance, place - center) for place in places_around(mesh.middle)),
         key=lambda one: one[0],
     )
     sides = {

@@ -15,11 +15,10 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import POINTS_AT_ONCE, HeadMesh, nearest_vertices
 from rastrainer.protocol import MAX_TRACE_POINTS
-from rastrainer.registration.fits import RIGID, motions
-from rastrainer.registration.surface_match import SurfaceMatch
+from rastrainer.registration.fits import PARAMETERS, RIGID, motions
+from rastrainer.registration.surface_checks import SurfaceMatch, places_around, pose_rows
 from rastrainer.registration.target_error import COMMON_BIAS_SD_MM, TargetError, error_of_covariance
 
-PARAMETERS = 6
 UNKNOWN_MM, UNKNOWN_RAD = 10.0, 0.2
 """Standard deviations of a pose before the first point, on each axis: what landmarks leave open."""
 USUAL_NOISE_MM = 0.5
@@ -55,16 +54,16 @@ def knowledge_of(match: SurfaceMatch) -> PoseKnowledge:
 
     σ² is Σ r²/(n − 6): the fit takes six parameters from the residuals.
     """
-    places = (match.nearest_mm + match.residual_vectors_mm)[match.is_inlier]
-    count = len(places)
-    rows, center = _rows(places, match.normals[match.is_inlier])
+    places = match.places_mm[match.is_inlier]
+    center = places.mean(axis=0)
+    rows = pose_rows(places, match.normals[match.is_inlier], center)
     curvature = rows.T @ rows
     if np.linalg.cond(curvature) > 1e12:
         raise InputError(
             "The trace leaves the head free to turn or slide; trace places that face other ways."
         )
     squares = float(np.sum(match.residuals_mm[match.is_inlier] ** 2))
-    dof = count - PARAMETERS
+    dof = len(places) - PARAMETERS[RIGID]
     return PoseKnowledge(center, curvature, float(np.sqrt(squares / dof)), dof)
 
 
@@ -77,9 +76,9 @@ def knowledge_so_far(
     RAS mm, are where the points lie by the pose known so far, with the unit normals (n, 3) of the
     skin there; σ is assumed.
     """
-    rows, center = _rows(np.reshape(places, (-1, 3)), np.reshape(normals, (-1, 3)), mesh.middle)
+    rows = pose_rows(np.reshape(places, (-1, 3)), np.reshape(normals, (-1, 3)), mesh.middle)
     known = np.diag([(noise_mm / UNKNOWN_MM) ** 2] * 3 + [(noise_mm / UNKNOWN_RAD) ** 2] * 3)
-    return PoseKnowledge(center, rows.T @ rows + known, noise_mm, np.inf)
+    return PoseKnowledge(mesh.middle, rows.T @ rows + known, noise_mm, np.inf)
 
 
 def surface_target_error(
@@ -131,20 +130,12 @@ def next_best_place(
     moved = motions(RIGID, np.asarray(targets, dtype=float) - knowledge.center)
     weight = np.einsum("tij,tik->jk", moved, moved) / len(moved)
     inverse = np.linalg.inv(knowledge.curvature)
-    directions, _ = _rows(mesh.vertices[rows], mesh.vertex_normals[rows], knowledge.center)
+    directions = pose_rows(mesh.vertices[rows], mesh.vertex_normals[rows], knowledge.center)
     turned = directions @ inverse
     gain = DAB * np.einsum("vi,ij,vj->v", turned, weight, turned)
     gain /= 1.0 + DAB * np.einsum("vi,vi->v", turned, directions)
     best = int(rows[gain.argmax()])
     return NextPlace(best, mesh.vertices[best], mesh.vertex_normals[best])
-
-
-def _rows(
-    places: np.ndarray, normals: np.ndarray, center: np.ndarray | None = None
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return what each point reveals about the pose, J (n, 6), and the center of rotations (3,)."""
-    middle = places.mean(axis=0) if center is None else center
-    return np.concatenate([normals, np.cross(places - middle, normals)], axis=1), middle
 
 
 COVERED_MM = 10.0
@@ -165,17 +156,6 @@ BEHIND_MM = 30.0
 """Places this much nearer to the eye hide a place next to them."""
 _ROUNDS = 4
 _BESIDE_MM = 6.0
-_AROUND_TARGET_MM = 30.0
-
-
-def guided_targets(target: np.ndarray) -> np.ndarray:
-    """Return where the expected error is to become small, (7, 3) float, RAS mm.
-
-    These are the target (3,) and places 30 mm around it: at the target alone, a head that turns
-    about it would seem well known.
-    """
-    around = _AROUND_TARGET_MM * np.concatenate([np.zeros((1, 3)), np.eye(3), -np.eye(3)])
-    return np.asarray(target, dtype=float) + around
 
 
 def guided_vertices(mesh: HeadMesh, eye: np.ndarray) -> np.ndarray:
@@ -233,7 +213,7 @@ class TraceGuide:
     def __init__(self, mesh: HeadMesh, target: np.ndarray, eye: np.ndarray) -> None:
         """Prepare guidance on a head, for a target and an eye, (3,) float, RAS mm."""
         self._mesh = mesh
-        self._targets = guided_targets(target)
+        self._targets = places_around(target)
         self._vertices = guided_vertices(mesh, eye)
         self._places = np.zeros((0, 3))
         self._rows = np.zeros(0, dtype=int)

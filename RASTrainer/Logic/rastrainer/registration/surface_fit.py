@@ -42,7 +42,6 @@ class SurfaceFit:
         nearest_mm: (s, n, 3) float, RAS, the nearest points.
         triangles: (s, n) int, which they lie on.
         converged: (s,) bool.
-        iterations: (s,) int.
     """
 
     matrices: np.ndarray
@@ -50,7 +49,6 @@ class SurfaceFit:
     nearest_mm: np.ndarray
     triangles: np.ndarray
     converged: np.ndarray
-    iterations: np.ndarray
 
     def taken(self, rows: np.ndarray) -> SurfaceFit:
         """Return the fit of some of the starts."""
@@ -221,14 +219,13 @@ def fit_to_surface(
         gate_mm: Up to which distance points count; infinite, all count; None: by their spread.
         around: (4, 4) float, a matrix near all starts; the surface is searched there once for all.
     """
-    size, count = len(starts), len(points)
+    count = len(points)
     followed = _followed(points, mesh, starts, around)
     now = _placed(starts, followed.nearest)
-    converged, iterations = np.zeros(size, dtype=bool), np.zeros(size, dtype=int)
-    share = np.ones(size)
-    limit = np.full(size, np.inf if gate_mm is None else gate_mm)
-    last = np.full(size, np.inf if around is None else 0.0)
-    active = np.arange(size)
+    share = np.ones(len(starts))
+    limit = np.full(len(starts), np.inf if gate_mm is None else gate_mm)
+    last = np.full(len(starts), np.inf if around is None else 0.0)
+    active = np.arange(len(starts))
     for number in range(max_iterations):
         here = now.taken(active)
         if gate_mm is None:
@@ -241,7 +238,6 @@ def fit_to_surface(
         # triangles would have to be kept than are found anew.
         slack = np.where(longest < FOLLOWED_MM, longest, 0.0)
         next_ = _placed(moved, followed.move(places.reshape(-1, 3), np.repeat(slack, count)))
-        iterations[active] += 1
         last[active] = longest
         before, after = costs(here.distances_mm, gate), costs(next_.distances_mm, gate)
         better = after <= before
@@ -250,16 +246,14 @@ def fit_to_surface(
         share[active] = _next_share(share[active], before, after, slope * share[active])
         for name in ("matrices", "distances_mm", "nearest_mm", "triangles"):
             getattr(now, name)[active[better]] = getattr(next_, name)[better]
-        converged[active[done]] = True
+        now.converged[active[done]] = True
         active = active[~done]
         if not len(active):
             break
         if done.any():
             rows = np.arange(len(done) * count).reshape(-1, count)
             followed.keep(rows[~done].ravel())
-    return SurfaceFit(
-        now.matrices, now.distances_mm, now.nearest_mm, now.triangles, converged, iterations
-    )
+    return now
 
 
 def _followed(
@@ -284,7 +278,6 @@ def _placed(matrices: np.ndarray, nearest: NearestPoints) -> SurfaceFit:
         nearest.positions.reshape(size, -1, 3),
         nearest.triangles.reshape(size, -1),
         np.zeros(size, dtype=bool),
-        np.zeros(size, dtype=int),
     )
 
 

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
 import numpy as np
 from numpy.random import default_rng
 
 from rastrainer import transforms
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.registration.surface_checks import (
-    MatchMeasures,
+    SurfaceMatch,
     check_start,
     check_surface,
     check_trace,
-    find_match_warnings,
     slide_of,
     thinned,
 )
@@ -26,7 +23,6 @@ from rastrainer.registration.surface_fit import (
     lowest_nearby,
     plane_normals,
 )
-from rastrainer.registration.warnings import RegistrationWarning
 
 STARTS = 8
 START_SD_MM, START_SD_DEG = 5.0, 5.0
@@ -44,32 +40,6 @@ OTHER_MINIMUM_MM = 2.0
 """A minimum this far away at the head's center, and at most twice as costly, is a rival."""
 SAME_MINIMUM_MM = 0.5
 """Fits that differ by less at the head's center and at the trace are one minimum."""
-
-
-@dataclass(frozen=True, eq=False)
-class SurfaceMatch(MatchMeasures):
-    """The fit of a trace to the surface of a head, and how far it can be trusted.
-
-    Attributes:
-        matrix: (4, 4) float, rigid, World→RAS.
-        trace_mm: (n, 3) float, World, all points that were given.
-        nearest_mm: (n, 3) float, RAS, the nearest points of the surface.
-        residual_vectors_mm: (n, 3) float, RAS, T(p) − nearest.
-        residuals_mm: (n,) float, their lengths.
-        normals: (n, 3) float, RAS, unit directions in which the residuals grow.
-        is_inlier: (n,) bool, whether a point counts; the others are too far off.
-        warnings: What looks wrong, to be shown before the match is accepted.
-    """
-
-    matrix: np.ndarray
-    trace_mm: np.ndarray
-    nearest_mm: np.ndarray
-    residual_vectors_mm: np.ndarray
-    residuals_mm: np.ndarray
-    normals: np.ndarray
-    is_inlier: np.ndarray
-    iterations: int
-    warnings: tuple[RegistrationWarning, ...]
 
 
 def match_surface(
@@ -183,7 +153,6 @@ def _refined(
         fine = fit_to_surface(points, mesh, best.matrices, TOLERANCE_MM, gate_mm=gate)
     else:
         fine = lowest_nearby(points, mesh, best, TOLERANCE_MM, gate, seed)
-    fine = replace(fine, iterations=best.iterations + fine.iterations)
     return fine.joined(fit.taken(np.arange(1, len(fit.matrices))))
 
 
@@ -221,15 +190,22 @@ def _match(
     matrix = fit.matrices[0]
     places = transforms.apply(matrix, trace)
     nearest = mesh.tree.nearest(places)
-    residuals = places - nearest.positions
-    normals = plane_normals(mesh, residuals, nearest.distances, nearest.triangles)
+    offsets = places - nearest.positions
+    normals = plane_normals(mesh, offsets, nearest.distances, nearest.triangles)
     is_inlier = nearest.distances <= gate
     rms = float(np.sqrt(np.mean(nearest.distances[is_inlier] ** 2)))
     # Rivals lie elsewhere and fit hardly worse than the best one.
     score = costs(fit.distances_mm, gate)
     is_near = score <= RIVAL_COST * score[0] + 1e-9
     elsewhere = _apart(fit.matrices[0], fit.matrices, mesh) > OTHER_MINIMUM_MM
-    measures = MatchMeasures(
+    for values in (matrix, places, nearest.distances, normals, is_inlier):
+        values.flags.writeable = False
+    return SurfaceMatch(
+        matrix=matrix,
+        places_mm=places,
+        residuals_mm=nearest.distances,
+        normals=normals,
+        is_inlier=is_inlier,
         rms_mm=rms,
         inlier_share=float(is_inlier.mean()),
         converged=bool(fit.converged[0]),
@@ -238,20 +214,6 @@ def _match(
         spread_mm=float(_apart(matrix, np.vstack([fit.matrices, hopeless]), mesh).max()),
         rivals=int(np.count_nonzero(is_near & elsewhere)),
         slide=slide_of(places[is_inlier], normals[is_inlier], rms, mesh),
-    )
-    for values in (matrix, nearest.positions, nearest.distances, normals, is_inlier):
-        values.flags.writeable = False
-    return SurfaceMatch(
-        **vars(measures),
-        matrix=matrix,
-        trace_mm=trace,
-        nearest_mm=nearest.positions,
-        residual_vectors_mm=residuals,
-        residuals_mm=nearest.distances,
-        normals=normals,
-        is_inlier=is_inlier,
-        iterations=int(fit.iterations[0]),
-        warnings=find_match_warnings(measures, nearest.distances, is_inlier),
     )
 
 

@@ -71,8 +71,8 @@ class TargetError:
     expected_mm: float
     independent_mm: float
     interval_mm: tuple[float, float]
-    confidence: float
-    common_bias_sd_mm: float
+    confidence: float = CONFIDENCE
+    common_bias_sd_mm: float = COMMON_BIAS_SD_MM
 
 
 def expected_tre(
@@ -97,7 +97,6 @@ def target_error(
     registration: Registration,
     target: np.ndarray,
     localization: LocalizationError | None = None,
-    confidence: float = CONFIDENCE,
     common_bias_sd_mm: float = COMMON_BIAS_SD_MM,
 ) -> TargetError:
     """Return the error to expect at a target, with an interval for it.
@@ -112,7 +111,6 @@ def target_error(
     Args:
         target: (3,) float, in the fixed space, in mm.
         localization: The FLE; the default is isotropic and explains the residuals.
-        confidence: Least probability that the error lies in the interval.
         common_bias_sd_mm: Standard deviation on each axis of an offset that all points share; 0
             for none, and both sides outside of the interval are equally likely then.
     """
@@ -124,7 +122,6 @@ def target_error(
         covariance,
         fle_mm=localization.fle_mm,
         degrees_of_freedom=localization.degrees_of_freedom,
-        confidence=confidence,
         common_bias_sd_mm=common_bias_sd_mm,
     )
 
@@ -135,7 +132,6 @@ def error_of_covariance(
     *,
     fle_mm: float,
     degrees_of_freedom: float,
-    confidence: float = CONFIDENCE,
     common_bias_sd_mm: float = COMMON_BIAS_SD_MM,
 ) -> TargetError:
     """Return the error at a target whose independent part has a covariance, as `target_error`.
@@ -148,7 +144,7 @@ def error_of_covariance(
     variances = np.linalg.eigvalsh(covariance).clip(min=0.0)
     independent = float(variances.sum())
     added, dof = common_bias_sd_mm**2, degrees_of_freedom
-    below = (1 - confidence) / 2
+    below = (1 - CONFIDENCE) / 2
     lowest = _quantile(below, variances, dof, 0.0)
     if added > 0.0:
         below = widened_distribution(variances, dof, added)(lowest)
@@ -160,9 +156,8 @@ def error_of_covariance(
         independent_mm=math.sqrt(independent),
         interval_mm=(
             math.sqrt(lowest),
-            math.sqrt(_quantile(below + confidence, variances, dof, added)),
+            math.sqrt(_quantile(below + CONFIDENCE, variances, dof, added)),
         ),
-        confidence=confidence,
         common_bias_sd_mm=common_bias_sd_mm,
     )
 

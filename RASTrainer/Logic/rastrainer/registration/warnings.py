@@ -8,6 +8,7 @@ number of explanations tried).
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -50,77 +51,90 @@ class RegistrationWarning:
 
 def find_warnings(
     moving: np.ndarray, fixed: np.ndarray, kind: str, labels: tuple[str, ...]
-) -> tuple[RegistrationWarning, ...]:
-    """Return warnings about points that passed `check_points`.
+) -> Iterator[RegistrationWarning]:
+    """Yield warnings about points that passed `check_points`.
 
     Except for flatness they are based on rigid fits, since a similarity fit hides a wrong scale and
     an affine one a mirror. Each detected fault is corrected before searching for the next.
     """
-    warnings: list[RegistrationWarning] = []
+    names = ", ".join(labels)
     for which, points in (("moving", moving), ("fixed", fixed)):
-        warnings += _flat(points, which, kind, labels)
-        warnings += _duplicates(points, which, labels)
+        yield from _faults_of_one(points, which, kind, labels)
     scale = find_scale(moving, fixed)
     if scale is not None:
         message = (
-            f"The fixed points ({', '.join(labels)}) are {scale:.4g} times as far apart as the "
+            f"The fixed points ({names}) are {scale:.4g} times as far apart as the "
             f"moving points; {_unit_advice(scale)}."
         )
-        warnings.append(RegistrationWarning("scale", labels, message))
+        yield RegistrationWarning("scale", labels, message)
         # The larger set is taken to be in mm, so that later sentences give true distances.
         moving, fixed = moving * max(scale, 1.0), fixed / min(scale, 1.0)
     if is_mirrored(moving, fixed):
         before, after = rigid_fre(moving, fixed), rigid_fre(mirrored(moving), fixed)
         message = (
-            f"The moving points ({', '.join(labels)}) are a mirror image of the fixed points "
+            f"The moving points ({names}) are a mirror image of the fixed points "
             f"(rigid FRE {before:.1f} mm, mirrored {after:.1f} mm); check the sign of each axis "
             "and the coordinate system."
         )
-        warnings.append(RegistrationWarning("mirrored", labels, message))
+        yield RegistrationWarning("mirrored", labels, message)
         moving = mirrored(moving)
     order = find_order(moving, fixed)
     if order is not None:
-        warnings.append(_order(moving, fixed, order, labels))
+        yield _order(moving, fixed, order, labels)
         moving = moving[order]
     bad = find_bad_touches(moving, fixed)
-    warnings += _outliers(moving, fixed, bad, labels)
-    warnings += _poor_fit(np.delete(moving, bad, axis=0), np.delete(fixed, bad, axis=0), labels)
-    return tuple(warnings)
+    good = np.delete(np.arange(len(moving)), bad)
+    before, after = rigid_fre(moving, fixed), rigid_fre(moving[good], fixed[good])
+    matrix = fit(moving[good], fixed[good], RIGID)
+    for i in bad:
+        distance = np.linalg.norm(transforms.apply(matrix, moving[i]) - fixed[i])
+        message = (
+            f"Point {labels[i]} lies {distance:.1f} mm from where the {len(good)} points that fit "
+            f"put it; touch it again or leave it out (rigid FRE {before:.1f} mm, without "
+            f"{_listed([labels[j] for j in bad])} {after:.1f} mm)."
+        )
+        yield RegistrationWarning("outlier", (labels[i],), message)
+    if is_poor_fit(moving[good], fixed[good]):
+        message = (
+            f"The points ({names}) do not match: the rigid FRE of {after:.1f} mm is more than a "
+            "fifth of their extent; check that both lists are of the same task and in the same "
+            "order."
+        )
+        yield RegistrationWarning("poor-fit", labels, message)
 
 
-def _flat(
+def _faults_of_one(
     points: np.ndarray, which: str, kind: str, labels: tuple[str, ...]
-) -> list[RegistrationWarning]:
+) -> Iterator[RegistrationWarning]:
+    these = f"The {which} points ({', '.join(labels)}) lie nearly"
     along, across, out_of_plane = extents(points)
     if across < NEARLY_FLAT * along:
         message = (
-            f"The {which} points ({', '.join(labels)}) lie nearly on one line, so the rotation "
-            "about it is uncertain; add a point well away from it."
+            f"{these} on one line, so the rotation about it is uncertain; add a point well away "
+            "from it."
         )
-        return [RegistrationWarning("nearly-collinear", labels, message)]
-    if kind == AFFINE and out_of_plane < NEARLY_FLAT * along:
+        yield RegistrationWarning("nearly-collinear", labels, message)
+    elif kind == AFFINE and out_of_plane < NEARLY_FLAT * along:
         message = (
-            f"The {which} points ({', '.join(labels)}) lie nearly in one plane, so the affine "
-            "registration is uncertain across it; add a point well away from it or choose rigid."
+            f"{these} in one plane, so the affine registration is uncertain across it; add a "
+            "point well away from it or choose rigid."
         )
-        return [RegistrationWarning("nearly-coplanar", labels, message)]
-    return []
+        yield RegistrationWarning("nearly-coplanar", labels, message)
+    same = same_places(points)
+    twins = tuple(label for label, row in zip(labels, same, strict=True) if row.any())
+    if twins:
+        message = (
+            f"Points {_listed(twins)} of the {which} points are at the same place as another of "
+            "them; touch or place each fiducial once."
+        )
+        yield RegistrationWarning("duplicate", twins, message)
 
 
-def _duplicates(
-    points: np.ndarray, which: str, labels: tuple[str, ...]
-) -> list[RegistrationWarning]:
+def same_places(points: np.ndarray) -> np.ndarray:
+    """Return which points, (n, n) bool, are at the same place as which others."""
     limit = SAME_PLACE * np.linalg.norm(extents(points))
     distances = np.linalg.norm(points[:, None] - points[None], axis=2)
-    near = (distances <= limit) & ~np.eye(len(points), dtype=bool)
-    twins = tuple(label for label, row in zip(labels, near, strict=True) if row.any())
-    if not twins:
-        return []
-    message = (
-        f"Points {_listed(twins)} of the {which} points are at the same place as another of them; "
-        "touch or place each fiducial once."
-    )
-    return [RegistrationWarning("duplicate", twins, message)]
+    return (distances <= limit) & ~np.eye(len(points), dtype=bool)
 
 
 def _unit_advice(scale: float) -> str:
@@ -153,41 +167,8 @@ def _order(
     return RegistrationWarning("order", moved, message)
 
 
-def _outliers(
-    moving: np.ndarray, fixed: np.ndarray, bad: tuple[int, ...], labels: tuple[str, ...]
-) -> list[RegistrationWarning]:
-    if not bad:
-        return []
-    good = np.delete(np.arange(len(moving)), bad)
-    matrix = fit(moving[good], fixed[good], RIGID)
-    before, after = rigid_fre(moving, fixed), rigid_fre(moving[good], fixed[good])
-    warnings = []
-    for i in bad:
-        distance = np.linalg.norm(transforms.apply(matrix, moving[i]) - fixed[i])
-        message = (
-            f"Point {labels[i]} lies {distance:.1f} mm from where the {len(good)} points that fit "
-            f"put it; touch it again or leave it out (rigid FRE {before:.1f} mm, without "
-            f"{_listed(tuple(labels[j] for j in bad))} {after:.1f} mm)."
-        )
-        warnings.append(RegistrationWarning("outlier", (labels[i],), message))
-    return warnings
-
-
-def _poor_fit(
-    moving: np.ndarray, fixed: np.ndarray, labels: tuple[str, ...]
-) -> list[RegistrationWarning]:
-    if not is_poor_fit(moving, fixed):
-        return []
-    message = (
-        f"The points ({', '.join(labels)}) do not match: the rigid FRE of "
-        f"{rigid_fre(moving, fixed):.1f} mm is more than a fifth of their extent; check that both "
-        "lists are of the same task and in the same order."
-    )
-    return [RegistrationWarning("poor-fit", labels, message)]
-
-
-def _listed(names: tuple[str, ...]) -> str:
-    return names[0] if len(names) == 1 else ", ".join(names[:-1]) + " and " + names[-1]
+def _listed(names: Sequence[str]) -> str:
+    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 
 FALSE_ALARM = 1e-5

@@ -34,8 +34,9 @@ from rastrainer.protocol import (
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.localization_error import error_along_surface, isotropic_error
 from rastrainer.registration.registration import Registration, register, register_all_kinds
+from rastrainer.registration.surface_checks import SurfaceMatch
 from rastrainer.registration.surface_error import TraceGuide, knowledge_of, surface_target_error
-from rastrainer.registration.surface_match import SurfaceMatch, match_surface
+from rastrainer.registration.surface_match import match_surface
 from rastrainer.registration.target_error import TargetError, target_error, true_errors
 from rastrainer.scenario.scenario import Scenario, task_by_method
 from rastrainer.trial.record import PlayedMethod, TracePoint, TrialRecord, trace_points

@@ -12,12 +12,7 @@ import vtk
 from rastrainer import transforms
 from rastrainer.registration.registration import Registration
 from rastrainer.slicer.polydata import vtkArray
-from rastrainer.slicer.scene.nodes import (
-    Role,
-    nodesOfClass,
-    setValues,
-    surfaceOf,
-)
+from rastrainer.slicer.scene.nodes import Role, nodesOfClass, setValues, surfaceOf
 
 COLOR_TABLE_ID = "vtkMRMLColorTableNodeFileViridis.txt"
 """One of the color tables that every Slicer has; readable without color vision, too."""
@@ -50,20 +45,20 @@ def _showColors(model: Any, name: str, ends: tuple[float, float], title: str, ra
         legend = slicer.vtkSlicerColorLogic.AddDefaultColorLegendDisplayNode(model)
         setValues(legend, Visibility2D=False, Size=SIZE, Position=PLACE, LabelFormat="%.2f")
     legend.SetTitleText(title)
-    legend.SetAttribute(RANK_ATTRIBUTE, str(rank))
-    _showHighest(model.GetScene())
+    _rank(legend, rank)
 
 
 def _hideLegend(node: Any) -> None:
     """Hide the legend of a node, if it has one; another requested one takes its place."""
     legend = slicer.vtkSlicerColorLogic.GetColorLegendDisplayNode(node)
     if legend is not None:
-        legend.SetAttribute(RANK_ATTRIBUTE, "0")
-        _showHighest(node.GetScene())
+        _rank(legend, 0)
 
 
-def _showHighest(scene: Any) -> None:
-    found = nodesOfClass(scene, CLASS_NAME)
+def _rank(changed: Any, rank: int) -> None:
+    """Give a legend its rank, and show the one of the highest rank."""
+    changed.SetAttribute(RANK_ATTRIBUTE, str(rank))
+    found = nodesOfClass(changed.GetScene(), CLASS_NAME)
     # A legend without a rank is not ours; one of ours may have outlived its model.
     ours = [legend for legend in found if legend.GetAttribute(RANK_ATTRIBUTE) is not None]
     ranks = {legend: int(legend.GetAttribute(RANK_ATTRIBUTE)) for legend in ours}

@@ -141,8 +141,19 @@ def showProcedureErrors(scene: Any, analysis: ProcedureAnalysis, lines: Sequence
     _showLines(scene, Role.PLANNED_LINE, {each.trajectory: each.planned for each in lines})
     _showLines(scene, Role.REGISTERED_LINE, {each.trajectory: each.shown for each in lines})
     _showLines(scene, Role.TRUE_LINE, {each.trajectory: each.placed for each in lines})
-    _showArrows(scene, analysis.trajectories, [line.planned for line in lines])
-    return _showTable(scene, analysis.trajectories)
+    each = analysis.trajectories
+    byRegistration, byHand = vtk.vtkAppendPolyData(), vtk.vtkAppendPolyData()
+    for errors, line in zip(each, lines, strict=True):
+        splits = errors.entry_point_error, errors.target_point_error
+        for start, split in zip(line.planned, splits, strict=True):
+            shift, rest = np.array(split.by_registration_ras), np.array(split.by_hand_ras)
+            byRegistration.AddInputData(arrowPolyData(start, shift, THICKNESS))
+            byHand.AddInputData(arrowPolyData(start + shift, rest, THICKNESS))
+    arrows = {Role.ERRORS_BY_REGISTRATION: byRegistration, Role.ERRORS_BY_HAND: byHand}
+    for kind, append in arrows.items():
+        append.Update()
+        kind.make(scene).SetAndObservePolyData(append.GetOutput())
+    return showTable(scene, Role.PROCEDURE_ERRORS, _columns(each))
 
 
 def _showLines(scene: Any, kind: NodeKind, lines: Mapping[str, Any]) -> None:
@@ -153,25 +164,7 @@ def _showLines(scene: Any, kind: NodeKind, lines: Mapping[str, Any]) -> None:
         setPoints(kind.add(scene, kind.name.format(name)), (name, ""), ends)
 
 
-def _showArrows(
-    scene: Any, each: Sequence[TrajectoryErrors], planned: Sequence[np.ndarray]
-) -> None:
-    byRegistration, byHand = vtk.vtkAppendPolyData(), vtk.vtkAppendPolyData()
-    for errors, ends in zip(each, planned, strict=True):
-        splits = errors.entry_point_error, errors.target_point_error
-        for start, split in zip(ends, splits, strict=True):
-            shift, rest = np.array(split.by_registration_ras), np.array(split.by_hand_ras)
-            byRegistration.AddInputData(arrowPolyData(start, shift, THICKNESS))
-            byHand.AddInputData(arrowPolyData(start + shift, rest, THICKNESS))
-    for kind, append in (
-        (Role.ERRORS_BY_REGISTRATION, byRegistration),
-        (Role.ERRORS_BY_HAND, byHand),
-    ):
-        append.Update()
-        kind.make(scene).SetAndObservePolyData(append.GetOutput())
-
-
-def _showTable(scene: Any, each: Sequence[TrajectoryErrors]) -> Any:
+def _columns(each: Sequence[TrajectoryErrors]) -> Columns:
     def parts(title: str, splits: Sequence[SplitError]) -> dict[str, list[float]]:
         return {
             f"{title} (mm)": [split.mm for split in splits],
@@ -179,7 +172,7 @@ def _showTable(scene: Any, each: Sequence[TrajectoryErrors]) -> Any:
             f"{title}, by hand or robot (mm)": [split.by_hand_mm for split in splits],
         }
 
-    columns: Columns = {
+    return {
         "trajectory": [errors.trajectory for errors in each],
         "aligned by": ["robot" if errors.self_aligned else "hand" for errors in each],
         **parts("entry point error", [errors.entry_point_error for errors in each]),
@@ -195,4 +188,3 @@ def _showTable(scene: Any, each: Sequence[TrajectoryErrors]) -> Any:
         "distance kept (mm)": [min(e.kept_mm.values(), default=None) for e in each],
         "alignments": [float(errors.alignments) for errors in each],
     }
-    return showTable(scene, Role.PROCEDURE_ERRORS, columns)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import compress
 from typing import Any
 
 import numpy as np
@@ -15,10 +16,9 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import pair
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, normal_at
-from rastrainer.registration.fits import extents
 from rastrainer.registration.localization_error import LocalizationError, error_along_surface
 from rastrainer.registration.registration import Registration
-from rastrainer.registration.warnings import SAME_PLACE, RegistrationWarning, find_order
+from rastrainer.registration.warnings import RegistrationWarning, find_order, same_places
 from rastrainer.slicer.scene.nodes import isUsed, labelsOf, surfaceOf, usedPoints, worldPoints
 from rastrainer.slicer.translation import _
 
@@ -130,34 +130,25 @@ class Remedy:
 
 def remedyOf(warning: RegistrationWarning, registration: Registration, choices: Choices) -> Remedy:
     """Return a warning of a rigid registration with what one click can do about it."""
+    order = None
     if warning.code == "order":
         order = find_order(registration.moving_mm, registration.fixed_mm)
-        if order is None:
-            return Remedy(warning, "", choices)
+    if order is not None:
         labels = registration.labels
         names = {labels[source]: labels[row] for row, source in enumerate(order)}
         changed = {old: new for old, new in names.items() if old != new}
         return Remedy(warning, _("Put in order"), choices.rename(changed))
     if warning.code not in ("outlier", "duplicate"):
         return Remedy(warning, "", choices)
-    # The first of duplicates may stay: one point at a place is no duplicate.
-    isOutlier = warning.code == "outlier"
-    leftOut = warning.points if isOutlier else _laterTwins(warning, registration)
+    leftOut = warning.points
+    if warning.code == "duplicate":
+        # The first may stay: one point at a place is no duplicate.
+        same = same_places(registration.moving_mm) | same_places(registration.fixed_mm)
+        rows = [registration.labels.index(label) for label in leftOut]
+        later = np.tril(same[np.ix_(rows, rows)]).any(axis=1)
+        leftOut = tuple(compress(leftOut, later))
     title = _("Leave out {labels}").format(labels=", ".join(leftOut))
     return Remedy(warning, title, choices.without(leftOut))
-
-
-def _laterTwins(warning: RegistrationWarning, registration: Registration) -> tuple[str, ...]:
-    """Return the labels of the points that lie where an earlier one lies."""
-    later: list[str] = []
-    for points in (registration.moving_mm, registration.fixed_mm):
-        limit = SAME_PLACE * np.linalg.norm(extents(points))
-        rows = [registration.labels.index(label) for label in warning.points]
-        for position, row in enumerate(rows):
-            gaps = np.linalg.norm(points[rows[:position]] - points[row], axis=1)
-            if (gaps <= limit).any() and registration.labels[row] not in later:
-                later.append(registration.labels[row])
-    return tuple(later)
 
 
 SAME_HEAD_MM = 3.0

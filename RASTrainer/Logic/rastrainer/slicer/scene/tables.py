@@ -94,24 +94,6 @@ SCORE_COLUMN = "score"
 TIME_COLUMN = "completion time (s)"
 
 
-def _showHistory(scene: Any, pseudonym: str, trials: Sequence[StoredTrial]) -> Any:
-    records = [trial.record for trial in trials]
-    rigid = [trial.registrations.get(RIGID) for trial in trials]
-    columns: Columns = {
-        TRIAL_COLUMN: range(1, len(trials) + 1),
-        "started (UTC)": [record.started_utc[:19] for record in records],
-        "task": [record.task for record in records],
-        "mode": [record.mode for record in records],
-        TIME_COLUMN: [record.completion_time_s for record in records],
-        "FRE (mm)": [fit.fre_mm if fit else None for fit in rigid],
-        EXPECTED: [fit.expected_tre_mm if fit else None for fit in rigid],
-        TRUE: [trial.true_tre_mm for trial in trials],
-        SCORE_COLUMN: [trial.score.score if trial.score else None for trial in trials],
-        "method": [record.method.value for record in records],
-    }
-    return showTable(scene, Role.HISTORY, columns, f"History of {pseudonym}", FEWEST_ROWS)
-
-
 SERIES = slicer.vtkMRMLPlotSeriesNode
 INSIDE, OUTSIDE = "true TRE, inside (mm)", "true TRE, outside (mm)"
 ROOM = 1.5
@@ -166,14 +148,27 @@ def _showChart(
 
 def showLearningCurve(scene: Any, pseudonym: str, trials: Sequence[StoredTrial]) -> Any:
     """Plot score and time over the trials in a `vtkMRMLPlotChartNode` and return it."""
-    table = _showHistory(scene, pseudonym, trials)
+    records = [trial.record for trial in trials]
+    rigid = [trial.registrations.get(RIGID) for trial in trials]
+    columns: Columns = {
+        TRIAL_COLUMN: range(1, len(trials) + 1),
+        "started (UTC)": [record.started_utc[:19] for record in records],
+        "task": [record.task for record in records],
+        "mode": [record.mode for record in records],
+        TIME_COLUMN: [record.completion_time_s for record in records],
+        "FRE (mm)": [fit.fre_mm if fit else None for fit in rigid],
+        EXPECTED: [fit.expected_tre_mm if fit else None for fit in rigid],
+        TRUE: [trial.true_tre_mm for trial in trials],
+        SCORE_COLUMN: [trial.score.score if trial.score else None for trial in trials],
+        "method": [record.method.value for record in records],
+    }
+    table = showTable(scene, Role.HISTORY, columns, f"History of {pseudonym}", FEWEST_ROWS)
     title = f"Learning curve of {pseudonym}"
     chart = Role.LEARNING_CURVE.make(scene, title)
     methods = sorted({trial.record.method.value for trial in trials if trial.score})
     if len(methods) > 1:
         title += f" (scores by {' and '.join(methods)} cannot be compared)"
-    times = [trial.record.completion_time_s for trial in trials]
-    ends = max(FEWEST_SHOWN, len(trials) + 1.0), 1.05 * max((BEST_SCORE, *times))
+    ends = max(FEWEST_SHOWN, len(trials) + 1.0), 1.05 * max((BEST_SCORE, *columns[TIME_COLUMN]))
     return _showChart(chart, title, ends, dict.fromkeys(_CURVES, table))
 
 
