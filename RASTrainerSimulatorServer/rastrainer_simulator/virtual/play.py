@@ -19,6 +19,7 @@ from rastrainer.journal.journal_file import file_stamp
 from rastrainer.procedure.record import ProcedureRecord, UsedRegistration
 from rastrainer.protocol import Mode, Phase, Proximity
 from rastrainer.registration.fits import RIGID
+from rastrainer.registration.target_error import true_errors
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
@@ -36,7 +37,6 @@ from rastrainer_simulator.state import (
     SimulationState,
     StepResult,
 )
-from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.virtual.population import TrialJob
 from rastrainer_simulator.virtual.scripted_trainee import (
     LONGEST_TRIAL_S,
@@ -173,10 +173,8 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
     scenario = simulation.setup.scenario
     head_to_world = scenario.perturbed_head_to_world(job.seed)
     analysis = analyze_trial(record, scenario)
-    where = Truth(head_to_world, scenario.target.position_ras, {})
-    truth = RevealedTruth(
-        tuple(head_to_world.ravel().tolist()), where.target_error_mm(analysis.rigid.matrix)
-    )
+    errors = true_errors(analysis.rigid.matrix, head_to_world, scenario.target.position_ras)
+    truth = RevealedTruth(tuple(head_to_world.ravel().tolist()), float(np.linalg.norm(errors)))
     if job.procedure:
         done = _procedure(job, analysis, scenario, head_to_world)
         analysis = replace(analysis, record=replace(record, procedure=done))
