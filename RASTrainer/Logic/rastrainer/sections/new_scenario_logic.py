@@ -144,11 +144,9 @@ class ScenarioMaker:
         if options.isHandPlaced:
             lists, leftOut = handPlacedLists(self.scene, options.targets)
 
-        def make(report: Progress) -> tuple[HeadDraft, list[str]]:
+        def make(report: Progress) -> Any:
             kept = {"segment": segment, "hasVolume": options.hasVolume}
-            found = image, settings, options.hasSkull
-            made: tuple[HeadDraft, list[str]] = self.run(MAKE_DRAFT, report, *found, **kept)
-            return made
+            return self.run(MAKE_DRAFT, report, image, settings, options.hasSkull, **kept)
 
         with tempfile.TemporaryDirectory() as temporary:
             setUp = Path(temporary, "setup.json")

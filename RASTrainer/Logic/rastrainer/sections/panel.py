@@ -14,24 +14,20 @@ from rastrainer.widgets.controls import CancelableWork, chosenData
 from rastrainer.widgets.shown_errors import guardedAction
 
 
-class Panel:
+class Panel(Listening):
     """Wires the widgets of a section to the session, until it is closed."""
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
+        super().__init__()
         self._ui = ui
         self._session = session
-        self._listening: list[Listening] = []
 
     def close(self) -> None:
         """Cancel running work, and stop listening to the session."""
         for work in vars(self).values():
             if isinstance(work, CancelableWork):
                 work.cancel()
-        for listening in self._listening:
-            listening.close()
-
-    def listen(self, *pairs: tuple[Signal, Callable[..., Any]]) -> None:
-        self._listening.append(Listening(*pairs))
+        super().close()
 
     def showWhileOpen(self, section: Any, show: Callable[[], None], *signals: Signal) -> None:
         """Call `show` when a section is opened, and at signals while it is open."""

@@ -23,7 +23,6 @@ from rastrainer.widgets.controls import (
     chosenData,
     fillTable,
     numberOrDash,
-    replaceWidgets,
     setEnabled,
     setSilently,
     setText,
@@ -46,7 +45,8 @@ class RegistrationPanel(Panel):
         entries = [(title, kind) for kind, title in TITLES.items()]
         bindChosen(ui.kindComboBox, entries, session.settings, FIT)
         self._logic.kind = chosenData(ui.kindComboBox)
-        ui.kindComboBox.connect("activated(int)", self._chooseKind)
+        choose = self._logic.chooseKind
+        ui.kindComboBox.connect("activated(int)", lambda _row: choose(chosenData(ui.kindComboBox)))
         for combo in (ui.movingComboBox, ui.fixedComboBox, ui.targetComboBox):
             combo.connect("currentNodeChanged(vtkMRMLNode*)", self._chooseLists)
         ui.residualsTable.connect("itemSelectionChanged()", self._chooseFiducial)
@@ -79,9 +79,6 @@ class RegistrationPanel(Panel):
         box, transform = self._ui.appliedCheckBox, self._logic.transform
         setSilently(box, "checked", transform is not None and isApplied(transform))
         box.enabled = transform is not None
-
-    def _chooseKind(self, _index: int) -> None:
-        self._logic.chooseKind(chosenData(self._ui.kindComboBox))
 
     def _chooseLists(self, _node: Any = None) -> None:
         ui = self._ui
@@ -140,12 +137,16 @@ class RegistrationPanel(Panel):
         """
         if remedies == self._remedies:
             return
-        self._remedies = remedies
-        widgets = []
+        self._remedies, layout = remedies, self._ui.warningsWidget.layout()
+        for widget in self._remedyWidgets:
+            layout.removeWidget(widget)
+            widget.setParent(None)
+            widget.deleteLater()
+        self._remedyWidgets = []
         for number, remedy in enumerate(remedies):
             text = textLabel("⚠ " + remedy.warning.message)
             text.setObjectName(f"warning{number}Text")
-            widgets.append(text)
+            self._remedyWidgets.append(text)
             if remedy.title:
                 button = qt.QPushButton(buttonTitle(remedy.title))
                 button.setObjectName(f"remedy{number}Button")
@@ -153,9 +154,9 @@ class RegistrationPanel(Panel):
                 button.toolTip = _("Apply this change and register again. Undo reverts it.")
                 change = partial(self._logic.change, remedy.choices)
                 connectClick(button, change, _("The pairs were not changed."))
-                widgets.append(button)
-        replaceWidgets(self._ui.warningsWidget.layout(), self._remedyWidgets, widgets)
-        self._remedyWidgets = widgets
+                self._remedyWidgets.append(button)
+        for widget in self._remedyWidgets:
+            layout.addWidget(widget)
 
 
 def _summary(comparison: Comparison) -> str:

@@ -130,9 +130,7 @@ class ReplayLogic:
             self._awaitedId = ""
             self.feedbackFound.emit()
         now, browser = moment(self.services.scene), findReplay(self.services.scene)
-        if self._until is None or now is None or browser is None:
-            return
-        if now[0] >= self._until:
+        if self._until is not None and now and browser and now[0] >= self._until:
             browser.SetPlaybackActive(False)
             self._until = None
 

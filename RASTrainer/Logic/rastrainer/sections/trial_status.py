@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
-from typing import Any
+from dataclasses import dataclass, field, fields, replace
+from typing import Any, TypeVar, cast
 
 from rastrainer.json_checks import is_number
 from rastrainer.protocol import (
@@ -14,6 +14,8 @@ from rastrainer.protocol import (
     Phase,
     RegistrationMethod,
 )
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -85,24 +87,21 @@ class TrialStatus:
 
 def readStatus(state: Mapping[str, Any]) -> TrialStatus:
     """Return what a message about the trial says; values of the wrong kind count as missing."""
-    procedure, trace = (_knownValues(kind, state.get(key)) for key, kind in _PARTS.items())
-    return TrialStatus(
-        **_knownValues(TrialStatus, state),
-        procedure=ProcedureStatus(**procedure),
-        trace=TraceStatus(**trace) if isinstance(state.get("trace"), Mapping) else None,
+    trace = state.get("trace")
+    return replace(
+        _known(TrialStatus, state),
+        procedure=_known(ProcedureStatus, state.get("procedure")),
+        trace=_known(TraceStatus, trace) if isinstance(trace, Mapping) else None,
     )
 
 
-_PARTS = {"procedure": ProcedureStatus, "trace": TraceStatus}
-
-
-def _knownValues(kind: type[Any], given: Any) -> dict[str, Any]:
+def _known(kind: type[T], given: Any) -> T:
     """Return the texts, truth values and numbers of a peer that have their field's kind."""
     values: dict[str, Any] = {}
-    for each in fields(kind):
+    for each in fields(cast(Any, kind)):
         value: Any = given.get(each.name) if isinstance(given, Mapping) else None
         if str(each.type).startswith(("int", "float")) and is_number(value):
             values[each.name] = int(value) if each.type == "int" else float(value)
         elif each.type in ("str", "bool") and type(value).__name__ == each.type:
             values[each.name] = value
-    return values
+    return kind(**values)

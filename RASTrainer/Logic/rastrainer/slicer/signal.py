@@ -33,7 +33,11 @@ class Listening:
     """Listeners that are connected to their signals until this is closed."""
 
     def __init__(self, *pairs: tuple[Signal, Callable[..., Any]]) -> None:
-        self._pairs = pairs
+        self._pairs: list[tuple[Signal, Callable[..., Any]]] = []
+        self.listen(*pairs)
+
+    def listen(self, *pairs: tuple[Signal, Callable[..., Any]]) -> None:
+        self._pairs += pairs
         for signal, listener in pairs:
             signal.connect(listener)
 

@@ -62,16 +62,6 @@ def showPercent(label: Any, step: str, share: float) -> None:
         setText(label, f"{step}: {100 * share:.0f} %")
 
 
-def replaceWidgets(layout: Any, former: Iterable[Any], new: Iterable[Any]) -> None:
-    """Show widgets in a box layout in place of others, which are deleted."""
-    for widget in former:
-        layout.removeWidget(widget)
-        widget.setParent(None)
-        widget.deleteLater()
-    for widget in new:
-        layout.addWidget(widget)
-
-
 def textLabel(text: str) -> Any:
     """Return a label for text by anyone, configured like the labels of the `.ui` files."""
     label = qt.QLabel(wrappable(shortened(text, LONGEST_TEXT)))
