@@ -393,7 +393,7 @@ class SteppedClock:
         self.now = max(self.now, moment)
 
 
-@pytest.mark.parametrize(("held_up_s", "late", "skipped"), [(0.06, 14, 0), (0.5, 1, 123)])
+@pytest.mark.parametrize(("held_up_s", "late", "skipped"), [(0.062, 15, 0), (0.502, 1, 124)])
 def test_after_a_delay_the_loop_catches_up_tick_by_tick_or_counts_the_lost_ticks(
     successor, tmp_path, monkeypatch, held_up_s, late, skipped
 ):
@@ -411,7 +411,7 @@ def test_after_a_delay_the_loop_catches_up_tick_by_tick_or_counts_the_lost_ticks
         loop.subscribe(hold_up_once)
         wait_for(held_up.is_set)
         Client(loop).ticks(100)
-        # 56 ms behind, then 52, …, 4; or 496 ms, of which less than a tick is caught up.
+        # 58 ms behind, then 54, …, 2; or 498 ms, of which half a tick is caught up.
         assert (loop.statistics.late, loop.statistics.skipped) == (late, skipped)
 
 
