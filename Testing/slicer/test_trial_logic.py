@@ -283,7 +283,7 @@ def test_a_trial_deleted_with_its_trainee_is_acknowledged_and_not_stored_again(l
     assert len(lab.scored) == 1
 
 
-def test_an_invalid_trial_is_refused_and_not_scored(lab, make_record):
+def test_an_invalid_trial_is_refused_and_not_even_registered(lab, make_record, reviews):
     lab.receive(make_record(TRIAL))
     lab.run_until(lambda: lab.scored)
     for changes, message in (
@@ -296,7 +296,8 @@ def test_an_invalid_trial_is_refused_and_not_scored(lab, make_record):
         lab.receive(make_record(**changes))
         lab.run_until(lambda message=message: lab.problems and message in lab.problems[-1])
     assert len(lab.all_sent("AcknowledgeTrial")) == 1
-    assert len(lab.scored) == 1
+    # The valid one: once to register it, once with its truth.
+    assert len(reviews) == 2
     assert [trainee.pseudonym for trainee in lab.in_study(Study.trainees)] == ["T-001"]
 
 

@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from rastrainer import json_checks
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import ReplayTrack, find_track, read_trajectory
 from rastrainer.json_records import record_from_json
@@ -50,6 +51,8 @@ def store_delivered(
         study.add_trial(record)
         if is_being_scored or study.is_revealed(trial_id):
             return record, None
+    # Refused here, too, as a registration takes seconds and a refused trial is offered again.
+    json_checks.accepted(json_checks.pseudonym, record.trainee, "A pseudonym")
     try:
         analysis = analyze(record)
     except InputError as error:
