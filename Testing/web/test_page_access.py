@@ -14,6 +14,7 @@ from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.presentation.screen import (
+    ItemKind,
     Menu,
     MenuItem,
     Screen,
@@ -258,6 +259,26 @@ def test_a_scrolled_list_shows_the_item_in_focus_and_its_help(told_page, served,
         said = told_page.evaluate("document.querySelector('#menu .help').textContent")
         assert said == with_units(item.help)
         assert told_page.evaluate(IN_FOCUS) == [True, True], item.name
+
+
+LATER = "new Promise((done) => setTimeout(() => setTimeout(done)))"
+"""What a focused field does in a moment is done."""
+
+
+def test_typing_goes_on_in_a_field_while_another_item_appears(told_page, served):
+    field = MenuItem("trainee", "Your ID", kind=ItemKind.TEXT, value="")
+    task = MenuItem("task-1", "Task 1")
+    menu = Menu("experiment", "Experiment", items=(field, task), focus="trainee")
+    show(told_page, served, Screen(menu=menu))
+    told_page.wait_for_selector("#menu input:focus")
+    told_page.evaluate(LATER)
+    told_page.keyboard.press("P")
+    items = (replace(field, value="P"), MenuItem("skip", "Skip"), task)
+    show(told_page, served, Screen(menu=replace(menu, items=items)))
+    told_page.wait_for_selector("#menu li[data-name=skip] + li[data-name=task-1]")
+    told_page.evaluate(LATER)
+    told_page.keyboard.press("7")
+    assert told_page.input_value("#menu input:focus") == "P7"
 
 
 TORN = """() => [...document.querySelectorAll("#menu :is(dt, dd)")].flatMap((value) => {

@@ -60,6 +60,10 @@ export class MenuRow {
     } else this.value.textContent = item.value;
   }
 
+  get kind(): MenuItem["kind"] {
+    return this.item.kind;
+  }
+
   /** Text for screen readers. */
   get spoken(): string {
     return `${this.item.label} ${this.item.value}`.trim();

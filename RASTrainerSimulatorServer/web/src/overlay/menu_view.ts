@@ -16,6 +16,7 @@ export class MenuView {
   private readonly rows = new Map<string, MenuRow>();
   private shown = "";
   private shownText = "";
+  private name = "";
   private shape = "";
   private focus = "";
 
@@ -40,7 +41,7 @@ export class MenuView {
   }
 
   private clear(): void {
-    this.shape = this.focus = "";
+    this.name = this.shape = this.focus = "";
     this.rows.clear();
     this.list.replaceChildren();
   }
@@ -71,11 +72,24 @@ export class MenuView {
     this.text.replaceChildren(...parts);
   }
 
+  /** Keep the rows that stay, in their places: a field that leaves the page for a moment loses its caret. */
   private build(menu: Menu, shape: string): void {
+    const before = menu.name === this.name ? new Map(this.rows) : new Map<string, MenuRow>();
     this.shape = shape;
+    this.name = menu.name;
     this.rows.clear();
-    for (const item of menu.items) this.rows.set(item.name, new MenuRow(item, this.help.id, this.connection));
-    this.list.replaceChildren(...[...this.rows.values()].map((row) => row.line));
+    for (const item of menu.items) {
+      const kept = before.get(item.name);
+      const row = kept?.kind === item.kind ? kept : new MenuRow(item, this.help.id, this.connection);
+      this.rows.set(item.name, row);
+    }
+    const lines = [...this.rows.values()].map((row) => row.line);
+    for (const line of [...this.list.children]) if (!lines.includes(line as HTMLLIElement)) line.remove();
+    let place = this.list.firstElementChild;
+    for (const line of lines) {
+      if (line === place) place = place.nextElementSibling;
+      else this.list.insertBefore(line, place);
+    }
   }
 
   /** Have the browser's focus go where the simulator's is, unless a person has taken it out of the menu. */
