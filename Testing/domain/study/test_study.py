@@ -37,6 +37,26 @@ def record(number=7, **changes):
     return make_record(trialId=str(uuid.UUID(int=number)), **changes)
 
 
+def test_outcomes_are_those_of_one_task_and_mode_with_the_latest_score(study, results):
+    study.add_trial(record(1), *results)
+    study.add_trial(record(2, trainee="b", completionTimeS=90.0))
+    study.add_trial(record(3, mode="hmd"))
+    study.add_trial(record(4, task="task-2"))
+    study.add_results(
+        record(1)["trialId"], truth=RevealedTruth(tuple(np.eye(4).ravel().tolist()), 0.5)
+    )
+    better = gentle_score(50.0, 0.2)
+    study.add_results(record(1)["trialId"], score=better)
+    # Of others, nothing is read but the numbers: there may be thousands.
+    study.database.change("UPDATE results SET result_json = '{}'")
+    first, second = study.outcomes("task-1", "desktop")
+    time_s = {"completion_time_s": first.values["completion_time_s"]}
+    assert first.trainee == "T-001"
+    assert first.values == {**time_s, "score": better.score, "true_tre_mm": 0.5}
+    assert (second.trainee, second.values) == ("b", {"completion_time_s": 90.0})
+    assert first.method == second.method == "fiducials"
+
+
 def test_a_trainee_is_a_pseudonym_with_a_consent(study):
     created = study.create_trainee("Blue Heron")
     assert (created.pseudonym, created.consent, created.archived) == ("Blue Heron", False, False)

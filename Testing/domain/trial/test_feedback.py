@@ -13,9 +13,10 @@ from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import CommonBias
 from rastrainer.trial.advice import Reason, advise, touch_findings
+from rastrainer.trial.scoring import score_trial
 from rastrainer.trial.trial_feedback import MAX_SHORT, progress_of, trial_feedback
 from rastrainer.trial.trial_row import TrialRow
-from Testing.domain.trial.trial_records import gentle_score
+from Testing.domain.trial.trial_records import REFERENCE, gentle_score
 from Testing.touched_head import head_points
 
 LABELS = tuple(str(i + 1) for i in range(15))
@@ -31,7 +32,7 @@ def registered(errors, seed=0):
     return register(FIXED + errors + noise, FIXED, labels=LABELS)
 
 
-EVEN = touch_findings(registered(np.zeros((15, 3))))
+EVEN = touch_findings(registered(np.zeros((15, 3))), NORMALS)
 
 
 def recording(hurried=(), shaking=()):
@@ -126,6 +127,22 @@ def test_a_bias_explained_by_scatter_is_not_reported():
     advice, *others = advise(score, EVEN, {}, CommonBias((0.8, 0.0, 0.0), p=0.01))
     assert (advice.sentence.key, tuple(others)) == ("common bias", by_chance)
     assert advice.gain == pytest.approx(gentle_score(110.0, 0.5).score - score.score)
+
+
+def test_the_score_sentences_state_the_common_bias_and_its_limit():
+    def accuracy(score):
+        feedback = trial_feedback(registered(np.zeros((15, 3))), NORMALS, {}, None)
+        return replace(feedback, score=score).score_sentences[2]
+
+    beside = accuracy(gentle_score(100.0, 2.5, common_bias_mm=1.75))
+    assert "2.50 mm true error in the brain and 1.75 mm common to all touches, worth" in beside
+    assert beside.endswith(
+        "; more than 1.5 mm of error and more than 1.5 mm common to all touches is not acceptable."
+    )
+    assert "0.00 mm common to all" in accuracy(gentle_score(100.0, 0.4))
+    without = replace(gentle_score(100.0, 0.4).measures, common_bias_mm=None)
+    traced = score_trial(without, REFERENCE, RegistrationMethod.SURFACE)
+    assert "common" not in accuracy(traced)
 
 
 @given(

@@ -10,6 +10,7 @@ import re
 import struct
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -161,17 +162,14 @@ def _columns(elements: list[_Element], body: bytes, order: str) -> dict[str, dic
 
 def _uneven_columns(element: _Element, take: Callable[[str, int], np.ndarray]) -> dict[str, Column]:
     columns: dict[str, Column] = {}
-    cells: list[list[np.ndarray]] = [[] for _ in element.properties]
+    cells: list[list[Any]] = [[] for _ in element.properties]
     for _ in range(element.rows):
         for each, values in zip(element.properties, cells, strict=True):
-            count = int(take(each.length, 1)[0]) if each.length else 1
-            values.append(take(each.type, count))
+            taken = take(each.type, int(take(each.length, 1)[0]) if each.length else 1)
+            values.append(taken if each.length else taken[0])
     for each, values in zip(element.properties, cells, strict=True):
-        if each.length:
-            is_even = len({len(value) for value in values}) == 1
-            columns[each.name] = np.array(values, each.type) if is_even else values
-        else:
-            columns[each.name] = np.array(values, each.type).reshape(-1)
+        is_even = not each.length or len({len(value) for value in values}) == 1
+        columns[each.name] = np.array(values, each.type) if is_even else values
     return columns
 
 

@@ -190,7 +190,9 @@ def _unusable(trajectory: ProcedureTrajectory, head: HeadMesh, skull: HeadMesh) 
         outside = nearest_on_mesh(head, target).distance
         return f"has its target {outside:.0f} mm outside of the head."
     off_skin = nearest_on_mesh(head, entry).distance
-    if fault := entry_fault(-off_skin if is_inside(head, entry) else off_skin):
+    if off_skin > ENTRY_OFF_SKIN_MM and is_inside(head, entry):
+        off_skin = -off_skin
+    if fault := entry_fault(off_skin):
         return fault
     crossings = mesh_crossings(head, entry, direction, trajectory.length_mm)
     leaving = [crossing for crossing in crossings if not crossing.is_entering]

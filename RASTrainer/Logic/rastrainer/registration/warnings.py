@@ -84,8 +84,9 @@ def find_warnings(
         moving = moving[order]
     bad = find_bad_touches(moving, fixed)
     good = np.delete(np.arange(len(moving)), bad)
-    before, after = rigid_fre(moving, fixed), rigid_fre(moving[good], fixed[good])
-    matrix = fit(moving[good], fixed[good], RIGID)
+    if bad:
+        before, after = rigid_fre(moving, fixed), rigid_fre(moving[good], fixed[good])
+        matrix = fit(moving[good], fixed[good], RIGID)
     for i in bad:
         distance = np.linalg.norm(transforms.apply(matrix, moving[i]) - fixed[i])
         message = (
@@ -95,6 +96,7 @@ def find_warnings(
         )
         yield RegistrationWarning("outlier", (labels[i],), message)
     if is_poor_fit(moving[good], fixed[good]):
+        after = rigid_fre(moving[good], fixed[good])
         message = (
             f"The points ({names}) do not match: the rigid FRE of {after:.1f} mm is more than a "
             "fifth of their extent; check that both lists are of the same task and in the same "

@@ -13,7 +13,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from rastrainer import json_checks
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import ReplayTrack, find_track, read_trajectory
 from rastrainer.json_records import record_from_json
@@ -45,14 +44,9 @@ def store_delivered(
     registered again (None) if it was scored, or its score is being sent to the simulator.
     """
     record = record_from_json(TrialRecord, value)
-    trial_id = record.trial_id
-    if study.has("trials", trial_id) or study.is_deleted(trial_id):
-        # Refused if it was deleted, or is another one.
-        study.add_trial(record)
-        if is_being_scored or study.is_revealed(trial_id):
-            return record, None
-    # Refused here, too, as a registration takes seconds and a refused trial is offered again.
-    json_checks.accepted(json_checks.pseudonym, record.trainee, "A pseudonym")
+    is_new = study.is_new(record)
+    if not is_new and (is_being_scored or study.is_revealed(record.trial_id)):
+        return record, None
     try:
         analysis = analyze(record)
     except InputError as error:

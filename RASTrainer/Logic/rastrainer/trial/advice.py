@@ -39,7 +39,7 @@ class TouchFinding:
     """The analysis of one touch.
 
     Attributes:
-        depth_mm: Part along the skin's outward normal, positive off the skin; None without skin.
+        depth_mm: Part along the skin's outward normal, positive off the skin.
         share: Of the squared registration error, 0 to 1.
         dwell_s: How long the tip had been within 2 mm; None without a recording.
         reasons: The main one first.
@@ -48,7 +48,7 @@ class TouchFinding:
 
     label: str
     residual_mm: float
-    depth_mm: float | None
+    depth_mm: float
     share: float
     dwell_s: float | None
     is_outlier: bool
@@ -58,7 +58,7 @@ class TouchFinding:
     @property
     def sentence(self) -> Sentence:
         where: Sentence | str = ""
-        if self.depth_mm is not None and Reason.DEPTH in self.reasons:
+        if Reason.DEPTH in self.reasons:
             side = "touch above" if self.depth_mm > 0 else "touch below"
             where = say(side, depth=abs(self.depth_mm))
         elif Reason.ASIDE in self.reasons:
@@ -74,9 +74,7 @@ class TouchFinding:
 
 
 def touch_findings(
-    registration: Registration,
-    normals: np.ndarray | None = None,
-    trajectory: Trajectory | None = None,
+    registration: Registration, normals: np.ndarray, trajectory: Trajectory | None = None
 ) -> tuple[TouchFinding, ...]:
     """Return a finding for each touch of a registration, in its order.
 
@@ -91,12 +89,10 @@ def touch_findings(
         residual = float(registration.residuals_mm[row])
         share = float(squares[row]) / total if total > 0 else 0.0
         is_outlier = share * len(squares) >= OUTLIER_SHARE
-        depth = dwell = replay = None
-        reasons = []
-        if normals is not None:
-            depth = float(registration.residual_vectors_mm[row] @ normals[row])
-            aside = float(np.sqrt(max(residual**2 - depth**2, 0.0)))
-            reasons.append(Reason.DEPTH if abs(depth) > aside else Reason.ASIDE)
+        dwell = replay = None
+        depth = float(registration.residual_vectors_mm[row] @ normals[row])
+        aside = float(np.sqrt(max(residual**2 - depth**2, 0.0)))
+        reasons = [Reason.DEPTH if abs(depth) > aside else Reason.ASIDE]
         if trajectory is not None and label in touches:
             dwell, replay, how = _touched(trajectory, touches[label])
             reasons += how
@@ -242,14 +238,12 @@ def _accuracy(score: TrialScore, findings: Sequence[TouchFinding]) -> Iterator[A
             ),
             _gain(score, error_factor=math.sqrt(better / total)),
         )
-    depths = [finding.depth_mm for finding in findings if finding.depth_mm is not None]
-    if len(depths) == len(findings):
-        in_depth = float((np.array(depths) ** 2).sum())
-        if in_depth > 0.5 * total:
-            yield Advice(
-                say("depth"),
-                _gain(score, error_factor=math.sqrt(max(1 - in_depth / total, 0.04) / 0.75)),
-            )
+    in_depth = float((np.array([finding.depth_mm for finding in findings]) ** 2).sum())
+    if in_depth > 0.5 * total:
+        yield Advice(
+            say("depth"),
+            _gain(score, error_factor=math.sqrt(max(1 - in_depth / total, 0.04) / 0.75)),
+        )
 
 
 def _time(score: TrialScore, motion: Mapping[str, float]) -> Iterator[Advice]:

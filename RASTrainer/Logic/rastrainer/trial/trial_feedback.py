@@ -113,18 +113,21 @@ class TrialFeedback:
     """The feedback shown to a trainee after a trial.
 
     Attributes:
-        worst: The touch with the largest error; its `replay_s` is what to look at again.
         paused_s: How long the trial was paused in all, as far as that is known.
         skin: How the skin had shifted, and what that did; empty if it had not.
     """
 
     score: TrialScore | None
     touches: tuple[TouchFinding, ...]
-    worst: TouchFinding
     advice: tuple[Advice, ...]
     progress: TraineeProgress | None = None
     paused_s: float = 0.0
     skin: tuple[Sentence, ...] = ()
+
+    @property
+    def worst(self) -> TouchFinding:
+        """The touch with the largest error; its `replay_s` is what to look at again."""
+        return max(self.touches, key=lambda touch: touch.residual_mm)
 
     @property
     def score_sentences(self) -> tuple[str, ...]:
@@ -186,7 +189,6 @@ def trial_feedback(
     return TrialFeedback(
         score=None,
         touches=findings,
-        worst=max(findings, key=lambda finding: finding.residual_mm),
         advice=advise(None, findings, motion),
         paused_s=motion.get("pause_time_s", 0.0),
     )

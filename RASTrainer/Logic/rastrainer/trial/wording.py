@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from rastrainer.number_text import PAST_HALF
+
 ENGLISH: Mapping[str, str] = {
     "skin": "The skin had shifted by {shift:.1f} mm (RMS) and was indented by "
     "{indentation:.1f} mm: the true error at the target was {tre:.2f} mm.",
@@ -105,9 +107,6 @@ TABLES: Mapping[str, Mapping[str, str]] = {
 }
 """All of them, by what the keys begin with in the simulator's texts."""
 
-_ROUND_UP = 1 + 1e-12
-"""Rounds halves up: 0.25, stored slightly below, becomes 0.3."""
-
 
 class Sentence(str):
     """An English sentence with its key and values: numbers, texts, and partial sentences."""
@@ -125,7 +124,7 @@ class Sentence(str):
 
 def say(key: str, **values: Any) -> Sentence:
     rounded = {
-        name: value * _ROUND_UP if isinstance(value, float) else value
+        name: value * PAST_HALF if isinstance(value, float) else value
         for name, value in values.items()
     }
     sentence = Sentence(ENGLISH[key].format(**rounded))

@@ -68,11 +68,18 @@ def _latest(column: str, kind: str) -> str:
 
 
 _NAMES = ("trainee", "mode", "task", "trial_id", "started_utc", "scenario", "method")
-_ROWS = f"""
+_ATTEMPTS = f"""
     SELECT pseudonym, {", ".join(_NAMES[1:])}, completion_time_s,
         {_latest("result_json", SCORE)}, {_latest("result_json", PROCEDURE)},
         {_latest("value", TRUTH)}
     FROM trials JOIN trainees ON trainees.id = trainee_id
+    WHERE pseudonym = ? AND task != ? ORDER BY trials.id
+"""
+_OUTCOMES = f"""
+    SELECT trial_id, pseudonym, method, completion_time_s,
+        {_latest("value", SCORE)}, {_latest("value", TRUTH)}
+    FROM trials JOIN trainees ON trainees.id = trainee_id
+    WHERE task = ? AND mode = ? ORDER BY trials.id
 """
 
 
@@ -219,11 +226,7 @@ class Study(AbstractContextManager["Study"]):
             delivered = record
             record = record_from_json(TrialRecord, delivered)
         with self.database.writing():
-            self._check_not_deleted(record.trial_id)
-            if self.has("trials", record.trial_id):
-                # The seed is the simulator's secret at first and may be revealed later.
-                if replace(self.record(record.trial_id), seed=None) != replace(record, seed=None):
-                    raise _other_trial(record.trial_id)
+            if not self.is_new(record):
                 return False
             self._store(
                 "trials",
@@ -238,6 +241,18 @@ class Study(AbstractContextManager["Study"]):
             )
             self.add_results(record.trial_id, registrations, target_errors, score, **others)
         return True
+
+    def is_new(self, record: TrialRecord) -> bool:
+        """Return whether a trial would be new; refuse a deleted one, and another of its UUID."""
+        with self.database.reading():
+            self._check_not_deleted(record.trial_id)
+            if self.has("trials", record.trial_id):
+                # The seed is the simulator's secret at first and may be revealed later.
+                if replace(self.record(record.trial_id), seed=None) != replace(record, seed=None):
+                    raise _other_trial(record.trial_id)
+                return False
+            json_checks.accepted(json_checks.pseudonym, record.trainee, "A pseudonym")
+            return True
 
     def add_aborted(
         self, record: AbortedTrial | Mapping[str, Any], delivered: Mapping[str, Any] | None = None
@@ -402,8 +417,24 @@ class Study(AbstractContextManager["Study"]):
         """
         with self.database.reading():
             aborted = self.aborted(pseudonym)
-            rows = self._rows("WHERE pseudonym = ? AND task != ?", pseudonym, TRIAL_RUN)
-        found = [row for row in rows if row.values.keys() & {"score", "true_tre_mm"}]
+            rows = self.database.rows(_ATTEMPTS, pseudonym, TRIAL_RUN)
+        found = []
+        for *known, seconds, scored, done, true_mm in rows:
+            if scored is None and true_mm is None:
+                continue
+            score = None if scored is None else result_of(SCORE, scored)
+            values = {"completion_time_s": seconds}
+            values |= {} if score is None else {"score": score.score}
+            values |= {} if true_mm is None else {"true_tre_mm": true_mm}
+            row = TrialRow(
+                **dict(zip(_NAMES, known, strict=True)),
+                values=values,
+                acceptable=score is not None and score.acceptable,
+                procedure=None if done is None else result_of(PROCEDURE, done),
+                parts={} if score is None else score.parts,
+                is_aborted=score is None,
+            )
+            found.append(row)
         found += [TrialRow.of(record) for record in aborted if record.counts_as_failed]
         return tuple(sorted(found, key=lambda trial: moment(trial.started_utc)))
 
@@ -416,27 +447,14 @@ class Study(AbstractContextManager["Study"]):
         return tuple(decoded_record(TrialRecord, text) for (text,) in rows)
 
     def outcomes(self, task: str, mode: str) -> list[TrialRow]:
-        return self._rows("WHERE task = ? AND mode = ?", task, mode)
-
-    def _rows(self, condition: str, *parameters: str) -> list[TrialRow]:
-        """Return the time, latest score and procedure, and the true error of trials."""
-        rows = self.database.rows(f"{_ROWS} {condition} ORDER BY trials.id", *parameters)
-        found = []
-        for *known, seconds, scored, done, true_mm in rows:
-            score = None if scored is None else result_of(SCORE, scored)
-            values = {"completion_time_s": seconds}
-            values |= {} if score is None else {"score": score.score}
-            values |= {} if true_mm is None else {"true_tre_mm": true_mm}
-            row = TrialRow(
-                **dict(zip(_NAMES, known, strict=True)),
-                values=values,
-                acceptable=score is not None and score.acceptable,
-                procedure=None if done is None else result_of(PROCEDURE, done),
-                parts={} if score is None else score.parts,
-                is_aborted=score is None and true_mm is not None,
-            )
-            found.append(row)
-        return found
+        """Return the time, latest score and true error of all trials of a task and mode."""
+        rows = []
+        for trial_id, trainee, method, *found in self.database.rows(_OUTCOMES, task, mode):
+            known = zip(("completion_time_s", "score", "true_tre_mm"), found, strict=True)
+            values = {name: value for name, value in known if value is not None}
+            row = TrialRow(trainee, mode, task, values=values, trial_id=trial_id, method=method)
+            rows.append(row)
+        return rows
 
 
 def _trainee(pseudonym: str, consent: int, archived: int, created_utc: str) -> Trainee:
