@@ -241,6 +241,12 @@ class SimulationState:
         return vector(self.tool_tip_to_world[:3, 3].tolist())
 
     @property
+    def body_poses(self) -> tuple[np.ndarray, ...]:
+        """The poses of links, tool, head and stand, as the scene's bodies are ordered."""
+        others = self.tool_tip_to_world, self.head_to_world, self.stand_to_world
+        return (*self.link_to_world, *others)
+
+    @property
     def starting_point(self) -> StartingPoint:
         """Where another simulation continues."""
         return StartingPoint(self.tick, self.sim_time, self.training.revision, self.camera)

@@ -125,8 +125,7 @@ def _shots(
     actors: dict[str, list[vtkActor]] = {}
     for state in map(trial.state_at, times_s):
         training = state.training
-        places = state.tool_tip_to_world, state.head_to_world, state.stand_to_world
-        poses = dict(zip(BODIES, (*state.link_to_world, *places), strict=False))
+        poses = dict(zip(BODIES[:-1], state.body_poses, strict=True))
         touched = (touch.label for touch in training.touches)
         looks = looks_of(touched, training.next_point, state.proximity)
         if looks != shown_looks:

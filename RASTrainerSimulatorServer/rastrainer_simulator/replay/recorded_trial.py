@@ -7,6 +7,7 @@ import threading
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
+from dataclasses import replace
 from pathlib import Path
 from typing import Generic, TypeVar
 
@@ -181,10 +182,12 @@ def _situations(
 ) -> list[Situation]:
     """Return the situation after each event; the trial's state machine repeats the commands."""
     header, training = track.header, Training(scenario, 0, settings.training, settings.procedure)
+    # A recording that failed names the revision that it returned to.
+    training.restart_from(header.before.revision)
     lines = [Line(event.at, event.entry) for event in track.events]
     steps = deque(recorded_steps(lines, header, RecordedFeed()))
     proximity, camera = Proximity.FREE, header.before.camera or settings.camera
-    situations = []
+    seen, situations = training.state, []
     for line in lines:
         while steps and steps[0][0].tick <= line.at.tick:
             _at, command, moment = steps.popleft()
@@ -194,7 +197,10 @@ def _situations(
                 proximity = line.entry.to
             case CameraChange():
                 camera = line.entry.camera
-        situations.append((training.state, proximity, camera))
+        now = training.state
+        # An aborted trial stays in view.
+        seen = now if now.trial_id else replace(seen, phase=Phase.IDLE, next_point=None)
+        situations.append((seen, proximity, camera))
     return situations
 
 

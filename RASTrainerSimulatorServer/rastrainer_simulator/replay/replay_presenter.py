@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 
 from rastrainer.number_text import clock
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS, Bindings
+from rastrainer_simulator.input.controls import InputState
 from rastrainer_simulator.input.gamepads import w3c_gamepad_inputs
 from rastrainer_simulator.input.inputs import (
     ControlContext,
@@ -32,16 +33,14 @@ SLOWLY = 0.5
 
 WORST_TOO = {InputDevice.KEYBOARD: "KeyT", InputDevice.GAMEPAD: "x"}
 """Additional inputs for the worst touch, which no control of the menus uses."""
-PRESSED = 0.5
 
 
 def viewer_control(bindings: Bindings, device: InputDevice, name: str) -> ControlName | None:
     """Return the control that an input works during a replay; None if it works none."""
     control = bindings.control(device, name, ControlContext.MENU)
-    if control is None and name == WORST_TOO[device]:
-        return ControlName.UP
-    is_camera = name in bindings.table(device)[ControlName.CAMERA]
-    return ControlName.CAMERA if control is None and is_camera else control
+    if control is None and name in bindings.table(device)[ControlName.CAMERA]:
+        return ControlName.CAMERA
+    return ControlName.UP if control is None and name == WORST_TOO[device] else control
 
 
 @dataclass(frozen=True)
@@ -124,7 +123,7 @@ class ReplayPresenter(Presenter):
         super().__init__()
         self._language = language
         self._texts = Texts(LANGUAGES[language])
-        self._held: dict[int, Sequence[str]] = {}
+        self._pads: dict[int, InputState] = {}
         self._key_names: Mapping[str, str] = {}
         self._end = end
         self._play(playback, blinded)
@@ -154,7 +153,7 @@ class ReplayPresenter(Presenter):
         self._view.control.turn(camera, around_deg, higher_deg, zoom)
 
     def view_left(self, view: int) -> None:
-        self._held.pop(view, None)
+        self._pads.pop(view, None)
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:  # noqa: ARG002
         if is_down:
@@ -165,13 +164,9 @@ class ReplayPresenter(Presenter):
         self._refresh()
 
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
-        """Process the inputs of a gamepad that have just been pressed."""
-        inputs = w3c_gamepad_inputs(axes, buttons)
-        down = [name for name, value in inputs.items() if value > PRESSED]
-        held, self._held[view] = self._held.get(view, ()), down
-        for name in down:
-            if name not in held:
-                self._press(InputDevice.GAMEPAD, name)
+        pad = self._pads.setdefault(view, InputState(InputDevice.GAMEPAD))
+        for name in pad.set_inputs(w3c_gamepad_inputs(axes, buttons)):
+            self._press(InputDevice.GAMEPAD, name)
 
     def on_press(self, view: int, control: str) -> None:  # noqa: ARG002
         self._do(button_in_menu(control))
@@ -206,7 +201,11 @@ class ReplayPresenter(Presenter):
             kind = feedback_event(event, result.state.touch)
             if kind is not None:
                 self.happened(kind)
-        self._view.advance(PERIOD_S, result.state, self._playback.setup.scenario)
+        worst = self._playback.trial.worst
+        wanted = worst[0] if self._view.is_best_wanted and worst is not None else None
+        training = replace(result.state.training, next_point=wanted)
+        state = replace(result.state, training=training)
+        self._view.advance(PERIOD_S, state, self._playback.setup.scenario)
 
     def _refresh(self) -> None:
         self.show(self._make_screen())

@@ -11,18 +11,21 @@ import pytest
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
+from rastrainer.journal.entries import AcceptedTouch
 from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, read_journal
-from rastrainer.journal.recording import Recording
+from rastrainer.journal.recording import Recording, read_track
 from rastrainer.protocol import Phase
 from rastrainer.study.database.study import Study
 from rastrainer.trial.record import AbortedTrial, TrialRecord
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.record.trial_archive import (
+    SUFFIX,
     TrialArchive,
     find_unacknowledged,
     interrupted_attempt,
 )
+from rastrainer_simulator.replay.recorded_trial import RecordedTrial
 from rastrainer_simulator.replay.resimulation import replay
 from Testing.simulator.record.test_interrupted_trial import (
     TIMEOUT_S,
@@ -274,3 +277,33 @@ def test_a_forged_leftover_journal_is_refused_with_a_message(simulation, tmp_pat
             entry.update(change)
     with pytest.raises(InputError):
         interrupted_attempt(reading)
+
+
+def test_an_aborted_trial_is_shown_again_with_its_touches_though_its_disk_was_full_for_a_while(
+    simulation, anywhere, tmp_path, monkeypatch
+):
+    with Server(simulation, tmp_path) as server:
+        server.start()
+        assert server.do(CommandName.CAPTURE).ok
+        trial_id = server.start()
+        for _ in range(2):
+            server.move()
+            assert server.do(CommandName.CAPTURE).ok
+        with monkeypatch.context() as patch:
+            patch.setattr(os, "write", on_full_disk)
+            assert not server.do(CommandName.CAPTURE).ok
+        assert server.do(CommandName.RESUME).ok
+        server.move()
+        assert server.do(CommandName.CAPTURE).data["label"] == "3"
+        assert server.do(CommandName.ABORT).ok
+    (path,) = tmp_path.glob(f"*{trial_id}{SUFFIX}")
+    track = read_track(path)
+    trial = RecordedTrial(track, anywhere)
+    touches = [event for event in track.events if isinstance(event.entry, AcceptedTouch)]
+    # The line of the refused touch is written once there is room, and does not count.
+    assert [event.entry.kept for event in touches] == [1, 2, 3, 3]
+    for event in touches:
+        assert len(trial.state_at(event.time_s).training.touches) == event.entry.kept
+    last = trial.state_at(trial.duration_s).training
+    assert (last.phase, last.next_point, last.task) == (Phase.IDLE, None, "task-1")
+    assert [touch.label for touch in last.touches] == ["1", "2", "3"]

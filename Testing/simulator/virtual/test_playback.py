@@ -18,13 +18,15 @@ from rastrainer.journal.journal_file import read_journal
 from rastrainer.journal.recording import read_track
 from rastrainer.protocol import Phase
 from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.presentation.messages import Feedback
 from rastrainer_simulator.presentation.screen import Screen
 from rastrainer_simulator.record.trial_context import setup_of
 from rastrainer_simulator.replay import recorded_trial
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial, load_trial
-from rastrainer_simulator.replay.replay_presenter import ReplayPresenter
+from rastrainer_simulator.replay.replay_presenter import ReplayPresenter, viewer_control
 from rastrainer_simulator.virtual.cohort import RECORDS
 from Testing.end_to_end.simulator_process import SERVES, paired_key
 from Testing.simulator.net.views.served import ViewClient
@@ -144,6 +146,22 @@ def test_playback_can_be_sought_and_viewed_through_both_cameras(viewer):
     assert not viewer.playback.is_playing
     viewer.press("Escape")
     assert viewer.ended == [True]
+
+
+def test_a_stick_that_trembles_while_it_is_pushed_seeks_once(viewer):
+    viewer.playback.advance(12.0)
+    for pushed in (0.0, 0.7, 0.48, 0.52, 0.48, 0.7):
+        viewer.presenter.on_pad(1, [pushed, 0.0, 0.0, 0.0], [0.0] * 17)
+    assert viewer.playback.time_s == 17.0
+
+
+@pytest.mark.parametrize(
+    ("device", "name"), [(InputDevice.KEYBOARD, "KeyT"), (InputDevice.GAMEPAD, "x")]
+)
+def test_an_input_that_was_given_to_the_camera_no_longer_shows_the_worst_touch(device, name):
+    rebound = DEFAULT_BINDINGS.rebound(device, ControlName.CAMERA, name)
+    assert viewer_control(DEFAULT_BINDINGS, device, name) is ControlName.UP
+    assert viewer_control(rebound, device, name) is ControlName.CAMERA
 
 
 def test_the_worst_touch_is_shown_at_half_speed_up_to_the_touch(viewer, trial):

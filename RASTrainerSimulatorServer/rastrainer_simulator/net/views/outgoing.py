@@ -83,13 +83,7 @@ def state_news(
     if plan is not None:
         plan_to_world[:3, :3] = np.transpose(plan.rows)
         plan_to_world[:3, 3] = plan.in_world((0.0, 0.0, 0.0))
-    matrices = (
-        *now.link_to_world,
-        now.tool_tip_to_world,
-        now.head_to_world,
-        now.stand_to_world,
-        plan_to_world,
-    )
+    matrices = *now.body_poses, plan_to_world
     return StateNews(
         tick=now.tick,
         time_s=round(now.sim_time, DECIMALS),
