@@ -43,7 +43,6 @@ from rastrainer.trial.analysis import TrialAnalysis
 from rastrainer.trial.ctps import CTPS_WARNING
 from rastrainer.work_progress import allow_any_text
 from rastrainer_headless.headless_session import openSession, process
-from rastrainer_headless.residual_picture import writeResidualPicture
 from rastrainer_headless.scene import HeadlessScene
 
 PERIOD_S = 0.01
@@ -144,6 +143,9 @@ def writeOutput(
         f"(95 %: {low:.2f} to {high:.2f} mm){true}. "
         "FRE does not predict TRE case by case.",
     ]
+    # Only here: matplotlib takes time to import.
+    from rastrainer_headless.residual_picture import writeResidualPicture
+
     head = read_head_mesh(scenario.head)
     writeResidualPicture(files["picture"], head, rigid, title, caption)
     return {name: str(path) for name, path in files.items()}

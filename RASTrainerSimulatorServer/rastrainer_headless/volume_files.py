@@ -82,11 +82,11 @@ def _oriented(volume: Volume, orientation: str) -> Volume:
 
 def _checkHeader(path: Path, nifti: vtk.vtkNIFTIImageHeader | None) -> None:
     begin = beginOf(path)
-    if path.suffix.lower() in (".mgz", ".mgh") or begin.startswith(_MGH):
+    if path.suffix.lower() in (".mgz", ".mgh") or (nifti is None and begin.startswith(_MGH)):
         raise _unusable(path, "is in FreeSurfer's format", "mri_convert makes NIfTI of it")
     if nifti is not None and nifti.GetMagic()[1:3] in ("+2", "i2"):
         raise _unusable(path, "is NIfTI-2", "save it as NIfTI-1 or NRRD")
-    if begin.startswith(b"NRRD"):
+    if nifti is None and begin.startswith(b"NRRD"):
         fields = nrrdFields(begin)
         sizes = [int(size) for size in fields.get("sizes", "").split() if size.isdecimal()]
         kinds = fields.get("kinds", "").lower()

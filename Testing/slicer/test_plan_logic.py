@@ -220,6 +220,9 @@ def test_the_true_error_at_the_target_is_shown_once_the_head_pose_is_known(room)
     found = room.registration.comparison.shown.matrix @ room.head_to_world
     error = np.linalg.norm(transforms.apply(found, TUMOR[None])[0] - TUMOR)
     assert room.logic.trueErrorMm == pytest.approx(error)
+    room.logic.send(room.target(TUMOR))
+    room.run_until(lambda: room.logic.isReachable is not None)
+    assert room.logic.trueErrorMm == pytest.approx(error)
     room.logic.forgetTruth()
     assert room.logic.trueErrorMm is None
 

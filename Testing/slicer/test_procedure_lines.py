@@ -43,6 +43,13 @@ def test_each_meaning_has_one_color_in_slicer_and_in_the_simulators_views(headle
         assert color == pytest.approx(Color(TONES[tone]).coords(), abs=1e-3)
 
 
+def test_showing_it_again_leaves_no_node_of_the_former_behind(headless_scene, analysis):
+    showProcedureErrors(headless_scene.scene, *analysis)
+    before = headless_scene.scene.GetNumberOfNodes()
+    showProcedureErrors(headless_scene.scene, *analysis)
+    assert headless_scene.scene.GetNumberOfNodes() == before
+
+
 def lines(scene, role):
     return [worldPoints(node) for node in role.all(scene)]
 

@@ -48,9 +48,12 @@ def volume(scene, values, spacing):
 
 
 def test_the_robot_is_read_once_and_elsewhere_and_stays_hidden_or_cleared(scene, logic, work, runs):
+    shown = []
+    logic.robotShown.connect(lambda: shown.append(missingLinks(scene)))
     logic.setRobotShown(True)
     assert logic.isRobotShown
     in_turns(work)
+    assert shown == [[]]
     ((function, thread),) = runs
     assert function == READ_LINKS
     assert thread != threading.get_ident()
@@ -99,6 +102,34 @@ def test_a_scene_that_is_cleared_while_a_scenario_comes_stays_empty(scene, logic
     assert Role.TARGET.find(scene) is None
 
 
+def ball():
+    grid = np.indices((50, 50, 50)) - 25.0
+    return (np.linalg.norm(grid, axis=0) < 20).astype(np.float32) * 100.0
+
+
+def test_a_head_that_is_shown_while_another_is_searched_gives_way_to_it(scene, logic, work):
+    def show(_step, _share):
+        if Role.HEAD_MODEL.find(scene) is None:
+            logic.show("ball", "task-1")
+            in_turns(work)
+
+    model, _warnings = logic.useHead(volume(scene, ball(), 3.0), show)
+    assert Role.HEAD_MODEL.all(scene) == [model]
+
+
+def test_a_canceled_search_for_another_head_leaves_the_head(scene, logic, work):
+    def cancel(_step, _share):
+        raise InputError("Canceled")
+
+    logic.show("ball", "task-1")
+    in_turns(work)
+    shown = Role.HEAD_MODEL.find(scene)
+    with pytest.raises(InputError, match="Canceled"):
+        logic.useHead(volume(scene, ball(), 3.0), cancel)
+    assert Role.HEAD_MODEL.all(scene) == [shown]
+    assert shown.GetDisplayVisibility()
+
+
 def test_a_scenario_is_shown_and_the_skin_of_a_volume_becomes_the_head(scene, logic, work):
     with pytest.raises(InputError, match="no such task"):
         logic.show("ball", "task-9")
@@ -107,9 +138,7 @@ def test_a_scenario_is_shown_and_the_skin_of_a_volume_becomes_the_head(scene, lo
     in_turns(work)
     assert isApplied(Role.WORLD_TO_HEAD.find(scene))
     former = Role.HEAD_MODEL.find(scene)
-    grid = np.indices((50, 50, 50)) - 25.0
-    ball = (np.linalg.norm(grid, axis=0) < 20).astype(np.float32) * 100.0
-    model, warnings = logic.useHead(volume(scene, ball, 3.0))
+    model, warnings = logic.useHead(volume(scene, ball(), 3.0))
     assert Role.HEAD_MODEL.find(scene) is model
     assert model.GetName() == "Head of MRI"
     assert not former.GetDisplayVisibility()

@@ -2,6 +2,7 @@
 
 import re
 from collections import Counter
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import find_track
+from rastrainer.sections.score_logic import ReplayLogic
 from rastrainer.slicer.scene.robot_description import toolPoses
 from rastrainer.slicer.scene.trial_replay import (
     STATES_A_SLICE,
@@ -136,3 +138,16 @@ def test_the_application_may_redraw_after_each_slice_of_a_replay(scene, tips, tm
     assert sum(share > 0.0 for share in shares) == states // STATES_A_SLICE
     assert shares == sorted(shares)
     assert 0.0 == shares[0] < shares[-1] <= 1.0
+
+
+def test_feedback_that_comes_with_a_score_stays_while_the_former_trial_is_still_shown():
+    jobs = []
+    work = SimpleNamespace(do=lambda *job: jobs.append(job), checkWanted=None)
+    logic = ReplayLogic(SimpleNamespace(work=work), URDF, lambda: False, lambda _trial: False)
+    former, scored = (
+        SimpleNamespace(record=SimpleNamespace(trial_id=name)) for name in ("former", "scored")
+    )
+    logic.feedbackFound.connect(lambda: logic.feedback(former))
+    logic.takeFeedback("scored", "well done")
+    assert logic.feedback(scored) == "well done"
+    assert len(jobs) == 1

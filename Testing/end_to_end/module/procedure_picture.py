@@ -14,7 +14,7 @@ from rastrainer.procedure.plan import read_procedure_meshes
 from rastrainer.procedure.record import ProcedureRecord, UsedRegistration
 from rastrainer.registration.registration import register
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.sections.views import AlongInstrument
+from rastrainer.sections.views import SliceFollower
 from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.procedure_outcome import (
     ProcedureMeasures,
@@ -67,7 +67,11 @@ def save(picture: Path) -> None:
         procedure = host.widget.logic.session.procedure
         procedure.showOutcome(*carried)
         guide, tip = procedure.lines[0].placed
-        AlongInstrument(host.scene).show(tip, (tip - guide) / np.linalg.norm(tip - guide))
+        pose = np.eye(4)
+        pose[:3, 2], pose[:3, 3] = (tip - guide) / np.linalg.norm(tip - guide), tip
+        # The session's own follower restores the views in its next turn: nothing is guided now.
+        session = host.widget.logic.session
+        SliceFollower(host.scene, session.training, session.settings)._alignViews(pose)
         host.scene.GetFirstNodeByName("Head").SetDisplayVisibility(False)
         for name in ("scenario", "simulator", "setup"):
             host.find(f"{name}CollapsibleButton").collapsed = True

@@ -181,3 +181,9 @@ def test_a_meta_image_without_a_matrix_states_none(tmp_path):
     path.write_bytes(b"\n".join(line for line in lines if not line.startswith(b"Transform")))
     with pytest.raises(InputError, match="it has no TransformMatrix"):
         readVolume(path)
+
+
+def test_the_voxels_of_a_pair_are_no_sign_of_another_format(tmp_path):
+    path = analyze(tmp_path)
+    path.write_bytes(b"\0\0\0\1" + path.read_bytes()[4:])
+    assert readVolume(path, "LAS").values.shape == SHAPE

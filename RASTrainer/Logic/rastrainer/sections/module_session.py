@@ -203,7 +203,7 @@ class ModuleSession:
 
         Nothing reports what other programs write into the study, or that time has passed.
         """
-        if self.simulator.isChanging:
+        if self.simulator.isChanging or self.replay.isReleasing:
             return SOON_S
         isWatched = isEntered or self.simulator.program.isRunning
         return self.link.restS or (REST_S if isWatched else None)

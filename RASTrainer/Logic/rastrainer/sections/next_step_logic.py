@@ -94,7 +94,7 @@ class WorkflowState:
 
 def nextStep(now: WorkflowState) -> NextStep:
     """Return the next thing to do."""
-    if now.link.state is not LinkState.CONNECTED:
+    if not now.link.isConnected:
         return _untilConnected(now)
     trial = now.trial
     if trial.isOpen or (trial.phase == Phase.REGISTERED.value and not now.isUnscored):

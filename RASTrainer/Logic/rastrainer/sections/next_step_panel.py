@@ -21,7 +21,7 @@ from rastrainer.sections.next_step_logic import (
     nextStep,
 )
 from rastrainer.sections.panel import Panel
-from rastrainer.slicer.link.link_status import NOT_INSTALLED, LinkState
+from rastrainer.slicer.link.link_status import NOT_INSTALLED
 from rastrainer.slicer.translation import _
 from rastrainer.study.protocol.steps import instruction
 from rastrainer.trial.analysis import TrialAnalysis
@@ -108,7 +108,7 @@ class NextStepPanel(Panel):
         setLight(ui.linkLight, color)
         setText(ui.linkText, word)
         trainee, task = now.trainee, now.taskTitle
-        if now.link.state is LinkState.CONNECTED and trial.isOpen:
+        if now.link.isConnected and trial.isOpen:
             titles = {session.task: session.taskTitle, TRIAL_RUN: _("Trial run")}
             trainee, task = trial.trainee, titles.get(trial.task, trial.task)
         setText(ui.nowTraineeText, shortName(trainee) or _("No trainee"))

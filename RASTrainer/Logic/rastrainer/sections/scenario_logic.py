@@ -78,9 +78,12 @@ class ScenarioLogic:
 
         The head that was one before is hidden, and is no longer ours to fill.
         """
-        model, warnings, former = node, list[str](), Role.HEAD_MODEL.find(self.scene)
+        model, mesh, warnings = node, None, list[str]()
         if node.IsA("vtkMRMLVolumeNode"):
             _body, mesh, warnings = findSkin(self.run, node, None, progress)
+        # Another head may be shown while this one is searched.
+        former = Role.HEAD_MODEL.find(self.scene)
+        if mesh is not None:
             model = Role.HEAD_MODEL.add(self.scene, f"Head of {node.GetName()}")
             model.SetAndObservePolyData(meshPolyData(mesh))
             model.GetDisplayNode().SetColor(SKIN_COLOR)

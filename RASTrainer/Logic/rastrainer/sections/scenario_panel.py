@@ -17,7 +17,6 @@ from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, chosenScenario
 from rastrainer.sections.scenario_files import compareMethods
 from rastrainer.sections.training_panel import METHODS
-from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.settings import SCENARIO, TASK
 from rastrainer.slicer.translation import _
 from rastrainer.widgets.controls import (
@@ -50,8 +49,8 @@ class ScenarioPanel(Panel):
         shows = (self._showHeadMessage, self._showUsable, partial(showPercent, ui.otherHeadText))
         self._work = CancelableWork(ui.useHeadButton, self.useHead, failure, *shows)
         failure = _("The scenario was not saved.")
-        says = (self._showMessage, self._showUsable, no_progress)
-        self._writing = CancelableWork(ui.exportScenarioButton, self.exportScenario, failure, *says)
+        button, says = ui.exportScenarioButton, self._showMessage
+        self._writing = CancelableWork(button, self.exportScenario, failure, says, show=no_progress)
         button, failure = ui.importScenarioButton, _("The scenario was not added.")
         self._adding = CancelableWork(button, self.importScenario, failure, self._showMessage)
         ui.scenarioComboBox.connect("activated(int)", self._showTasks)
@@ -145,7 +144,7 @@ class ScenarioPanel(Panel):
         self._fill(name)
         self._keepChoice()
         self.show()
-        if self._session.link.status.state is LinkState.CONNECTED:
+        if self._session.link.status.isConnected:
             self.loadIntoSimulator()
 
     def _frame(self, node: Any) -> None:
@@ -205,7 +204,7 @@ class ScenarioPanel(Panel):
 
     def _showUsable(self, *_arguments: Any) -> None:
         ui = self._ui
-        isConnected = self._session.link.status.state is LinkState.CONNECTED
+        isConnected = self._session.link.status.isConnected
         isUsable = ui.taskComboBox.enabled
         ui.showScenarioButton.enabled = ui.exportScenarioButton.enabled = isUsable
         reason = _("Choose a scenario that can be used.")

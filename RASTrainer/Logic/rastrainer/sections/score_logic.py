@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -50,6 +50,7 @@ class ReplayLogic:
         shown: emits nothing, whenever another trial is shown, with its touches to be registered.
         procedureShown: emits `ProcedureOutcome`, `ProcedureRecord` and `RevealedTruth` of that
             trial; None for each that it has not.
+        isReleasing: whether states of a closed scene's replay are left, which `process` releases.
     """
 
     services: TrialServices
@@ -59,31 +60,35 @@ class ReplayLogic:
     feedbackFound: Signal = field(default_factory=Signal)
     shown: Signal = field(default_factory=Signal)
     procedureShown: Signal = field(default_factory=Signal)
+    isReleasing: bool = False
     _awaitedId: str = ""
+    _requestedId: str = ""
     _known: tuple[str, TrialFeedback | Exception | None] = "", None
     _until: float | None = None
+    _outdated: Iterator[None] = field(default_factory=lambda: iter(()))
 
     def feedback(self, trial: StoredTrial) -> TrialFeedback | None:
         """Return the feedback on a trial; None while it is being prepared."""
         trialId, work = trial.record.trial_id, self.services.work
-        if self._known[0] != trialId:
-            if self.isBeingScored(trialId):
-                self._awaitedId = trialId
-                return None
-            self._known = trialId, None
+        if self._known[0] == trialId:
+            if isinstance(self._known[1], Exception):
+                raise self._known[1]
+            return self._known[1]
+        if self.isBeingScored(trialId):
+            self._awaitedId = trialId
+        elif self._requestedId != trialId:
+            self._requestedId = trialId
 
             def take(found: TrialFeedback | Exception) -> None:
-                if self._known == (trialId, None):
+                if self._requestedId == trialId:
                     self.takeFeedback(trialId, found)
 
             work.do(lambda: self._judge(trial, work.checkWanted), take, take)
-        if isinstance(self._known[1], Exception):
-            raise self._known[1]
-        return self._known[1]
+        return None
 
     def takeFeedback(self, trialId: str, feedback: TrialFeedback | Exception) -> None:
         """Accept feedback on a trial that was prepared elsewhere."""
-        self._known, self._awaitedId = (trialId, feedback), ""
+        self._known, self._requestedId, self._awaitedId = (trialId, feedback), "", ""
         self.feedbackFound.emit()
 
     def retryFeedback(self) -> None:
@@ -93,13 +98,7 @@ class ReplayLogic:
 
     def keepStates(self) -> None:
         """Have the states of the replay released slice by slice, before the scene is closed."""
-        slices, later = emptyReplay(self.services.scene), self.services.work.later
-
-        def release() -> None:
-            if list(itertools.islice(slices, SLICES_A_TURN)):
-                later(release)
-
-        later(release)
+        self._outdated = itertools.chain(self._outdated, emptyReplay(self.services.scene))
 
     def forgetScene(self) -> None:
         self._until = None
@@ -112,7 +111,7 @@ class ReplayLogic:
     def showWorstTouch(self, trial: StoredTrial, progress: Progress = no_progress) -> None:
         """Show again how the worst touch came about; otherwise as `show`."""
         trialId = trial.record.trial_id
-        if self._known[0] != trialId or self._known[1] is None:
+        if self._known[0] != trialId:
             judged = inBackground(lambda report: self._judge(trial, report), progress)
             self.takeFeedback(trialId, judged)
         feedback = self.feedback(trial)
@@ -126,6 +125,8 @@ class ReplayLogic:
 
     def process(self) -> None:
         """Stop where the worst touch was made; request feedback that no score has given."""
+        # No work of the background waits for it: that starts only once nothing waits in turn.
+        self.isReleasing = len(list(itertools.islice(self._outdated, SLICES_A_TURN))) > 0
         if self._awaitedId and not self.isBeingScored(self._awaitedId):
             self._awaitedId = ""
             self.feedbackFound.emit()

@@ -143,7 +143,7 @@ def judge(link: LinkObservation) -> LinkStatus:
         status = lookingAt(link.address)
         if link.finding is not None:
             found = judgeFinding(link.finding, link.address)
-            status = status if found.state is LinkState.CONNECTED else found
+            status = status if found.isConnected else found
         return status
     if link.peerVersion not in (None, PROTOCOL_VERSION):
         return _wrongVersion(link.peerVersion)

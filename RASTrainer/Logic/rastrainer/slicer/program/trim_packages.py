@@ -79,6 +79,8 @@ def loaded_libraries(folder: Path) -> set[str]:
 
     Empty where that is not known.
     """
+    if not mapped_files():
+        return set()
     names = sorted(third_party_imports(folder))
     try:
         for name in names:

@@ -78,7 +78,7 @@ class NodeKind:
 
     def remove(self, scene: Any) -> None:
         for node in self.all(scene):
-            scene.RemoveNode(node)
+            removeNode(node)
 
     def dress(self, node: Any, name: str = "") -> Any:
         """Make a node one of this kind and return it."""
@@ -101,6 +101,14 @@ class LinkedKind(NodeKind):
 
     def make(self, scene: Any, name: str = "") -> Any:
         return super().find(scene) or super().make(scene, name)
+
+
+def removeNode(node: Any) -> None:
+    """Remove a node from its scene, and its display, which would stay and be saved."""
+    scene = node.GetScene()
+    display = node.GetDisplayNode() if node.IsA("vtkMRMLDisplayableNode") else None
+    for each in filter(None, (display, node)):
+        scene.RemoveNode(each)
 
 
 def nodesOfClass(scene: Any, className: str) -> list[Any]:
@@ -186,6 +194,7 @@ class Role:
     RESIDUAL_ARROWS = NodeKind(MODEL, "residual arrows", "Residual arrows")
     FITS = _table("fits", "Fits")
     HISTORY = _table("history")
+    LEARNING_TABLE = _table("learning curve")
     LEARNING_CURVE = _chart("learning curve", "", "Trial", "Score, and completion time in s")
     CALIBRATION = _chart(
         "calibration", "True against expected TRE", _("Expected TRE (mm)"), _("True TRE (mm)")

@@ -83,6 +83,8 @@ class UndoablePoints:
         """Return the placed points, which `undo` will restore; the next click places none."""
         stopPlacing(self._scene)
         points = placedPoints(node)
+        # Closing a scene releases its nodes.
+        self._before = [each for each in self._before if each[0].GetScene() is not None]
         self._before.append((node, list(points)))
         return points
 

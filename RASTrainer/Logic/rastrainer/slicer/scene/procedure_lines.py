@@ -29,6 +29,7 @@ from rastrainer.slicer.scene.nodes import (
     NodeKind,
     Role,
     nodesOfClass,
+    removeNode,
     setPoints,
 )
 from rastrainer.slicer.scene.plan_points import ENDS, placedPoints
@@ -76,11 +77,11 @@ def lengthMm(line: Any) -> float | None:
 def showPlan(scene: Any, procedure: Procedure | None, noGo: Mapping[str, HeadMesh]) -> None:
     """Replace the plan in the scene by another one, or an empty one, to be changed there."""
     for line in planLines(scene):
-        scene.RemoveNode(line)
+        removeNode(line)
     for node in noGoNodes(scene):
         setNoGo(node, False)
         if node.GetAttribute(ROLE_ATTRIBUTE) == Role.NO_GO.role:
-            scene.RemoveNode(node)
+            removeNode(node)
     for trajectory in () if procedure is None else procedure.trajectories:
         line = Role.PLAN_LINE.add(scene, trajectory.name)
         setInstrument(line, trajectory.diameter_mm, trajectory.safety_mm)

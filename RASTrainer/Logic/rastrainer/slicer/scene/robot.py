@@ -8,17 +8,35 @@ import slicer
 
 from rastrainer.protocol import DeviceName
 from rastrainer.slicer.polydata import trianglesPolyData, vtkArray
-from rastrainer.slicer.scene.nodes import COLORS, ROLE_ATTRIBUTE, Role, poseKind, setValues
+from rastrainer.slicer.scene.nodes import (
+    COLORS,
+    MODEL,
+    ROLE_ATTRIBUTE,
+    TRANSFORM,
+    Role,
+    nodesOfClass,
+    poseKind,
+    setValues,
+)
 from rastrainer.slicer.scene.robot_description import LinkMesh
+
+_POSES = tuple(map(poseKind, DeviceName.LINK_TO_WORLD))
+
+
+def _byRole(scene: Any, className: str) -> dict[str, Any]:
+    """Return our nodes of a class by their roles, in one look at the scene."""
+    nodes = reversed(nodesOfClass(scene, className))
+    return {node.GetAttribute(ROLE_ATTRIBUTE): node for node in nodes}
 
 
 def missingLinks(scene: Any) -> list[int]:
-    return [number for number, kind in enumerate(Role.LINKS) if kind.find(scene) is None]
+    links = _byRole(scene, MODEL)
+    return [number for number, kind in enumerate(Role.LINKS) if kind.role not in links]
 
 
 def addLink(scene: Any, number: int, mesh: LinkMesh) -> None:
     """Show a link of the robot, transformed by the node that the connection fills."""
-    poseKind(DeviceName.LINK_TO_WORLD[number]).make(scene)
+    _POSES[number].make(scene)
     surface = trianglesPolyData(mesh.points, mesh.triangles, mesh.normals)
     surface.GetPointData().SetScalars(vtkArray(mesh.colors, COLORS))
     # Everything is set before the node is added, so that each view draws it once.
@@ -34,12 +52,14 @@ def addLink(scene: Any, number: int, mesh: LinkMesh) -> None:
 
 def placeRobot(scene: Any, worldTransform: Any | None) -> None:
     """Let the robot follow its poses, with World placed by `worldTransform`."""
-    for link, device in zip(Role.LINKS, DeviceName.LINK_TO_WORLD, strict=True):
-        node, kind = link.find(scene), poseKind(device)
-        if node is None and kind.find(scene) is None:
-            continue
-        pose = kind.make(scene)
-        wanted = None if worldTransform is None else worldTransform.GetID()
+    links, poses = _byRole(scene, MODEL), _byRole(scene, TRANSFORM)
+    wanted = None if worldTransform is None else worldTransform.GetID()
+    for link, kind in zip(Role.LINKS, _POSES, strict=True):
+        node, pose = links.get(link.role), poses.get(kind.role)
+        if pose is None:
+            if node is None and kind.find(scene) is None:
+                continue
+            pose = kind.make(scene)
         if pose.GetTransformNodeID() != wanted:
             pose.SetAndObserveTransformNodeID(wanted)
         if node is not None and node.GetTransformNodeID() != pose.GetID():

@@ -27,6 +27,7 @@ from rastrainer.slicer.scene.nodes import (
     NodeKind,
     Role,
     nodesOfClass,
+    removeNode,
     setDisplay,
     setPoints,
 )
@@ -69,10 +70,11 @@ def showTask(
     A trial by another method shows its touched landmarks instead.
     """
     task = task_by_method(scenario, taskName, method)
-    node = Role.FIXED_FIDUCIALS.make(scene)
+    node = Role.FIXED_FIDUCIALS.find(scene)
     name = taskKey(scenario.name, task.name)
     stamp = f"{name} {sha256(task.fiducials.tobytes()).hexdigest()}"
-    if node.GetAttribute(CONTENT_ATTRIBUTE) != stamp:
+    if node is None or node.GetAttribute(CONTENT_ATTRIBUTE) != stamp:
+        node = Role.FIXED_FIDUCIALS.make(scene)
         with slicer.util.NodeModify(node):
             node.SetName(f"{task.title} fiducials")
             setPoints(node, task.labels, task.fiducials)
@@ -228,7 +230,7 @@ class SceneFileLoader:
     def _refuse(self, requested: tuple[str, ...], problem: str, error: Exception) -> None:
         node = self._awaiting(requested)
         if node is not None:
-            self._scene.RemoveNode(node)
+            removeNode(node)
             if isinstance(error, InputError):
                 self.problemFound.emit(problem.format(problem=error))
 

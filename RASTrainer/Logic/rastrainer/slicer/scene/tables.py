@@ -162,8 +162,10 @@ def showLearningCurve(scene: Any, pseudonym: str, trials: Sequence[StoredTrial])
         SCORE_COLUMN: [trial.score.score if trial.score else None for trial in trials],
         "method": [record.method.value for record in records],
     }
-    table = showTable(scene, Role.HISTORY, columns, f"History of {pseudonym}", FEWEST_ROWS)
+    showTable(scene, Role.HISTORY, columns, f"History of {pseudonym}")
     title = f"Learning curve of {pseudonym}"
+    drawn = {name: columns[name] for name in (TRIAL_COLUMN, SCORE_COLUMN, TIME_COLUMN)}
+    table = showTable(scene, Role.LEARNING_TABLE, drawn, title, FEWEST_ROWS)
     chart = Role.LEARNING_CURVE.make(scene, title)
     methods = sorted({trial.record.method.value for trial in trials if trial.score})
     if len(methods) > 1:

@@ -27,6 +27,7 @@ from rastrainer.slicer.scene.nodes import (
     UNSELECTABLE,
     NodeKind,
     nodesOfClass,
+    removeNode,
     setValues,
 )
 from rastrainer.slicer.scene.robot_description import OTHER_ROBOT
@@ -107,16 +108,21 @@ def showReplay(
         distances = (f"{fixed(mm, 1)} mm" for mm in trajectory.clearance_mm[rows])
         distanceStates = (setValues(slicer.vtkMRMLTextNode(), Text=text) for text in distances)
         start, times = float(trajectory.times_s[0]), trajectory.times_s[rows]
-        total, done = 2 * len(rows) + len(trajectory.touches) + 1, 0
+        made, traced = trajectory.touches, trajectory.traced
+        total, done = 2 * len(rows) + len(made) + 1, 0
         shown = [
             (tool, zip(times, poseStates, strict=True)),
-            (touches, _growing(trajectory.touches, 1, _touchesState, start)),
+            (touches, _growing(made, 1, lambda count: _touchesState(made[:count]), start)),
             (clearance, zip(times, distanceStates, strict=True)),
         ]
-        if trajectory.traced:
+        if traced:
             trace = add(_TRACE, placed)
-            shown.append((trace, _growing(trajectory.traced, POINTS_A_STATE, _traceState, start)))
-            total += 1 + -(-len(trajectory.traced) // POINTS_A_STATE)
+            places = np.array([point.position_mm for point in traced])
+            states = _growing(
+                traced, POINTS_A_STATE, lambda count: _traceState(places[:count]), start
+            )
+            shown.append((trace, states))
+            total += 1 + -(-len(traced) // POINTS_A_STATE)
         for proxy, states in shown:
             title = f"{proxy.GetName()} sequence"
             sequence = NodeKind(SEQUENCE, f"{REPLAY} {title}", title).make(scene)
@@ -192,9 +198,7 @@ def removeReplay(scene: Any, rest: Callable[[float], None] = lambda _share: None
     for node in sorted(ours, key=lambda node: not node.IsA(BROWSER)):
         if node.GetScene() is None:
             continue
-        if node.IsA("vtkMRMLDisplayableNode") and node.GetDisplayNode() is not None:
-            scene.RemoveNode(node.GetDisplayNode())
-        scene.RemoveNode(node)
+        removeNode(node)
         if node.IsA(SEQUENCE):
             for _slice in _slicesOf(node):
                 rest(0.0)
@@ -223,11 +227,11 @@ def _slicesOf(sequence: Any) -> Iterator[None]:
 
 
 def _growing(
-    made: Sequence[Any], step: int, stateOf: Callable[[Sequence[Any]], Any], startS: float
+    made: Sequence[Any], step: int, stateOf: Callable[[int], Any], startS: float
 ) -> Iterator[tuple[float, Any]]:
-    """Yield a state of the points made so far, at the start and after every `step` points."""
+    """Yield the state of each number of points, at the start and after every `step` points."""
     for count in (*range(0, len(made), step), len(made)):
-        yield made[count - 1].time_s if count else startS, stateOf(made[:count])
+        yield made[count - 1].time_s if count else startS, stateOf(count)
 
 
 def _touchesState(touches: Sequence[Any]) -> Any:
@@ -237,9 +241,8 @@ def _touchesState(touches: Sequence[Any]) -> Any:
     return state
 
 
-def _traceState(traced: Sequence[Any]) -> Any:
+def _traceState(places: np.ndarray) -> Any:
     state = slicer.vtkMRMLModelNode()
-    places = np.array([point.position_mm for point in traced]).reshape(-1, 3)
     state.SetAndObservePolyData(pointCloud(places))
     return state
 
