@@ -36,6 +36,7 @@ LAYERS = {
         rastrainer.motion, rastrainer.scenario
         rastrainer.journal
         rastrainer.trial
+        rastrainer.decision
         rastrainer.study.database
         rastrainer.study.protocol
         rastrainer.study.curriculum
@@ -65,6 +66,7 @@ LAYERS = {
         rastrainer_simulator.viewpoint
         rastrainer_simulator.presentation
         rastrainer_simulator.authoring, rastrainer_simulator.virtual
+        rastrainer_simulator.decision
         rastrainer_simulator.net
         rastrainer_simulator.net.igtl, rastrainer_simulator.net.views
         rastrainer_simulator.replay

@@ -14,6 +14,8 @@ DEFAULT_PORT = 18944
 DEFAULT_VIEW_PORT = 18945
 FIDUCIAL_COUNT = 15
 TRIAL_RUN = "trial-run"
+DECIDE = "decide"
+"""The drill of decisions, where a task is named."""
 MIN_TRACE_POINTS, MAX_TRACE_POINTS = 30, 500
 """Points of a trace: fewer do not determine a registration, more add next to nothing."""
 TRACE_SPACING_MM = 1.0
