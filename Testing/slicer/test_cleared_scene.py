@@ -93,10 +93,10 @@ def test_a_long_replay_in_a_closed_scene_is_released_gradually(host, session, tm
     assert count > a_turn
     host.scene.Clear(0)
     assert tool.GetNumberOfDataNodes() == count
-    while tool.GetNumberOfDataNodes() == count:
-        session.work.process()
-    assert count - tool.GetNumberOfDataNodes() <= a_turn
-    in_turns(session.work)
+    session.replay.process()
+    assert 0 < count - tool.GetNumberOfDataNodes() <= a_turn
+    while session.replay.isReleasing:
+        session.replay.process()
     assert tool.GetNumberOfDataNodes() == 0
 
 

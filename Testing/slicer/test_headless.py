@@ -21,6 +21,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.trial.analysis import analyze_trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_headless import main as headless
+from rastrainer_headless import residual_picture
 from rastrainer_headless.main import results_json, writeOutput
 from rastrainer_headless.scene import HeadlessScene
 from Testing.slicer.scene_bundle import load_bundle
@@ -139,7 +140,9 @@ def test_files_are_written_for_a_trial_whose_true_error_was_not_revealed(
     colin_record, tmp_path, monkeypatch
 ):
     captions = []
-    monkeypatch.setattr(headless, "writeResidualPicture", lambda *words: captions.extend(words[-1]))
+    monkeypatch.setattr(
+        residual_picture, "writeResidualPicture", lambda *words: captions.extend(words[-1])
+    )
     scenario = load_scenario(COLIN)
     analysis = analyze_trial(record_from_json(TrialRecord, colin_record), scenario)
     files = writeOutput(tmp_path, HeadlessScene(), scenario, analysis)

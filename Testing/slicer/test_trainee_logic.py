@@ -116,9 +116,9 @@ def test_the_history_is_a_table_and_two_learning_curves_with_room_for_more(scene
     assert chart.GetXAxisRange() == (0.0, 5.0)
     assert showLearningCurve(scene, "a", trials) is chart
     assert chart.GetNumberOfPlotSeriesNodes() == 2
-    table = Role.HISTORY.find(scene)
-    scores = slicer.util.arrayFromTableColumn(table, "score")
+    scores = slicer.util.arrayFromTableColumn(Role.HISTORY.find(scene), "score")
     assert scores.tolist() == [trial.score.score for trial in trials]
+    table = Role.LEARNING_TABLE.find(scene)
     for index in range(2):
         series = chart.GetNthPlotSeriesNode(index)
         assert series.GetTableNodeID() == table.GetID()
