@@ -23,7 +23,6 @@ from Testing.slicer.recorded_trial import (
     touches_on_colin,
     write_recorded_trial,
 )
-from Testing.slicer.work_at_once import in_turns
 
 FIDUCIALS = "vtkMRMLMarkupsFiducialNode"
 
