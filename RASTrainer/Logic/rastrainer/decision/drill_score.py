@@ -39,7 +39,7 @@ def case_cost(case: DecidedCase) -> float:
 
 
 @dataclass(frozen=True)
-class Estimate:
+class DrillEstimate:
     """A value with its 95 % interval."""
 
     value: float
@@ -66,12 +66,12 @@ class DrillScore:
     cases: int
     harmful: int
     vain: int
-    sensitivity: Estimate
-    criterion: Estimate
+    sensitivity: DrillEstimate
+    criterion: DrillEstimate
     mean_cost: float
     score: float
     brier: float
-    ability: Estimate
+    ability: DrillEstimate
     mean_checks: float
     mean_time_s: float
     missed: dict[Fault, tuple[int, int]]
@@ -102,8 +102,8 @@ def drill_score(cases: Sequence[DecidedCase]) -> DrillScore:
         cases=len(cases),
         harmful=harmful,
         vain=vain,
-        sensitivity=Estimate(sensitivity, sensitivity - error, sensitivity + error),
-        criterion=Estimate(criterion, criterion - error / 2.0, criterion + error / 2.0),
+        sensitivity=DrillEstimate(sensitivity, sensitivity - error, sensitivity + error),
+        criterion=DrillEstimate(criterion, criterion - error / 2.0, criterion + error / 2.0),
         mean_cost=mean_cost,
         score=100.0 * min(1.0, max(0.0, saved)),
         brier=sum((c.confidence / 100.0 - c.is_right) ** 2 for c in cases) / len(cases),
@@ -125,7 +125,7 @@ def _probit(count: int, total: int) -> tuple[float, float]:
     return z, rate * (1.0 - rate) / ((total + 1.0) * _NORMAL.pdf(z) ** 2)
 
 
-def _ability(cases: Sequence[DecidedCase]) -> Estimate:
+def _ability(cases: Sequence[DecidedCase]) -> DrillEstimate:
     """Return the ability by maximum likelihood weighted with its information (Warm 1989)."""
     ability = 0.0
     for _ in range(100):
@@ -138,4 +138,4 @@ def _ability(cases: Sequence[DecidedCase]) -> Estimate:
         if abs(step) < 1e-9:
             break
     error = _Z95 / math.sqrt(information)
-    return Estimate(ability, ability - error, ability + error)
+    return DrillEstimate(ability, ability - error, ability + error)
