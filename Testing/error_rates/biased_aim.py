@@ -14,12 +14,12 @@ import numpy as np
 from rastrainer.number_text import fixed
 from rastrainer.trial.score_reference import fiducial_normals, region_of, score_reference
 from rastrainer.trial.scoring import PASS_MARK, ScoreMeasures, passes, score_trial
-from rastrainer_simulator.collision.robot_shape import sphere_directions
 from Testing.error_rates.cheats import MOST
 from Testing.error_rates.hands import HEADS, TASKS, USUAL, scenario_of, trials_of
 from Testing.error_rates.measured import Measured, share_of, share_text
 from Testing.error_rates.registered import common_biases, errors_along_skin, registered_errors
 from Testing.simulator.virtual.cheating_trainees import BIAS_MM, FLE_MM
+from Testing.sphere_directions import sphere_directions
 
 DIRECTIONS = 60
 MAX_ABOVE = 0.02

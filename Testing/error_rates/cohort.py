@@ -26,9 +26,9 @@ from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.setup import DEFAULT_SCENARIO
 from rastrainer_simulator.virtual.cohort import DATABASE, simulate_cohort
+from rastrainer_simulator.virtual.hand import Skill
 from rastrainer_simulator.virtual.play import PlaySettings
 from rastrainer_simulator.virtual.population import ModeEffect, Population, trial_jobs
-from rastrainer_simulator.virtual.scripted_trainee import Skill
 from Testing.error_rates.hands import HEADS, USUAL, trials_of
 from Testing.error_rates.measured import Measured, deviation
 from Testing.error_rates.recovery import PROTOCOL, estimates, truths

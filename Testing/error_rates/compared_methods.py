@@ -9,9 +9,6 @@ from typing import NamedTuple
 import numpy as np
 from scipy import stats
 
-from rastrainer.study.study_data import StudyData
-from rastrainer.trial.trial_row import TrialRow
-from rastrainer_simulator.report.target_errors import TITLES
 from rastrainer_simulator.statistics.intervals import ALPHA
 from rastrainer_simulator.statistics.paired import fit_differences, holm, is_separable
 from Testing.error_rates.measured import Measured, share_of, share_text
@@ -69,18 +66,6 @@ def decisions(errors: np.ndarray, places: np.ndarray) -> Decisions:
         found.append((p, fit.mean - reach, fit.mean + reach))
     p, low, high = (np.stack(each, axis=-1) for each in zip(*found, strict=True))
     return Decisions(holm(p) < ALPHA, p < ALPHA, low, high)
-
-
-def study_of(errors: np.ndarray, places: np.ndarray) -> StudyData:
-    """Return one of the studies as a report reads it; `errors` are (trainees, methods) float."""
-    rows = []
-    for trainee, (own, order) in enumerate(zip(errors, places, strict=True)):
-        for method in np.argsort(order):
-            values = {"true_tre_mm": float(own[method])}
-            name = [*TITLES][method]
-            row = TrialRow(f"T{trainee:03d}", "desktop", "task-1", 1, values, method=name)
-            rows.append(row)
-    return StudyData("Methods", tuple(rows), has_order=True)
 
 
 def differences(sets: int, seed: int = 31) -> list[Measured]:

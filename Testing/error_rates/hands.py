@@ -18,7 +18,7 @@ from rastrainer.registration.target_error import true_touch_errors
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.scoring import SAFETY_METRICS
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.virtual.scripted_trainee import Skill
+from rastrainer_simulator.virtual.hand import Skill
 from Testing.error_rates.row_files import Floats, play_missing, stored_rows
 from Testing.simulator.authoring.planned_heads import setup_of
 from Testing.simulator.virtual.cheating_trainees import play_honestly
@@ -33,7 +33,7 @@ SKILLS = {
         speed_mm_s=70.0,
         gain_per_s=2.0,
         aim_sd_mm=1.2,
-        tremor_mm_s=6.0,
+        drift_mm_s=2.7,
         reaction_s=0.4,
         dwell_s=0.5,
     ),

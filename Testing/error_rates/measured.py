@@ -20,6 +20,7 @@ class Measured:
         further: other figures of the same data sets.
         slack: from a tolerance in standard errors to that of a number; shares have their own.
         also: what else has to hold with such a tolerance.
+        digits: decimals of a number that is not a share.
     """
 
     case: str
@@ -31,6 +32,7 @@ class Measured:
     is_share: bool = True
     slack: Callable[[float], float] = lambda _standard_errors: 0.0
     also: Callable[[float], bool] = lambda _standard_errors: True
+    digits: int = 1
 
     def holds(self, standard_errors: float = 0.0) -> bool:
         """Return whether all is within its limits, with a tolerance in standard errors."""
@@ -54,7 +56,7 @@ class Measured:
             for limit in (self.at_least, self.at_most)
         )
         asked = f"{least} to {most}" if least and most else f"≥ {least}" if least else f"≤ {most}"
-        figure = share_text(self.figure) if self.is_share else fixed(self.figure, 1)
+        figure = share_text(self.figure) if self.is_share else fixed(self.figure, self.digits)
         return [self.case, figure, asked if least or most else "–", *self.further]
 
 

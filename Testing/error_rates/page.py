@@ -13,7 +13,9 @@ from Testing.error_rates import (
     cohort,
     compared_methods,
     curricula,
+    decision_rates,
     drawn_traces,
+    drills,
     equal_hands,
     groups,
     learning,
@@ -23,6 +25,7 @@ from Testing.error_rates import (
     propagation,
     recovery,
     target_errors,
+    virtual_hand,
 )
 from Testing.error_rates.measured import Measured
 
@@ -51,8 +54,20 @@ TABLES: dict[str, tuple[Sequence[str], Callable[[int], Sequence[Measured]]]] = {
     "methods": (method_errors.HEADER, method_errors.measured),
     "match warnings": (match_warnings.HEADER, match_warnings.measured),
     "drawn traces": (drawn_traces.HEADER, drawn_traces.measured),
+    "virtual hand": (virtual_hand.HEADER, virtual_hand.quantities),
     "cheats": (cheats.HEADER, cheats.played),
     "biased aim": (biased_aim.HEADER, biased_aim.scores),
+    "drill learning": (drills.LEARNING_HEADER, drills.learning),
+    "drill training": (drills.TRAINING_HEADER, drills.training),
+    "drill means": (drills.MEAN_HEADER, drills.means),
+    "drill misses": (drills.MISSED_HEADER, drills.missed_most),
+    "observers": (decision_rates.OBSERVERS_HEADER, decision_rates.observers),
+    "faults": (decision_rates.FAULTS_HEADER, decision_rates.by_fault),
+    "drill cheats": (decision_rates.CHEATS_HEADER, decision_rates.cheats),
+    "drill passing": (decision_rates.PASSING_HEADER, decision_rates.passing),
+    "drill scores": (decision_rates.SCORES_HEADER, decision_rates.scores),
+    "drill abilities": (decision_rates.ABILITY_HEADER, decision_rates.abilities),
+    "drill difficulties": (decision_rates.DIFFICULTY_HEADER, decision_rates.difficulties),
     "equal hands": (equal_hands.HEADER, equal_hands.usual),
     "slow hands": (equal_hands.HEADER, equal_hands.slow),
 }

@@ -11,6 +11,7 @@ from rastrainer.registration.target_error import common_bias
 from rastrainer.trial.score_reference import fiducial_normals, region_of
 from Testing.error_rates import (
     curricula,
+    decisions,
     drawn_traces,
     hands,
     match_warnings,
@@ -44,12 +45,16 @@ FEW = {
 COSTLY = {
     "biased aim",
     "drawn traces",
+    "drill difficulties",
     "equal hands",
+    "faults",
     "match warnings",
     "methods",
+    "observers",
     "played cohort",
     "several groups",
     "slow hands",
+    "virtual hand",
 }
 """Computed in full by `make soak` only."""
 
@@ -183,12 +188,13 @@ def test_every_stored_trial_is_reproduced(key):
         (method_errors.FILE, method_errors.Chunk, set(method_errors.keys(2000)), 3),
         (match_warnings.FILE, match_warnings.Chunk, set(match_warnings.keys(CHUNKS)), 5),
         (drawn_traces.FILE, drawn_traces.Drawn, set(drawn_traces.keys(drawn_traces.SEEDS)), 5),
+        (decisions.FILE, decisions.Shown, decisions.KEYS, 2),
     ],
-    ids=["cheats", "hands", "methods", "match warnings", "drawn traces"],
+    ids=["cheats", "hands", "methods", "match warnings", "drawn traces", "decisions"],
 )
 def test_each_stored_row_is_kept_once_and_belongs_to_its_table(path, kind, expected, names):
     rows = [dataclasses.astuple(row)[:names] for row in stored_rows(path, kind)]
     assert len(rows) == len(set(rows))
     assert set(rows) <= expected
-    if kind in (played.Played, hands.HandsTrial):
+    if kind in (played.Played, hands.HandsTrial, decisions.Shown):
         assert set(rows) == expected

@@ -19,7 +19,7 @@ from rastrainer.journal.journal_file import file_stamp
 from rastrainer.procedure.record import ProcedureRecord, UsedRegistration
 from rastrainer.protocol import Mode, Phase, Proximity
 from rastrainer.registration.fits import RIGID
-from rastrainer.registration.target_error import true_errors
+from rastrainer.registration.target_error import true_target_error_mm
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
@@ -37,13 +37,13 @@ from rastrainer_simulator.state import (
     SimulationState,
     StepResult,
 )
+from rastrainer_simulator.virtual.hand import Skill
 from rastrainer_simulator.virtual.population import TrialJob
 from rastrainer_simulator.virtual.scripted_trainee import (
     LONGEST_TRIAL_S,
     Action,
     Observation,
     ScriptedTrainee,
-    Skill,
     TrialStoppedError,
 )
 from rastrainer_simulator.virtual.virtual_procedure import ProcedureHands, VirtualProcedure
@@ -69,7 +69,7 @@ def play_virtual_trial(
     """
     scenario = simulation.setup.scenario
     head_to_world = scenario.perturbed_head_to_world(seed)
-    hands = ScriptedTrainee(scenario, task_name, head_to_world, skill, seed)
+    hands = ScriptedTrainee(scenario, task_name, head_to_world, skill, seed, dt)
     name = trainee or f"virtual-{seed}"
     start = {"task": task_name, "trainee": name, "mode": mode.value, "seed": seed}
 
@@ -173,8 +173,9 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
     scenario = simulation.setup.scenario
     head_to_world = scenario.perturbed_head_to_world(job.seed)
     analysis = analyze_trial(record, scenario)
-    errors = true_errors(analysis.rigid.matrix, head_to_world, scenario.target.position_ras)
-    truth = RevealedTruth(tuple(head_to_world.ravel().tolist()), float(np.linalg.norm(errors)))
+    target = scenario.target.position_ras
+    tre_mm = true_target_error_mm(analysis.rigid.matrix, head_to_world, target)
+    truth = RevealedTruth(tuple(head_to_world.ravel().tolist()), tre_mm)
     if job.procedure:
         done = _procedure(job, analysis, scenario, head_to_world)
         analysis = replace(analysis, record=replace(record, procedure=done))

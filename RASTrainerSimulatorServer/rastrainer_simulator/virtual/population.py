@@ -13,7 +13,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.protocol import SPEED_LIMIT_MM_S, Mode, StepKind
 from rastrainer.study.protocol.study_protocol import StudyProtocol, steps_for
-from rastrainer_simulator.virtual.scripted_trainee import Skill
+from rastrainer_simulator.virtual.hand import Skill
 
 NAMESPACE = uuid.UUID("2b1f9c1e-52dd-5f0c-9c51-5261546f686f")
 FIRST_DAY = datetime(2000, 1, 1, 9, tzinfo=timezone.utc)
@@ -99,8 +99,9 @@ class ModeEffect:
 class Population:
     """The distribution of virtual trainees.
 
-    Scatter means the aim's, the tip's where it settles, and the hand's tremor: all three are scaled
-    alike, so that the localization error is in proportion. Pace scales speed, gain and pauses, so
+    Scatter means the aim's, the tip's where it settles, and the hand's drift: all three are scaled
+    alike, so that the localization error is in proportion. Tremor is physiological: practice leaves
+    it as it is. Pace scales speed, gain and pauses, so
     that times are in inverse proportion, up to the robot's speed limit.
 
     Attributes:
@@ -170,7 +171,7 @@ class Population:
             gain_per_s=float(np.clip(own.gain_per_s * pace, *GAIN_PER_S)),
             aim_sd_mm=float(max(own.aim_sd_mm * scatter, STEADIEST_MM)),
             settled_mm=float(max(own.settled_mm * scatter, STEADIEST_MM)),
-            tremor_mm_s=float(own.tremor_mm_s * scatter),
+            drift_mm_s=float(own.drift_mm_s * scatter),
             aim_bias_mm=effect.bias_mm,
             reaction_s=float(own.reaction_s / pace),
             dwell_s=float(own.dwell_s / pace),

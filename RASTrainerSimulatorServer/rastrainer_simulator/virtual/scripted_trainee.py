@@ -1,8 +1,8 @@
 """A virtual trainee: seeded hands that drive the robot by the protocol's commands alone.
 
 It sees what a person sees (the tool tip, the numbered fiducials) and answers with `Jog`, `Capture`,
-`Undo` and `Register`, at human speed, with tremor, overshoot and one touch taken back. The demo
-lets it play over OpenIGTLink; tests and cohort simulations step it together with a simulation.
+`Undo` and `Register`, at human speed, with drift, tremor, overshoot and one touch taken back. The
+demo lets it play over OpenIGTLink; tests and cohort simulations step it together with a simulation.
 """
 
 from __future__ import annotations
@@ -19,18 +19,23 @@ from rastrainer.head.mesh import HeadMesh
 from rastrainer.protocol import SPEED_LIMIT_MM_S, Phase
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.score_reference import computed_once, fiducial_normals
+from rastrainer_simulator.teleoperation.teleoperation import TeleoperationSettings
+from rastrainer_simulator.virtual.hand import DECISION_PERIOD_S, Hand, Skill
 
 LIFT_MM = 35.0
 """How far the tip is lifted off the skin before it travels to the next fiducial."""
 
-PRESS_MM = 1.5
+LAST_MM = 10.0
+"""Distance from a fiducial within which the tip goes at the fine speed, as the feedback advises."""
+
+PRESS_MM = 0.8
 """How far below the skin the last aim is: the touch of the tip should be felt."""
 
 LOWEST_DIP = np.radians(5.0)
 """The path around the head's center may be lower than both of its ends by this angle."""
 
-DECISION_PERIOD_S = 0.05
 JOG_DURATION_S = 0.1
+FINE_SHARE = TeleoperationSettings().fine_speed / TeleoperationSettings().coarse_speed
 STUCK_AFTER_S = 12.0
 """Time limit of aiming at a fiducial: after that, the trainee touches where the tip is."""
 
@@ -41,35 +46,6 @@ Action = tuple[str, dict[str, Any]]
 
 class TrialStoppedError(RASTrainerError):
     """The trial could not be played to its end."""
-
-
-@dataclass(frozen=True)
-class Skill:
-    """The properties of a trainee's hands.
-
-    Attributes:
-        gain_per_s: how briskly the remaining distance is closed.
-        aim_sd_mm: standard deviation of the aim on the skin, along each of its two directions.
-        settled_mm: largest distance of the tip from its aim for a touch.
-        tremor_mm_s: standard deviation of the hand's unwanted velocity, along each axis.
-        overshoot: how far the first aim goes past the fiducial, as a share of the distance.
-        dwell_s: how long the tip is held still before a touch.
-        slip_at: the fiducial (1 is the first) at which the trainee slips by 4 mm, notices and
-            undoes the touch; None for a trainee who never does.
-        aim_bias_mm: by what the view misleads the aim; x, y, z in World. The part along the skin
-            is what counts.
-    """
-
-    speed_mm_s: float = 120.0
-    gain_per_s: float = 3.0
-    aim_sd_mm: float = 0.8
-    settled_mm: float = 0.4
-    tremor_mm_s: float = 4.0
-    overshoot: float = 0.05
-    reaction_s: float = 0.25
-    dwell_s: float = 0.3
-    slip_at: int | None = 4
-    aim_bias_mm: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -91,9 +67,18 @@ class ScriptedTrainee:
     """Plays one trial; `decide` is called with each observation and answers with what to send."""
 
     def __init__(
-        self, scenario: Scenario, task_name: str, head_to_world: np.ndarray, skill: Skill, seed: int
+        self,
+        scenario: Scenario,
+        task_name: str,
+        head_to_world: np.ndarray,
+        skill: Skill,
+        seed: int,
+        command_period_s: float = DECISION_PERIOD_S,
     ) -> None:
-        """Play a task; HeadToWorld is (4, 4) float, mm."""
+        """Play a task; HeadToWorld is (4, 4) float, mm.
+
+        The hand trembles between its decisions, too, if commands may be sent more often.
+        """
         # As seen in the room, World, mm: (n, 3), (n, 3), the center of the head and its top.
         self._fiducials = transforms.apply(head_to_world, scenario.task(task_name).fiducials)
         self._normals = fiducial_normals(scenario, task_name) @ head_to_world[:3, :3].T
@@ -101,6 +86,8 @@ class ScriptedTrainee:
         self._vertex = transforms.apply(head_to_world, computed_once(scenario, _vertex))
         self._skill = skill
         self._random = np.random.default_rng(seed)
+        self._hand = Hand(skill, self._random, seed)
+        self._command_period_s = min(command_period_s, DECISION_PERIOD_S)
         self._slip_at = skill.slip_at and int(np.random.default_rng([seed, 1]).integers(2, 15))
         self._planned_for: int | None = None
         self._touched: int | None = None
@@ -109,14 +96,16 @@ class ScriptedTrainee:
         self._path: list[np.ndarray] = []
         self._acts_from_s = 0.0
         self._gives_up_at_s = np.inf
-        self._tremor = np.zeros(3)
+        self._jogs_from_s = np.inf
+        self._eases_off = False
         self._outward_at_aim = np.zeros(3)
 
     def decide(self, observation: Observation) -> Action | None:
-        """Return the command to send now, or None to wait; at most one every 50 ms."""
+        """Return the command to send now, or None to wait."""
         if observation.sim_time_s < self._acts_from_s:
-            return None
+            return self._jog(observation) if observation.sim_time_s > self._jogs_from_s else None
         self._acts_from_s = observation.sim_time_s + DECISION_PERIOD_S
+        self._jogs_from_s = np.inf
         if observation.phase not in (Phase.RUNNING, Phase.COMPLETE):
             return None
         if self._is_undoing_touch:
@@ -148,6 +137,7 @@ class ScriptedTrainee:
         A refused touch means that not the tip but another part of the tool is at the head. The arm
         comes to the same point from above in another posture.
         """
+        self._hand.release()
         fiducial = self._fiducials[point - 1]
         outward = self._normals[point - 1]
         error = self._random.normal(self._skill.aim_bias_mm, self._skill.aim_sd_mm, 3)
@@ -157,7 +147,8 @@ class ScriptedTrainee:
         lifted = observation.tip_mm + LIFT_MM * self._outward(observation.tip_mm)
         above = fiducial + LIFT_MM * outward
         past = above + self._skill.overshoot * (above - lifted)
-        self._path = [*self._way(lifted, past, self._is_refused), above, aim]
+        near = fiducial + LAST_MM * outward
+        self._path = [*self._way(lifted, past, self._is_refused), above, near, aim]
         self._is_refused = False
         self._outward_at_aim = outward
         self._planned_for = point
@@ -173,10 +164,11 @@ class ScriptedTrainee:
             self._planned_for = None
             return CommandName.CAPTURE, {}
         is_aim = len(self._path) == 1
+        remaining = self._path[0] - observation.tip_mm
+        fastest = self._skill.speed_mm_s * (FINE_SHARE if is_aim else 1.0)
         if is_aim and np.isinf(self._gives_up_at_s):
             # However long the path was.
             self._gives_up_at_s = observation.sim_time_s + STUCK_AFTER_S
-        remaining = self._path[0] - observation.tip_mm
         gave_up = is_aim and observation.sim_time_s > self._gives_up_at_s
         if is_aim:
             # At any height over the aim.
@@ -191,24 +183,22 @@ class ScriptedTrainee:
                 return self._approach(observation)
             self._acts_from_s = observation.sim_time_s + self._skill.dwell_s
             return None
-        velocity = self._velocity(remaining, self._skill.speed_mm_s * (0.5 if is_aim else 1.0))
+        self._hand.correct(remaining, fastest)
         # In contact the hand stops pushing: it only corrects along the skin.
-        eases_off = is_aim and observation.is_in_contact
-        sent = self._along_skin(velocity) if eases_off else velocity
+        self._eases_off = is_aim and observation.is_in_contact
+        return self._jog(observation)
+
+    def _jog(self, observation: Observation) -> Action:
+        start_s, end_s = observation.sim_time_s, observation.sim_time_s + self._command_period_s
+        self._jogs_from_s = end_s - 1e-6
+        velocity = self._hand.velocity(start_s, end_s)
+        sent = self._along_skin(velocity) if self._eases_off else velocity
         limited = np.clip(sent, -SPEED_LIMIT_MM_S, SPEED_LIMIT_MM_S)
         rounded = [round(float(component), 3) for component in limited]
         return CommandName.JOG, {"velocityMmS": rounded, "durationS": JOG_DURATION_S}
 
     def _along_skin(self, displacement: np.ndarray) -> np.ndarray:
         return displacement - self._outward_at_aim * float(displacement @ self._outward_at_aim)
-
-    def _velocity(self, remaining: np.ndarray, fastest_mm_s: float) -> np.ndarray:
-        """Return the velocity of the hand, (3,) float, World, mm/s, with its tremor."""
-        velocity = self._skill.gain_per_s * remaining
-        velocity *= min(1.0, fastest_mm_s / max(float(np.linalg.norm(velocity)), 1e-9))
-        noise = self._random.normal(0.0, self._skill.tremor_mm_s, 3)
-        self._tremor = 0.6 * self._tremor + 0.8 * noise
-        return velocity + self._tremor
 
     def _outward(self, position: np.ndarray) -> np.ndarray:
         away = position - self._center

@@ -19,11 +19,11 @@ from rastrainer.protocol import PROTOCOL_VERSION, DeviceName, Mode, Phase, Proxi
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.touch_registration import GivenPoints, register_trial
+from rastrainer_simulator.virtual.hand import Skill
 from rastrainer_simulator.virtual.scripted_trainee import (
     LONGEST_TRIAL_S,
     Observation,
     ScriptedTrainee,
-    Skill,
     TrialStoppedError,
 )
 

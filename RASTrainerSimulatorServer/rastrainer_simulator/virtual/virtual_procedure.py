@@ -33,7 +33,7 @@ from rastrainer.trial.procedure_outcome import (
     VERIFYING_S,
 )
 from rastrainer_simulator.vectors import vector
-from rastrainer_simulator.virtual.scripted_trainee import Skill
+from rastrainer_simulator.virtual.hand import Skill
 
 MISSED_BONE_MM = 20.0
 """How far the drill goes past the entry where it meets no bone."""
@@ -56,7 +56,7 @@ class ProcedureHands:
     angle_sd_deg: float = 0.5
     depth_sd_mm: float = 0.6
     plunge_mm: float = 0.7
-    check_sd_mm: float = 0.8
+    check_sd_mm: float = Skill.aim_sd_mm
     pace: float = 1.0
 
     @classmethod

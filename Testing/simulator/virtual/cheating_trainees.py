@@ -18,7 +18,6 @@ from rastrainer.protocol import Proximity, TouchRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.score_reference import fiducial_normals
-from rastrainer_simulator.collision.robot_shape import sphere_directions
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record.trial_entries import TrialEntries
@@ -31,8 +30,9 @@ from rastrainer_simulator.state import (
     OperatorInput,
 )
 from rastrainer_simulator.training.head_pose import Truth
+from rastrainer_simulator.virtual.hand import Skill
 from rastrainer_simulator.virtual.play import play_virtual_trial
-from rastrainer_simulator.virtual.scripted_trainee import Skill
+from Testing.sphere_directions import sphere_directions
 
 DT = 0.02
 FLE_MM = 1.0

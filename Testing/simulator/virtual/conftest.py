@@ -6,9 +6,9 @@ import pytest
 
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer_simulator.virtual.cohort import simulate_cohort
+from rastrainer_simulator.virtual.hand import Skill
 from rastrainer_simulator.virtual.play import PlaySettings
 from rastrainer_simulator.virtual.population import ModeEffect, Population
-from rastrainer_simulator.virtual.scripted_trainee import Skill
 
 BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04, slip_at=None)
 AIM_FACTOR = 2.5

@@ -6,12 +6,12 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.study.outcomes import MAIN_OUTCOMES
 from rastrainer_simulator.report.comparisons import compare_modes
+from rastrainer_simulator.virtual.hand import Skill
 from rastrainer_simulator.virtual.outcome_model import (
     OutcomeModel,
     rejection_rates,
 )
 from rastrainer_simulator.virtual.population import ModeEffect, Population
-from rastrainer_simulator.virtual.scripted_trainee import Skill
 from Testing.drawn_study import draw_study
 
 MODES = ("desktop", "hmd")
@@ -69,7 +69,7 @@ def assert_scaled(one, other, pace, scatter):
     for factor, names in (
         (pace, ("speed_mm_s", "gain_per_s")),
         (1 / pace, ("reaction_s", "dwell_s")),
-        (scatter, ("aim_sd_mm", "settled_mm", "tremor_mm_s")),
+        (scatter, ("aim_sd_mm", "settled_mm", "drift_mm_s")),
     ):
         for name in names:
             assert getattr(other, name) / getattr(one, name) == pytest.approx(factor), name

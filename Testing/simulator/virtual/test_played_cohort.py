@@ -1,11 +1,13 @@
 """A cohort played by the whole simulator: the study recovers the truth."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from rastrainer_simulator.virtual.hand import Skill
 from rastrainer_simulator.virtual.play import PlaySettings, play_job
 from rastrainer_simulator.virtual.population import FIRST_DAY, ModeEffect, Population, TrialJob
-from rastrainer_simulator.virtual.scripted_trainee import Skill
 from Testing.simulator.virtual.conftest import BRISK
 
 FIRST, LATER = 1, 16
@@ -36,7 +38,8 @@ def test_the_given_learning_exponent_is_played():
 
 def test_a_misleading_view_moves_the_target_more_than_the_residuals():
     modes = {"hmd": ModeEffect(bias_mm=(0.0, 0.0, 3.0))}
-    population = Population(BRISK, 0.0, 0.0, 0.0, modes)
+    # Exact hands: in two trials the scatter of others may hide what the view does.
+    population = Population(replace(BRISK, aim_sd_mm=0.5), 0.0, 0.0, 0.0, modes)
     errors = np.array(
         [
             [(trial.analysis.truth.true_tre_mm, trial.analysis.rigid.fre_mm) for trial in of_mode]
@@ -48,4 +51,10 @@ def test_a_misleading_view_moves_the_target_more_than_the_residuals():
     )
     tre, rmse = (errors[1] - errors[0]).T
     assert (tre > rmse).all()
-    assert tre.mean() > 0.7 > rmse.mean()
+    assert tre.mean() > 0.5 > rmse.mean()
+
+
+def test_equal_jobs_give_equal_trials_whatever_was_played_before():
+    population = Population(BRISK, learning=0.0)
+    first, _, again = (played(population, "desktop", 1, seed) for seed in (3, 4, 3))
+    assert again.analysis.record == first.analysis.record

@@ -6,8 +6,9 @@ import pytest
 from rastrainer import transforms
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.virtual.hand import Skill
 from rastrainer_simulator.virtual.play import play_virtual_trial
-from rastrainer_simulator.virtual.scripted_trainee import LIFT_MM, Skill
+from rastrainer_simulator.virtual.scripted_trainee import LIFT_MM
 from Testing.simulator.authoring.planned_heads import setup_of
 
 DT = 0.05

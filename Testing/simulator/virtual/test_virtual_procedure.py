@@ -16,8 +16,8 @@ from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.report.procedures import procedures
 from rastrainer_simulator.virtual.cohort import simulate_cohort
+from rastrainer_simulator.virtual.hand import Skill
 from rastrainer_simulator.virtual.play import PlaySettings
-from rastrainer_simulator.virtual.scripted_trainee import Skill
 from rastrainer_simulator.virtual.virtual_procedure import (
     ProcedureHands,
     VirtualProcedure,
