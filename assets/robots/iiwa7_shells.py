@@ -1,16 +1,19 @@
 """The iiwa 7's links 1 to 7: closed parts by color, each in its link's frame, in mm."""
 
+from pathlib import Path
+
 import numpy as np
 import trimesh
-from iiwa7_dimensions import JOINTS
 from iiwa7_sections import ARM, ARM_RADIUS, ARM_SEAM, FLANGE_PROFILE, HAND, HAND_SEAM, WRIST
 from solids import Station, box, cylinder, difference, enclosing, loft, moved, revolve, trim
 from trimesh.convex import convex_hull
 
+from rastrainer.files.urdf import read_urdf
 from rastrainer.transforms import MM_PER_M
 
 Parts = dict[str, trimesh.Trimesh]
 
+JOINTS = read_urdf(Path(__file__).with_name("iiwa7") / "iiwa7.urdf").joints
 SEAM_GAP = 1.4
 SEAM_DEPTH = 2.0
 RING_WIDTH = 7.0
@@ -72,9 +75,9 @@ def _shell(link: int, rings: int, segments: int, enclosing: bool = False) -> tri
 def _placed(part: trimesh.Trimesh, link: int) -> trimesh.Trimesh:
     """Move a part from its tilt joint to its link's frame: at the link's far end or at its own."""
     if link % 2:
-        center = (0.0, 0.0, JOINTS[link].origin[2] * MM_PER_M)
+        center = (0.0, 0.0, JOINTS[link].origin[2, 3] * MM_PER_M)
     else:
-        center = (0.0, -JOINTS[link - 1].origin[1] * MM_PER_M, 0.0)
+        center = (0.0, -JOINTS[link - 1].origin[1, 3] * MM_PER_M, 0.0)
     return moved(part, center, 180.0 if link in (3, 4) else 0.0)
 
 

@@ -4,11 +4,9 @@ The tool's frame sits on the flange with z along the A7 axis; the tip's frame at
 """
 
 import trimesh
-from iiwa7_dimensions import TOOL_LENGTH
 from solids import enclosing, revolve
 
-from rastrainer.transforms import MM_PER_M
-
+LENGTH = 200.0
 SHAFT_RADIUS = 3.0
 TIP_LENGTH = 22.0
 POINT_RADIUS = 0.4
@@ -23,8 +21,7 @@ CHUCK = ((10.5, 66.0), (10.5, 72.0), (8.5, 75.0), (8.5, 80.0), (6.0, 86.0), (3.6
 
 def tool(segments: int) -> dict[str, trimesh.Trimesh]:
     """Return the parts of the tool by color, without its tip."""
-    length = TOOL_LENGTH * MM_PER_M
-    shaft = (*CHUCK, (SHAFT_RADIUS, 93.0), (SHAFT_RADIUS, length - TIP_LENGTH))
+    shaft = (*CHUCK, (SHAFT_RADIUS, 93.0), (SHAFT_RADIUS, LENGTH - TIP_LENGTH))
     return {"dark": revolve(MOUNT, segments), "metal": revolve(shaft, segments)}
 
 
@@ -39,7 +36,6 @@ def tip(segments: int) -> trimesh.Trimesh:
 
 def plain_tool(segments: int) -> trimesh.Trimesh:
     """Return the whole tool in one piece, tip included."""
-    length = TOOL_LENGTH * MM_PER_M
     outline = ((31.5, 0.0), (31.5, 8.0), (18.0, 13.0), (17.8, 48.0), (10.5, 66.0), (8.5, 80.0))
-    shaft = ((SHAFT_RADIUS, 93.0), (SHAFT_RADIUS, length - 15.0), (POINT_RADIUS, length))
+    shaft = ((SHAFT_RADIUS, 93.0), (SHAFT_RADIUS, LENGTH - 15.0), (POINT_RADIUS, LENGTH))
     return revolve(enclosing((*outline, *shaft), segments), segments)

@@ -190,14 +190,14 @@ def copy_with_plan(
     )
     if targets:
         scenario = _with_main_target(replace(scenario, targets=targets), head, warn)
-    wrong: list[str] = []
     if procedure is not None:
         scenario, no_go = with_procedure(scenario, procedure)
-        wrong += measure_procedure(PlanningSetup(before, head), procedure).wrong
     if landmarks is not None:
         scenario = replace(scenario, landmarks=on_skin(head, landmarks))
     planning = PlanningSetup(scenario, head)
-    wrong += check_plan(planning)
+    wrong = check_plan(planning)
+    if procedure is not None:
+        wrong += measure_procedure(planning, procedure).wrong
     if landmarks is not None:
         wrong += check_on_planned_head(planning, landmarks)
     # Trials start above the target and turn the head about it, so that touching depends on it.

@@ -12,7 +12,7 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
-from rastrainer.procedure.checks import MeasuredProcedure, check_procedure, measure_lines
+from rastrainer.procedure.checks import MeasuredProcedure, check_procedure
 from rastrainer.procedure.plan import (
     NO_GO_FOLDER,
     Procedure,
@@ -63,8 +63,7 @@ def measure_procedure(planning: PlanningSetup, procedure: Procedure) -> Measured
     Reach is checked in the nominal pose of the head and in some seeded poses.
     """
     meshes = read_procedure_meshes(procedure, skull_of(planning.scenario))
-    wrong = check_procedure(procedure, planning.mesh, meshes)
-    lines = measure_lines(procedure, meshes)
+    lines, wrong = check_procedure(procedure, planning.mesh, meshes)
     if not wrong:
         held, wrong = _lines_held(planning, procedure)
         lines = [replace(line, is_held=can) for line, can in zip(lines, held, strict=True)]

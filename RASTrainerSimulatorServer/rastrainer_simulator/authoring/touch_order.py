@@ -212,12 +212,14 @@ class SurfaceGraph:
         self.mesh, count = mesh, len(mesh.vertices)
         across, across_mm = _paths_across(mesh)
         straight = np.linalg.norm(np.diff(mesh.vertices[mesh.edges], axis=1)[:, 0], axis=1)
-        pairs = np.sort(np.concatenate([mesh.edges, across]), axis=1)
-        lengths = np.concatenate([straight, across_mm])
-        # Of two paths between the same vertices the shorter one.
-        order = np.lexsort((lengths, *pairs.T))
-        pairs, first = np.unique(pairs[order], axis=0, return_index=True)
-        self._paths = csr_array((lengths[order][first], pairs.T), shape=(count, count))
+        pairs = np.concatenate([mesh.edges, across])
+        # Last come the paths from a point on a triangle to its corners: `distance` enters them.
+        both = np.concatenate([pairs, pairs[:, ::-1], [(count, 0)] * 3])
+        lengths = np.concatenate([straight, across_mm, straight, across_mm, np.zeros(3)])
+        order = np.argsort(both[:, 0], kind="stable")
+        rows = np.searchsorted(both[order, 0], np.arange(count + 2))
+        # By rows: scipy adds the lengths of paths between the same vertices if these are in pairs.
+        self._paths = csr_array((lengths[order], both[order, 1], rows), shape=(count + 1,) * 2)
         self._known: dict[tuple[float, ...], float] = {}
 
     def distance(self, start: np.ndarray, end: np.ndarray) -> float:
@@ -232,11 +234,12 @@ class SurfaceGraph:
             if first.triangle == last.triangle:
                 self._known[key] = straight
             else:
-                near, far = (self.mesh.triangles[each.triangle] for each in (first, last))
+                far = self.mesh.triangles[last.triangle]
+                self._paths.indices[-3:] = self.mesh.triangles[first.triangle]
+                self._paths.data[-3:] = self._to(first)
                 # Nearly all paths are shorter than twice the straight line.
                 for limit in (2.0 * straight + 20.0, np.inf):
-                    between = dijkstra(self._paths, directed=False, indices=near, limit=limit)
-                    whole = self._to(first)[:, None] + between[:, far] + self._to(last)
+                    whole = dijkstra(self._paths, indices=-1, limit=limit)[far] + self._to(last)
                     if np.isfinite(whole).any():
                         break
                 self._known[key] = float(whole.min())

@@ -9,7 +9,9 @@ from math import dist
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer_simulator.collision.head_surface import HeadSurface, Nearest, thin_segment
 from rastrainer_simulator.collision.robot_shape import ArmCapsules, PosedArm
@@ -140,10 +142,15 @@ class HeadClearance:
     def nearest_to_point(self, point: Vector) -> Nearest:
         return self._in_world(self._head.nearest_to_point(_moved(self._world_to_head_rows, point)))
 
-    def is_crossed(self, start: Vector, end: Vector) -> bool:
-        """Return whether the head's surface is between two points, World, m."""
-        rows = self._world_to_head_rows
-        return self._head.is_crossed(_moved(rows, start), _moved(rows, end))
+    def are_crossed(self, starts: np.ndarray, end: np.ndarray) -> np.ndarray:
+        """Return from which points (n, 3) the head's surface is before another, (n,) bool.
+
+        The other is (3,); World, m.
+        """
+        to_head = self._world_to_head
+        return self._head.are_crossed(
+            transforms.apply(to_head, starts), transforms.apply(to_head, end)
+        )
 
     def nearest_to_shaft(self, posed: PosedArm, limit: float) -> Nearest | None:
         """Return the point of the head nearest to the shaft, World, m; None beyond `limit`."""
@@ -285,16 +292,17 @@ class LineOfSight:
 
         The tool does not count.
         """
-        off_links = self.off_links(np.array([eye]), np.array(place))
-        return self.is_past_head(eye, place) and bool(off_links[0] > 0.0)
+        eyes = np.array([eye])
+        return bool(self.is_past_head(eyes, place)[0] and self.off_links(eyes, place)[0] > 0.0)
 
-    def is_past_head(self, eye: Vector, place: Vector) -> bool:
-        return eye[2] > ABOVE_TABLE_M and not self._head.is_crossed(eye, place)
+    def is_past_head(self, eyes: np.ndarray, place: ArrayLike) -> np.ndarray:
+        """Return from which eyes (n, 3) a place (3,) is seen past head and table, (n,) bool."""
+        return (eyes[:, 2] > ABOVE_TABLE_M) & ~self._head.are_crossed(eyes, np.asarray(place))
 
-    def off_links(self, eyes: np.ndarray, place: np.ndarray) -> np.ndarray:
+    def off_links(self, eyes: np.ndarray, place: ArrayLike) -> np.ndarray:
         """Return how far the lines from eyes (m, 3) to a place (3,) pass the links, (m,), m."""
         return sight_clearances(eyes, np.broadcast_to(place, eyes.shape), *self._links).min(axis=1)
 
-    def off_tool(self, eyes: np.ndarray, place: np.ndarray) -> np.ndarray:
+    def off_tool(self, eyes: np.ndarray, place: ArrayLike) -> np.ndarray:
         """Return how far the lines from eyes (m, 3) to a place (3,) pass the tool, (m,), m."""
         return sight_clearances(eyes, np.broadcast_to(place, eyes.shape), *self._tool).min(axis=1)

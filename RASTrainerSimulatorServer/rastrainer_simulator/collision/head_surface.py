@@ -128,7 +128,7 @@ def _neighbors(triangles: np.ndarray, vertex_count: int) -> np.ndarray:
 
 
 _REQUEST = fcl.DistanceRequest(enable_nearest_points=True)
-_ANY = fcl.CollisionRequest()
+_ALL = fcl.CollisionRequest(num_max_contacts=10**6)
 # Nearer than this, the line to the nearest point has no reliable direction.
 _TOUCHING = 1e-9
 _BASE_THICKNESS = 0.001
@@ -136,11 +136,18 @@ _BASE_THICKNESS = 0.001
 
 def thin_segment(start: np.ndarray, end: np.ndarray) -> fcl.CollisionObject:
     """Return the segment between two points (3,) float of the frame whose pose is set later."""
+    return fcl.CollisionObject(_segments(start[None], end))
+
+
+def _segments(starts: np.ndarray, end: np.ndarray) -> fcl.BVHModel:
+    """Return the segments between points (n, 3) and one point (3,), as triangles without area."""
+    count, ends = len(starts), np.broadcast_to(end, starts.shape)
+    corners = np.stack([starts, ends, (starts + ends) / 2.0], axis=1).reshape(-1, 3)
     mesh = fcl.BVHModel()
-    mesh.beginModel(1, 3)
-    mesh.addSubModel([start, end, (start + end) / 2.0], [[0, 1, 2]])
+    mesh.beginModel(count, 3 * count)
+    mesh.addSubModel(corners, np.arange(3 * count).reshape(-1, 3))
     mesh.endModel()
-    return fcl.CollisionObject(mesh)
+    return mesh
 
 
 class HeadSurface:
@@ -199,10 +206,14 @@ class HeadSurface:
             (ax + share * ux, ay + share * uy, az + share * uz), distance, on_head, triangle, radius
         )
 
-    def is_crossed(self, start: Vector, end: Vector) -> bool:
-        """Return whether the segment between two points goes through the surface."""
-        segment = thin_segment(np.array(start), np.array(end))
-        return fcl.collide(self._head, segment, _ANY, fcl.CollisionResult()) > 0
+    def are_crossed(self, starts: np.ndarray, end: np.ndarray) -> np.ndarray:
+        """Return which segments between points (n, 3) and one point (3,) cross it, (n,) bool."""
+        result, count = fcl.CollisionResult(), len(starts)
+        if count:
+            fcl.collide(self._head, fcl.CollisionObject(_segments(starts, end)), _ALL, result)
+        crossed = np.zeros(count, dtype=bool)
+        crossed[[contact.b2 for contact in result.contacts]] = True
+        return crossed
 
     def _signed(
         self,

@@ -1,21 +1,17 @@
-"""Open the mesh files of a robot's links: checked, in meters, each in its link's frame.
-
-A file that could unfold into far more than it holds is refused before it is opened.
-"""
+"""Open the mesh files of a robot's links: checked, in meters, each in its link's frame."""
 
 from __future__ import annotations
 
 import io
-import struct
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.reading import plain_xml, read_bytes
-from rastrainer.json_checks import decode_finite_json
-from rastrainer_simulator.robot.model import MeshPart, RobotModel
+from rastrainer.files.reading import read_bytes
+from rastrainer.files.urdf import MeshPart
+from rastrainer_simulator.robot.model import RobotModel
 
 if TYPE_CHECKING:
     import trimesh
@@ -27,15 +23,14 @@ MAX_TRIANGLES = 500_000
 FARTHEST = 10.0
 
 
-def load_meshes(model: RobotModel, kind: str = "visual") -> dict[str, list[ColoredMesh]]:
+def load_meshes(model: RobotModel) -> dict[str, list[ColoredMesh]]:
     """Return the meshes of every link that has some, each with its color (RGBA, 0…1).
 
-    `kind` is "visual" or "collision". Vertices are in meters in the link's frame. Meshes that
-    replace the URDF's own may also lie where they are on the robot at q = 0, in the base frame, as
-    some published sets do: they are recognized by where they lie, and moved.
+    Vertices are in meters in the link's frame. Meshes that replace the URDF's own may also lie
+    where they are on the robot at q = 0, in the base frame, as some published sets do: they are
+    recognized by where they lie, and moved.
     """
-    parts = [part for part in model.meshes if part.kind == kind]
-    loaded = [(part, _load(part)) for part in parts]
+    loaded = [(part, _load(part)) for part in model.meshes]
     replacements = [(part.link, mesh) for part, mesh in loaded if part.replaced]
     bases = [np.eye(4)]
     for joint in model.joints:
@@ -58,7 +53,6 @@ def _load(part: MeshPart) -> trimesh.Trimesh:
         data = read_bytes(part.path, LARGEST_FILE)
     except InputError as error:
         raise InputError(f"The mesh of {part.link} cannot be used: {error}") from None
-    data = checked_content(data, kind, f"The mesh {part.path}")
     try:
         # Loaded from bytes, a mesh cannot refer to further files.
         mesh = trimesh.load_mesh(io.BytesIO(data), file_type=kind, process=False)
@@ -74,12 +68,12 @@ def _load(part: MeshPart) -> trimesh.Trimesh:
     is_surface = vertices.shape[1:] == faces.shape[1:] == (3,)
     if not is_surface or faces.min() < 0 or faces.max() >= len(vertices):
         raise InputError(f"{part.path} has faces that are not triangles of its vertices.")
-    if not np.all(np.abs(vertices * part.scale) <= FARTHEST):
+    if not np.all(np.abs(vertices) <= FARTHEST):
         raise InputError(
             f"{part.path} has vertices that are not finite or beyond {FARTHEST:g} m; robot meshes "
             "should be in meters."
         )
-    mesh = trimesh.Trimesh(vertices * part.scale, faces, process=False)
+    mesh = trimesh.Trimesh(vertices, faces, process=False)
     mesh.merge_vertices()
     return mesh.apply_transform(part.origin)
 
@@ -106,64 +100,3 @@ def _lie_in_base_frame(
         in_link += float(np.linalg.norm(center - middles[link]))
         in_base += float(np.linalg.norm(center - on_robot))
     return in_base < in_link
-
-
-MAX_NUMBERS = 20_000_000
-"""Coordinates and corners of all shown copies together; half a million triangles have 3 million."""
-MAX_COPIES = 1_000
-
-_HEADER = struct.Struct("<4sII")
-_CHUNK = struct.Struct("<II")
-_PARTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
-
-
-def checked_content(data: bytes, kind: str, what: str) -> bytes:
-    """Return a mesh file's bytes as they may be given to a parser.
-
-    `kind` is the suffix of its name, `what` begins the sentence of an error.
-    """
-    numbers = 0
-    if kind == "dae":
-        text = plain_xml(data, what)
-        numbers = len(text) * text.count("<instance_") // MAX_COPIES
-        data = text.encode()
-    elif kind == "glb":
-        try:
-            magic, version, _size = _HEADER.unpack_from(data)
-            size, _kind = _CHUNK.unpack_from(data, _HEADER.size)
-            begin = _HEADER.size + _CHUNK.size
-            tree = decode_finite_json(data[begin : begin + size].decode("utf-8"))
-            if (magic, version) != (b"glTF", 2):
-                raise ValueError
-            numbers = _numbers_shown(tree)
-        except (ValueError, TypeError, KeyError, IndexError, AttributeError, struct.error):
-            raise InputError(f"{what} is not a GLB file (glTF 2.0).") from None
-    if numbers > MAX_NUMBERS:
-        raise InputError(f"{what} unfolds into more than {MAX_NUMBERS} numbers.")
-    return data
-
-
-def _numbers_shown(tree: Any) -> int:
-    """Return at least how many numbers the meshes of all nodes consist of."""
-    lengths = [accessor["count"] for accessor in tree["accessors"]]
-    if not all(type(length) is int and length >= 0 for length in lengths):
-        raise ValueError
-    parts = [_PARTS[accessor["type"]] for accessor in tree["accessors"]]
-    counts = [length * part for length, part in zip(lengths, parts, strict=True)]
-    meshes = [
-        sum(
-            counts[index]
-            for primitive in mesh["primitives"]
-            for index in (*primitive["attributes"].values(), primitive.get("indices", 0))
-        )
-        for mesh in tree["meshes"]
-    ]
-    nodes = tree.get("nodes", [])
-    parents: dict[int, int] = {}
-    for node in nodes:
-        for child in node.get("children", ()):
-            parents[child] = parents.get(child, 0) + 1
-    if len(nodes) > MAX_COPIES or any(count > 1 for count in parents.values()):
-        raise ValueError  # If a node has two parents, it is not a tree.
-    shown = sum(meshes[node["mesh"]] for node in nodes if "mesh" in node)
-    return max(shown, sum(counts))

@@ -1,56 +1,26 @@
-"""The robot as a value: joints, links, limits, tool tip and meshes, read from `prepared.json`.
-
-`assets/robots/make_iiwa7.py` writes that file with the URDF, exact to the last bit: the packages
-that read URDF and meshes take a second to import and 90 MB.
-"""
+"""The robot as a value: joints, links, limits, tool tip and meshes, read from its URDF."""
 
 from __future__ import annotations
 
-import itertools
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.reading import read_json
+from rastrainer.files.urdf import Joint, MeshPart, RobotLink, read_urdf
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.robot.srs_arm import CanonicalArm, Joint
+from rastrainer_simulator.robot.srs_arm import CanonicalArm
 
 FOLDER = ("robots", "iiwa7")
-PREPARED_NAME = "prepared.json"
-MAX_BYTES = 2**20
-_KINDS = ("visual", "collision")
-_SUFFIXES = (".glb", ".dae", ".obj", ".ply", ".stl")
+LENGTHS_M = (0.33999999999999997, 0.3999999999999999, 0.40000000000000024, 0.32600000000000007)
+"""The shoulder's height, and the lengths to elbow, wrist and tip, as the least-squares fit of the
+joints' axes gave them: recorded trials depend on their last bit."""
 HOME = tuple(map(math.radians, (0.0, 30.0, 0.0, -90.0, 0.0, 60.0, 0.0)))
 """rad: the elbow is bent by 90°, the tool points straight down."""
+_SUFFIXES = (".obj", ".ply", ".stl")
 _GRAY = (0.8, 0.8, 0.8, 1.0)
-
-
-@dataclass(frozen=True)
-class RobotLink:
-    """A link, rigidly fixed to a joint's frame."""
-
-    name: str
-    joint: int  # how many movable joints are before it: 0 is the base, 7 the flange
-    offset: np.ndarray  # (4, 4) float: this link's frame to the frame of that joint, m
-
-
-@dataclass(frozen=True)
-class MeshPart:
-    """One mesh of a link."""
-
-    link: str
-    kind: str  # "visual" or "collision"
-    path: Path
-    origin: np.ndarray  # (4, 4) float: the mesh's frame to the link's frame, m
-    scale: tuple[float, ...]
-    color: tuple[float, ...]  # RGBA, 0…1
-    replaced: bool = False  # used instead of the robot's own mesh
 
 
 @dataclass(frozen=True)
@@ -59,11 +29,14 @@ class RobotModel:
 
     name: str
     joints: tuple[Joint, ...]
-    links: tuple[RobotLink, ...]  # parents before children
-    tip: RobotLink
+    links: tuple[RobotLink, ...]  # parents before children, the tool's tip last
     arm: CanonicalArm
     meshes: tuple[MeshPart, ...]
     home: tuple[float, ...] = HOME
+
+    @property
+    def tip(self) -> RobotLink:
+        return self.links[-1]
 
     @property
     def limits(self) -> np.ndarray:
@@ -82,67 +55,35 @@ class RobotModel:
         return tuple(first[joint] for joint in sorted(first))
 
 
-@cache
-def read_prepared() -> Mapping[str, Any]:
-    """Return `model` and `shape` of the KUKA LBR iiwa 7 R800 that comes with RASTrainer, JSON."""
-    prepared: Mapping[str, Any] = read_json(asset_path(*FOLDER, PREPARED_NAME), MAX_BYTES)
-    return prepared
-
-
 def load_robot(mesh_folder: Path | None = None) -> RobotModel:
     """Return the KUKA LBR iiwa 7 R800; no mesh is opened.
 
-    `mesh_folder` holds meshes to show instead of the robot's own.
+    `mesh_folder` holds meshes to show instead of the robot's own. It follows the custom of robot
+    descriptions: `visual/link_3.stl` (or .obj, .ply) is shown for the link whose name
+    ends in `link_3`, else `link_3.stl`, else `collision/link_3.stl`. The arm moves and collides as
+    with its own.
     """
-    model = robot_model(read_prepared()["model"], asset_path(*FOLDER), mesh_folder)
-    if mesh_folder and not any(part.replaced for part in model.meshes):
-        raise InputError(
-            f"{mesh_folder} has no mesh for this robot; there should be files such as "
-            "link_0.stl, visual/link_0.stl or collision/link_0.stl."
-        )
-    return model
+    name, joints, links, meshes = read_urdf(asset_path(*FOLDER, "iiwa7.urdf"))
+    if mesh_folder is not None:
+        found = {link.name: _replacement(link.name, mesh_folder) for link in links}
+        others = [
+            MeshPart(link, path, np.eye(4), _GRAY, replaced=True)
+            for link, path in found.items()
+            if path is not None
+        ]
+        if not others:
+            raise InputError(
+                f"{mesh_folder} has no mesh for this robot; there should be files such as "
+                "link_0.stl, visual/link_0.stl or collision/link_0.stl."
+            )
+        meshes = (*(part for part in meshes if found[part.link] is None), *others)
+    signs = [float(joint.axis.sum()) for joint in joints]
+    arm = CanonicalArm.of(*LENGTHS_M, signs=signs, joints=joints)
+    return RobotModel(name, joints, links, arm, meshes)
 
 
-def robot_model(value: Mapping[str, Any], folder: Path, other: Path | None = None) -> RobotModel:
-    """Return the model of a JSON object whose mesh files are below `folder`.
-
-    The folder `other` follows the custom of robot descriptions: `visual/link_3.stl` (or .dae, .obj,
-    .ply, .glb) replaces the visual meshes of the link whose name ends in `link_3`,
-    `collision/link_3.stl` its collision meshes, and a plain `link_3.stl` both. A link without a
-    visual mesh there shows its collision mesh.
-    """
-    joints = tuple(
-        Joint(**each | {name: np.array(each[name]) for name in ("origin", "axis")})
-        for each in value["joints"]
-    )
-    links = tuple(
-        RobotLink(each["name"], each["joint"], np.array(each["offset"])) for each in value["links"]
-    )
-    own = [
-        MeshPart(
-            each["link"],
-            each["kind"],
-            folder / each["path"],
-            np.array(each["origin"]),
-            tuple(each["scale"]),
-            tuple(each["color"]),
-        )
-        for each in value["meshes"]
-    ]
-    meshes: list[MeshPart] = []
-    for link, kind in itertools.product(links, _KINDS):
-        path = _replacement(link.name, kind, other) if other else None
-        if path:
-            meshes.append(MeshPart(link.name, kind, path, np.eye(4), (1.0,) * 3, _GRAY, True))
-        else:
-            meshes.extend(part for part in own if (part.link, part.kind) == (link.name, kind))
-    tip = next(link for link in links if link.name == value["tip"])
-    arm = CanonicalArm.of(**value["arm"], joints=joints)
-    return RobotModel(value["name"], joints, links, tip, arm, tuple(meshes))
-
-
-def _replacement(link: str, kind: str, folder: Path) -> Path | None:
+def _replacement(link: str, folder: Path) -> Path | None:
     names = [link, *(link[i + 1 :] for i, letter in enumerate(link) if letter == "_")]
-    places = (folder / kind, folder, folder / "collision")
+    places = (folder / "visual", folder, folder / "collision")
     paths = (place / f"{name}{end}" for place in places for name in names for end in _SUFFIXES)
     return next(filter(Path.is_file, paths), None)

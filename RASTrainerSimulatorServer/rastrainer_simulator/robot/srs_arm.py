@@ -17,22 +17,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import cos, sin
 
-import numpy as np
-
+from rastrainer.files.urdf import Joint
 from rastrainer_simulator.vectors import Vector
-
-
-@dataclass(frozen=True)
-class Joint:
-    """A revolute joint: where it sits on the link before it, and how it may move."""
-
-    name: str
-    origin: np.ndarray  # (4, 4) float: this joint's frame to the movable frame before it, m
-    axis: np.ndarray  # (3,) float: unit vector in this joint's frame
-    lower: float  # rad
-    upper: float  # rad
-    velocity: float  # rad/s
-
 
 Angles = Sequence[float]
 Limits = tuple[tuple[float, float], ...]

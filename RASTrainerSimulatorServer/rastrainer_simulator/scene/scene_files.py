@@ -28,15 +28,12 @@ def setup_digest(setup: SimulationSetup) -> bytes:
     A file that cannot be read counts as empty: building the scene reports the error.
     """
     robot = setup.robot
-    visuals = [part for part in robot.meshes if part.kind == "visual"]
     links = [(link.name, link.joint, link.offset.tolist()) for link in robot.links]
-    parts = [
-        (part.link, part.origin.tolist(), part.scale, part.color, part.replaced) for part in visuals
-    ]
+    parts = [(part.link, part.origin.tolist(), part.color, part.replaced) for part in robot.meshes]
     values = rastrainer.__version__, setup.scenario_sha256, robot.tip.name, links, parts
     whole = hashlib.sha256(repr(values).encode())
     code = sorted(Path(__file__).parent.glob("*.[pj]*"))
-    for path in (*code, *(part.path for part in visuals)):
+    for path in (*code, *(part.path for part in robot.meshes)):
         whole.update(hashlib.sha256(_content(path)).digest())
     return whole.digest()
 

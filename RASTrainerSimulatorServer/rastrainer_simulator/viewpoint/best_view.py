@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import logging
 import math
 from collections.abc import Iterator, Sequence
@@ -129,14 +130,11 @@ def best_view(views: PointViews, postures: Sequence[HeldTool]) -> BestView | Non
         return None
     hidden, tight = zip(*(_hidden(views, held) for held in postures), strict=True)
     order = np.lexsort((np.arange(len(eyes)), sum(tight), *reversed(hidden)))
-    now = postures[0]
-    is_tip_seen = (
-        not _is_near(views, now) or now.sight.is_past_head(vector(eyes[each]), now.shaft)
-        for each in order
-    )
-    best = next((each for each, is_seen in zip(order, is_tip_seen, strict=True) if is_seen), None)
-    eye = vector(eyes[order[0] if best is None else best])
-    is_whole = best is not None and not hidden[0][best]
+    now, seeing = postures[0], order
+    if _is_near(views, now):
+        seeing = order[now.sight.is_past_head(eyes[order], now.shaft)]
+    eye = vector(eyes[(seeing if len(seeing) else order)[0]])
+    is_whole = len(seeing) > 0 and not hidden[0][seeing[0]]
     return BestView(eye, views.fiducial, _beside(views, postures, eye), is_whole)
 
 
@@ -153,17 +151,17 @@ def _hidden(point: PointViews, held: HeldTool) -> tuple[np.ndarray, np.ndarray]:
 
     The second count is of links that are thicker by `MARGIN_M`.
     """
-    sight, eyes, number = held.sight, point.eyes, np.array(point.marks[1])
-    hidden = (sight.off_tool(eyes, number) <= 0.0).astype(int)
+    sight, eyes = held.sight, point.eyes
+    hidden = (sight.off_tool(eyes, point.marks[1]) <= 0.0).astype(int)
     if distance(held.tip, point.fiducial) > AT_POINT_M:
-        hidden += sight.off_tool(eyes, np.array(point.marks[0])) <= 0.0
+        hidden += sight.off_tool(eyes, point.marks[0]) <= 0.0
     if _is_near(point, held):
         lines = eyes - held.tip
         along_tool = -(lines @ held.direction) / np.linalg.norm(lines, axis=1)
         hidden += along_tool > math.cos(math.radians(LEAST_OFF_TOOL_DEG))
     tight = np.zeros(len(eyes), dtype=int)
     for place in _must_be_seen(point, held):
-        off_links = sight.off_links(eyes, np.array(place))
+        off_links = sight.off_links(eyes, place)
         hidden += off_links <= 0.0
         tight += off_links <= MARGIN_M
     return hidden, tight
@@ -194,7 +192,9 @@ def _beside(point: PointViews, postures: Sequence[HeldTool], eye: Vector) -> Vec
     None if the head is always in between.
     """
     sight, target = postures[0].sight, point.marks[0]
-    places = [each for each in _along_skin(point, eye) if sight.is_past_head(each, target)]
+    beside = _along_skin(point, eye)
+    is_past = sight.is_past_head(np.reshape(beside, (-1, 3)), target)
+    places = list(itertools.compress(beside, is_past))
 
     def is_seen(held: HeldTool, place: Vector) -> bool:
         off_tool = angle(subtract(place, held.tip), scale(held.direction, -1.0))
@@ -274,12 +274,10 @@ class TouchViews:
             sight = self._held(self._robot.home).sight
             camera = self._scenario.cameras["close-up"]
             front = unit(subtract(vector(camera.position_mm), vector(camera.focal_point_mm)))
-            eyes = [
-                eye
-                for eye in _eyes(fiducial, normal, front)
-                if all(sight.is_past_head(eye, mark) for mark in marks)
-            ]
-            self._views[label] = PointViews(fiducial, normal, marks, np.array(eyes), held)
+            eyes = np.reshape(_eyes(fiducial, normal, front), (-1, 3))
+            for mark in marks:
+                eyes = eyes[sight.is_past_head(eyes, mark)]
+            self._views[label] = PointViews(fiducial, normal, marks, eyes, held)
         return self._views[label]
 
     def best(self, label: str, q: Sequence[float]) -> BestView | None:

@@ -119,6 +119,16 @@ def orbit_to(camera: Camera, eye: Vector, focal_point: Vector) -> Orbit:
     )
 
 
+def orbit_beside(camera: Camera, place: Vector, outward: Vector, away: float) -> Orbit:
+    """Return the orbit that looks at a place on the skin from a distance; World, m.
+
+    Its eye is between the skin's normal, along which the tool hides the tip, and the camera.
+    """
+    line = subtract(in_meters(camera.position_mm), place)
+    between = unit(add(unit(outward), unit(line)))
+    return orbit_to(camera, add(place, scale(between, away)), place)
+
+
 def limited(camera: Camera, orbit: Orbit) -> Orbit:
     """Return an orbit whose camera is neither too low nor too high, too near nor too far."""
     place = _place(camera)

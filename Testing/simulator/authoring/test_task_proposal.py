@@ -19,16 +19,15 @@ from rastrainer_simulator.authoring.touch_order import (
     crossing_order,
     transitions_between,
 )
+from Testing.domain.head.spheres import sphere_mesh
 
-RADIUS_MM = 90.0
 EYE = np.array([0.0, 600.0, 220.0])
 TARGET = np.zeros(3)
 
 
 @pytest.fixture(scope="module")
 def mesh():
-    sphere = trimesh.creation.icosphere(4, RADIUS_MM)
-    return HeadMesh(np.array(sphere.vertices), np.array(sphere.faces))
+    return sphere_mesh()
 
 
 @pytest.fixture(scope="module")

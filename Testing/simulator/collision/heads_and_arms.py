@@ -5,7 +5,7 @@ import trimesh
 
 from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.contact import Contact, Moved
-from rastrainer_simulator.collision.robot_shape import robot_shape
+from rastrainer_simulator.collision.robot_shape import load_shape
 from rastrainer_simulator.robot.fabrik import Fabrik
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import RobotModel, load_robot
@@ -75,7 +75,7 @@ def groove(half_width: float = 0.05, depth: float = 0.03, length: float = 0.1) -
 
 TICK = 0.004
 ROBOT = load_robot()
-SHAPE = robot_shape(ROBOT)
+SHAPE = load_shape()
 KINEMATICS = make_kinematics(ROBOT)
 FABRIK = Fabrik(ROBOT)
 

@@ -1,12 +1,12 @@
 import numpy as np
 import pytest
-import trimesh
 
 from rastrainer_simulator.collision.collision import Collision
-from rastrainer_simulator.collision.robot_shape import robot_shape
+from rastrainer_simulator.collision.robot_shape import load_shape
 from rastrainer_simulator.collision.touch_planner import TouchPlanner, tool_directions
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import load_robot
+from Testing.simulator.collision.heads_and_arms import ball
 
 CENTER = np.array([0.50, 0.0, 0.30])
 RADIUS = 0.08
@@ -19,9 +19,8 @@ def robot():
 
 
 @pytest.fixture(scope="module")
-def collision(robot):
-    sphere = trimesh.creation.icosphere(4, RADIUS)
-    collision = Collision(robot_shape(robot), np.array(sphere.vertices), np.array(sphere.faces))
+def collision():
+    collision = Collision(load_shape(), *ball(RADIUS))
     pose = np.eye(4)
     pose[:3, 3] = CENTER
     collision.set_head_pose(pose)

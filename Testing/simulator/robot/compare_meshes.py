@@ -17,7 +17,7 @@ import numpy as np
 import trimesh
 
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.collision.robot_shape import sphere_directions
+from Testing.sphere_directions import sphere_directions
 
 sys.path.insert(0, str(Path(__file__).parents[3] / "assets" / "robots"))
 from iiwa7_dimensions import JOINTS, LINK_NAMES

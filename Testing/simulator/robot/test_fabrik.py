@@ -1,8 +1,7 @@
 """FABRIK's answers, checked by Pinocchio."""
 
-import copy
 import math
-from pathlib import Path
+from dataclasses import replace
 
 import numpy as np
 import pinocchio as pin
@@ -12,7 +11,8 @@ from rastrainer.errors import InputError
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.robot.fabrik import Fabrik
 from rastrainer_simulator.robot.goal import FabrikSettings
-from rastrainer_simulator.robot.model import read_prepared, robot_model
+from rastrainer_simulator.robot.model import LENGTHS_M, load_robot
+from rastrainer_simulator.robot.srs_arm import CanonicalArm
 
 MODES = ("position", "direction", "pose")
 SHOULDER = np.array([0.0, 0.0, 0.34])
@@ -117,9 +117,10 @@ def test_the_direction_is_kept_when_the_tool_falls_short_of_its_target(fabrik, r
 
 
 def test_a_roll_beyond_the_limits_is_given_up_but_not_position_and_direction(truth):
-    model = copy.deepcopy(read_prepared()["model"])
-    model["joints"][6] |= {"lower": -0.1, "upper": 0.1}
-    robot = robot_model(model, Path())
+    whole = load_robot()
+    joints = (*whole.joints[:6], replace(whole.joints[6], lower=-0.1, upper=0.1))
+    arm = CanonicalArm.of(*LENGTHS_M, whole.arm.signs, joints)
+    robot = replace(whole, joints=joints, arm=arm)
     fabrik = Fabrik(robot)
     forbidden = 0
     for q in truth.postures(100, seed=10):

@@ -21,7 +21,7 @@ def test_other_meshes_replace_those_of_the_urdf(tmp_path, robot):
     (tmp_path / "visual").mkdir()
     (tmp_path / "visual" / "link_3.stl").touch()
     other = load_robot(mesh_folder=tmp_path)
-    shown = [part for part in other.meshes if (part.link, part.kind) == ("iiwa_link_3", "visual")]
+    shown = [part for part in other.meshes if part.link == "iiwa_link_3"]
     assert [part.path for part in shown] == [tmp_path / "visual" / "link_3.stl"]
     kept = [part.path for part in other.meshes if part.link != "iiwa_link_3"]
     assert kept == [part.path for part in robot.meshes if part.link != "iiwa_link_3"]

@@ -1,6 +1,5 @@
 import numpy as np
 import pytest
-import trimesh
 from scipy.spatial import cKDTree
 
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, read_head_mesh
@@ -12,9 +11,9 @@ from rastrainer_simulator.scene.skin_marks import (
     RIM_RADIUS,
     skin_marks,
 )
+from Testing.domain.head.spheres import RADIUS_MM, sphere_mesh
 
-RADIUS = 80.0
-FRONT = RADIUS * np.array([[0.0, 1.0, 0.0], [0.5, 0.75**0.5, 0.0], [-0.5, 0.75**0.5, 0.0]])
+FRONT = RADIUS_MM * np.array([[0.0, 1.0, 0.0], [0.5, 0.75**0.5, 0.0], [-0.5, 0.75**0.5, 0.0]])
 LABELS = [str(number) for number in range(1, 16)]
 TASK, CROWDED = "task-5", "crowded"
 OTHER_TASKS = ("trial-run", "task-1", "task-2", "task-3", "task-4")
@@ -22,8 +21,7 @@ OTHER_TASKS = ("trial-run", "task-1", "task-2", "task-3", "task-4")
 
 @pytest.fixture(scope="module")
 def ball() -> HeadMesh:
-    sphere = trimesh.creation.icosphere(subdivisions=5, radius=RADIUS)
-    return HeadMesh(np.array(sphere.vertices), np.array(sphere.faces))
+    return sphere_mesh(5)
 
 
 def test_a_number_is_readable_from_outside_with_the_patients_superior_up(ball):
@@ -36,8 +34,8 @@ def test_a_number_is_readable_from_outside_with_the_patients_superior_up(ball):
 
 
 def test_overlapping_fiducials_get_no_arrow_between_them(ball):
-    turn = 2 * RIM_RADIUS / RADIUS
-    close = RADIUS * np.array([[0.0, 1.0, 0.0], [np.sin(turn), np.cos(turn), 0.0]])
+    turn = 2 * RIM_RADIUS / RADIUS_MM
+    close = RADIUS_MM * np.array([[0.0, 1.0, 0.0], [np.sin(turn), np.cos(turn), 0.0]])
     marks = skin_marks(ball, close, ("1", "2"))
     assert not any("arrow" in mark for mark in marks)
 

@@ -86,12 +86,12 @@ class SightFrom:
     def __init__(self, least_deg, most_deg):
         self.range_deg = least_deg, most_deg
 
-    def is_past_head(self, eye, place):
-        least, most = self.range_deg
-        return least <= abs(90.0 - degrees(np.subtract(eye, place), (0.0, 0.0, 1.0))) < most
+    def is_past_head(self, eyes, place):
+        return np.array([self.is_free(eye, place) for eye in eyes])
 
     def is_free(self, eye, place):
-        return self.is_past_head(eye, place)
+        least, most = self.range_deg
+        return least <= abs(90.0 - degrees(np.subtract(eye, place), (0.0, 0.0, 1.0))) < most
 
     def off_links(self, eyes, _place):
         return np.ones(len(eyes))
