@@ -18,6 +18,7 @@ from rastrainer.errors import RASTrainerError
 from rastrainer.journal.entries import PlayingSession, Report, Stamp
 from rastrainer.journal.journal_file import JournalReading
 from rastrainer.protocol import FINISHED_PHASES, OPEN_PHASES
+from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.results import DurableResults, PendingAnswers, Subscribers
 from rastrainer_simulator.loop.timing import (
@@ -28,7 +29,7 @@ from rastrainer_simulator.loop.timing import (
     raise_thread_priority,
     sleep_until,
 )
-from rastrainer_simulator.record.trial_archive import TrialArchive
+from rastrainer_simulator.record.trial_archive import ArchivedTrial, TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
 from rastrainer_simulator.state import (
     NEUTRAL_STICKS,
@@ -83,20 +84,21 @@ class ControlLoop:
         """
         self.simulation = simulation
         """The present one; it belongs to the loop's thread."""
-        self.setup = simulation.setup
-        self._dt = 1.0 / rate_hz
-        self._period = 0.0 if speed is None else self._dt / speed
+        self.tick_s = 1.0 / rate_hz
+        self._period = 0.0 if speed is None else self.tick_s / speed
         self.archive = TrialArchive(records)
         """The trials that are over, and those that wait to be acknowledged."""
-        self.is_first_in_line = self._period >= self._dt
+        self.is_first_in_line = self._period >= self.tick_s
         """Whether it runs before all other threads; if it never slept, they would never run."""
         self._writer = ThreadPoolExecutor(
             max_workers=1,
             thread_name_prefix="journal",
             initializer=raise_thread_priority if self.is_first_in_line else None,
         )
-        session = PlayingSession(speed, is_seeded)
-        self._recorder = TrialRecorder(records, self.archive, self._writer, self._dt, session)
+        self.playing = PlayingSession(speed, is_seeded)
+        self._recorder = TrialRecorder(
+            records, self.archive, self._writer, self.tick_s, self.playing
+        )
         if interrupted is not None:
             self._recorder.resume_trial(simulation, interrupted)
         self._state = simulation.state
@@ -122,6 +124,10 @@ class ControlLoop:
         self.latest: SimulationState = self._state
         """The last published state."""
 
+    @property
+    def setup(self) -> SimulationSetup:
+        return self.simulation.setup
+
     def __enter__(self) -> ControlLoop:
         self.thread.start()
         return self
@@ -134,6 +140,10 @@ class ControlLoop:
         self._is_stopping.set()
         if self.thread.is_alive():
             self.thread.join()
+
+    def deliver(self, drill: ArchivedTrial) -> None:
+        """Offer a finished drill of decisions until a client acknowledges it."""
+        self._writer.submit(self.archive.add, drill)
 
     def hold_sticks(self, sticks: OperatorInput) -> None:
         self._sticks = replace(sticks, commands=())
@@ -194,15 +204,14 @@ class ControlLoop:
 
     def _tick(self) -> None:
         if self._successor is not None and not self._held.is_waiting:
-            self.simulation, ticket = self._successor
-            self.setup, self._successor = self.simulation.setup, None
+            (self.simulation, ticket), self._successor = self._successor, None
             self.simulation.restart_from(self._state.starting_point)
             self._answers.give(Answer(ticket, True))
         commands = self._commands()
         operator_input = replace(self._sticks, commands=commands) if commands else self._sticks
         while self._displayed:
             self._recorder.note_display(self._displayed.popleft(), self._state)
-        result = self.simulation.step(self._dt, operator_input)
+        result = self.simulation.step(self.tick_s, operator_input)
         written = self._recorder.record(self.simulation, self._state, operator_input, result)
         self._state = result.state
         published, self._refused = self._held.publishable(result, written)

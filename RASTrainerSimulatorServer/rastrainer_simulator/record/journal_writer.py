@@ -19,6 +19,7 @@ from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.files.writing import keep_others_out, make_private_folder, open_private
 from rastrainer.journal.entries import Entry, Line, Stamp
 from rastrainer.journal.folder import (
+    DRILL_SUFFIX,
     LOCK_NAME,
     STARTED_BY,
     SUFFIX,
@@ -123,10 +124,14 @@ class Journal:
             os.close(self._descriptor)
             self._descriptor = None
 
+    def forget_unwritten(self) -> None:
+        """Forget the entries that could not be written."""
+        self._unwritten.clear()
+
     def discard(self) -> None:
         """Remove a new file, in which nothing was acknowledged, and forget its entries."""
         self.close()
-        self._unwritten.clear()
+        self.forget_unwritten()
         if self._is_new and self._size is not None:
             self.path.unlink(missing_ok=True)
             self._seed_path.unlink(missing_ok=True)
@@ -204,7 +209,7 @@ class RecordsFolder:
         try:
             self._lock(elsewhere)
             self.announce("", 0, "")
-            for journal in folder.glob(f"*{SUFFIX}"):
+            for journal in (*folder.glob(f"*{SUFFIX}"), *folder.glob(f"*{DRILL_SUFFIX}")):
                 keep_others_out(journal)
         except BaseException:
             os.close(self._descriptor)

@@ -1,4 +1,4 @@
-"""The trials in a folder of journals, with those that are still to be delivered."""
+"""The trials and drills in a folder of journals, with those that are still to be delivered."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer.commands import CommandName
+from rastrainer.decision.drill_record import DrillRecord
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.journal.entries import (
     AcceptedTouch,
@@ -26,7 +27,7 @@ from rastrainer.journal.entries import (
     Stamp,
     read_line,
 )
-from rastrainer.journal.folder import SUFFIX, journals_of
+from rastrainer.journal.folder import DRILL_SUFFIX, SUFFIX, journals_of
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
 from rastrainer.journal.recording import WholeRecording
 from rastrainer.json_records import record_from_json, record_to_json
@@ -49,21 +50,24 @@ JOURNAL_PIECE_BYTES = 1 << 18
 """Longest part of a journal in one answer."""
 
 _KIND = re.compile(rb'^\{"n":\d+,"previous":"[0-9a-f]{64}","kind":"([a-z]+)"', re.MULTILINE)
+_DELIVERED = frozenset({b"registered", b"attempt", b"drill"})
 _OVER = frozenset({b"registered", b"aborted", b"attempt"})
-_AFTER_THE_TRIAL = frozenset(
-    {b"registered", b"attempt", b"registration", b"scored", b"acknowledged"}
-)
+_AFTER_THE_TRIAL = _DELIVERED | {b"registration", b"scored", b"acknowledged"}
+
+
+DeliveredRecord = TrialRecord | AbortedTrial | DrillRecord
 
 
 @dataclass(frozen=True)
 class ArchivedTrial:
-    """A registered or aborted trial.
+    """A registered or aborted trial, or a drill of decisions.
 
     `truth` and `seed` are revealed with the registration, and None, never revealed, of an aborted
-    trial. `registration` and `scored` are the arguments of their commands, None before.
+    trial; a drill has none. `registration` and `scored` are the arguments of their commands, None
+    before.
     """
 
-    record: TrialRecord | AbortedTrial
+    record: DeliveredRecord
     journal: Journal
     truth: Truth | None = None
     seed: int | None = None
@@ -74,9 +78,11 @@ class ArchivedTrial:
     def summary(self) -> dict[str, Any]:
         """Return the data of GetTrial: with the truth if a registration was submitted."""
         phase = "registered" if self.scored is None else "scored"
+        if self.truth is None:
+            phase = "decided" if isinstance(self.record, DrillRecord) else "aborted"
         data: dict[str, Any] = {
             "trialId": self.record.trial_id,
-            "phase": "aborted" if self.truth is None else phase,
+            "phase": phase,
             "record": record_to_json(self.record),
             "acknowledged": self.acknowledged,
         }
@@ -87,6 +93,7 @@ class ArchivedTrial:
     def revealed(self) -> dict[str, Any]:
         if self.registration is None or self.truth is None:
             raise InputError("No registration of the trial was submitted.")
+        assert not isinstance(self.record, DrillRecord), "a drill has no truth"
         touches = ((point.label, point.position_mm) for point in self.record.points)
         return self.truth.revealed(self.registration["matrix"], touches)
 
@@ -101,7 +108,10 @@ class ArchivedTrial:
             if not self.acknowledged:
                 return Acknowledged(sender), replace(self, acknowledged=True)
         elif self.truth is None and command != CommandName.GET_TRIAL:
-            raise InputError(f"The trial {self.record.trial_id} was aborted; it has no score.")
+            what = "is a drill" if isinstance(self.record, DrillRecord) else "was aborted"
+            raise InputError(
+                f"The trial {self.record.trial_id} {what}; it has no registration and no score."
+            )
         elif command == CommandName.SUBMIT_REGISTRATION:
             if self.registration is None:
                 return FinalRegistration(sender, arguments), replace(self, registration=arguments)
@@ -164,7 +174,7 @@ def interrupted_attempt(reading: JournalReading) -> AbortedTrial | None:
 
 
 class TrialArchive:
-    """The registered and aborted trials of a folder.
+    """The registered and aborted trials of a folder, and its finished drills.
 
     One thread changes it; any thread may call `unacknowledged`. `problems` are sentences about
     unusable journals; `arrivals` counts the trials that have come to be delivered.
@@ -178,8 +188,8 @@ class TrialArchive:
         for path in find_unacknowledged(folder):
             self._load(path)
 
-    def unacknowledged(self) -> tuple[AbortedTrial | TrialRecord, ...]:
-        """Return the records that no client has acknowledged: aborted trials, then finished trials.
+    def unacknowledged(self) -> tuple[DeliveredRecord, ...]:
+        """Return the records that no client has acknowledged: finished trials after all others.
 
         The oldest of each kind come first.
         """
@@ -257,8 +267,9 @@ class TrialArchive:
 
     def _found(self, trial_id: str) -> ArchivedTrial:
         if trial_id not in self._kept:
-            for path in journals_of(self._folder, trial_id):
-                self._load(path)
+            for suffix in (SUFFIX, DRILL_SUFFIX):
+                for path in journals_of(self._folder, trial_id, suffix):
+                    self._load(path)
         if trial_id not in self._kept:
             raise InputError(say("no such trial", trial_id=trial_id))
         return self._kept[trial_id]
@@ -274,12 +285,16 @@ class TrialArchive:
 
 
 def archived_trial(reading: JournalReading) -> ArchivedTrial | None:
-    """Return the trial of a journal, None if it was neither registered nor aborted."""
+    """Return the trial or drill of a journal, None if it is not over."""
     if reading.integrity is Integrity.ALTERED:
         raise InputError(f"{reading.path} is {reading.sentence}; the trial is not delivered.")
     kinds = ("registered", "attempt", "registration", "scored")
     registered, aborted, registrations, scores = map(reading.of_kind, kinds)
     acknowledged, journal = bool(reading.of_kind("acknowledged")), Journal.reopened(reading)
+    for end in reading.of_kind("drill"):
+        drill = record_from_json(DrillRecord, end.get("record"))
+        drill = replace(drill, journal_sha256=end["sha256"])
+        return ArchivedTrial(drill, journal, acknowledged=acknowledged)
     if not registered and not aborted:
         return None
     if not registered:
@@ -309,14 +324,14 @@ def archived_trial(reading: JournalReading) -> ArchivedTrial | None:
 
 
 def find_unacknowledged(folder: Path) -> list[Path]:
-    """Return the journals of trials to deliver that no client has acknowledged, oldest first.
+    """Return the journals of trials and drills that no client has acknowledged, oldest first.
 
     Only the end of each file is read: a lab's folder holds thousands.
     """
     found = []
-    for path in sorted(folder.glob(f"*{SUFFIX}")):
+    for path in sorted((*folder.glob(f"*{SUFFIX}"), *folder.glob(f"*{DRILL_SUFFIX}"))):
         kinds = set(_KIND.findall(_end(path)))
-        if kinds & {b"registered", b"attempt"} and b"acknowledged" not in kinds:
+        if kinds & _DELIVERED and b"acknowledged" not in kinds:
             found.append(path)
     return found
 

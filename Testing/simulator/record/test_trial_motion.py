@@ -16,8 +16,8 @@ from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record import trial_records
 from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
+from rastrainer_simulator.virtual.hand import Skill
 from rastrainer_simulator.virtual.play import play_virtual_trial
-from rastrainer_simulator.virtual.scripted_trainee import Skill
 
 DT = 0.02
 BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04)

@@ -21,7 +21,7 @@ PLAY_THE_FIRST_TRIAL = """
 import json, sys, tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from rastrainer_simulator.virtual.scripted_trainee import Skill
+from rastrainer_simulator.virtual.hand import Skill
 from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
 from rastrainer_simulator.core.setup import load_setup

@@ -453,6 +453,44 @@ class Scored(Entry, kind="scored"):
     arguments: Object
 
 
+@dataclass(frozen=True)
+class CaseClock(Entry, kind="case"):
+    """A case of a drill was shown, or its clock has run on; `time_s` includes the checks."""
+
+    number: Count
+    time_s: Seconds
+
+
+@dataclass(frozen=True)
+class CheckedPlace(Entry, kind="check"):
+    """A place of a case was checked, for which time was taken from its clock."""
+
+    place: Words
+    time_s: Seconds
+
+
+@dataclass(frozen=True)
+class ReadImages(Entry, kind="images"):
+    """The images of a case were read for the first time."""
+
+    time_s: Seconds
+
+
+@dataclass(frozen=True)
+class CaseDecided(Entry, kind="decided"):
+    """A case was decided: its `DecidedCase` as JSON, with the truth."""
+
+    case: Object
+
+
+@dataclass(frozen=True)
+class DrillEnd(Entry, kind="drill"):
+    """The end of a drill: its record as JSON, and the seed by which its cases were drawn."""
+
+    record: Object
+    seed: Seed
+
+
 class Report(Entry):
     """How a trial is seen and prepared; the simulation does not depend on it."""
 

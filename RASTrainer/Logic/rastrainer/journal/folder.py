@@ -108,6 +108,8 @@ def read_open_holder(descriptor: int) -> FolderHolder:
 
 
 SUFFIX = ".journal"
+DRILL_SUFFIX = ".drill"
+"""Ends the names of the journals of drills, so that no reader takes them for trials."""
 TUTORIAL_SUFFIX = ".tutorial"
 """Ends the names of tutorials' files: each is one line that names the trainee, like a journal's
 first."""
@@ -126,9 +128,9 @@ def journals(folder: Path) -> list[Path]:
     return found
 
 
-def journals_of(folder: Path, trial_id: str) -> list[Path]:
-    """Return the files named as a trial's journal: one or none."""
-    return sorted(folder.glob(f"*_{trial_id}{SUFFIX}"))
+def journals_of(folder: Path, trial_id: str, suffix: str = SUFFIX) -> list[Path]:
+    """Return the files named as the journal of a trial, or of a drill: one or none."""
+    return sorted(folder.glob(f"*_{trial_id}{suffix}"))
 
 
 def erase_journals(
@@ -142,7 +144,8 @@ def erase_journals(
     if not folder.is_dir():
         raise InputError(f"There is no folder {folder} with journals.")
     erased, unreadable = [], []
-    for path in sorted((*folder.glob(f"*{SUFFIX}"), *folder.glob(f"*{TUTORIAL_SUFFIX}"))):
+    suffixes = SUFFIX, DRILL_SUFFIX, TUTORIAL_SUFFIX
+    for path in sorted(path for suffix in suffixes for path in folder.glob(f"*{suffix}")):
         owner = _trainee_of(path)
         if owner == trainee or path.stem.rpartition("_")[2] in trial_ids:
             try:

@@ -85,8 +85,8 @@ def decode_line(line: bytes, n: int, previous: str) -> dict[str, Any]:
     return entry
 
 
-ENDS = frozenset({"registered", "aborted", "stopped"})
-"""Kinds of entries that complete a trial."""
+ENDS = frozenset({"registered", "aborted", "stopped", "drill"})
+"""Kinds of entries that complete a trial, or a drill of decisions."""
 _STEPS = frozenset({"header", "phase", "continued", *ENDS})
 
 

@@ -18,6 +18,7 @@ from typing import Any
 
 import rastrainer
 from rastrainer.commands import COMMANDS, CommandName, check_arguments, decode_json_object
+from rastrainer.decision.drill_record import DrillRecord
 from rastrainer.errors import InputError
 from rastrainer.igtl.content import (
     ERROR_KEY,
@@ -34,12 +35,13 @@ from rastrainer.json_records import record_to_json
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName, Rate
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.steps import StepAnswers
-from rastrainer.trial.record import AbortedTrial, TrialRecord
+from rastrainer.trial.record import AbortedTrial
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
 from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher, told
 from rastrainer_simulator.net.igtl.registration_check import CHECKED, SubmitCommand, submit_checked
 from rastrainer_simulator.net.igtl.server import ClientConnection, IgtlServer
 from rastrainer_simulator.net.limits import LinkLimits
+from rastrainer_simulator.record.trial_archive import DeliveredRecord
 from rastrainer_simulator.state import Answer, SimulationState, answered
 from rastrainer_simulator.texts.texts import LocalizedText
 
@@ -141,7 +143,7 @@ class SimulatorLink:
         self,
         latest: Callable[[], SimulationState],
         submit: SubmitCommand,
-        unacknowledged: Callable[[], Sequence[AbortedTrial | TrialRecord]],
+        unacknowledged: Callable[[], Sequence[DeliveredRecord]],
         arrivals: Callable[[], int],
         find_scenario: Callable[[str], Scenario],
         health: Callable[[], Mapping[str, Any]] = dict,
@@ -273,7 +275,7 @@ class TrialOffers:
     Clients keep trials by their UUID, so an offer that arrives twice does no harm.
     """
 
-    unacknowledged: Callable[[], Sequence[AbortedTrial | TrialRecord]]
+    unacknowledged: Callable[[], Sequence[DeliveredRecord]]
     clients: Callable[[], Iterable[ClientConnection]]
     _numbers: Iterator[int] = field(default_factory=lambda: itertools.count(1))
     _start: int = 0
@@ -294,9 +296,10 @@ class TrialOffers:
         self._offer((records[start:] + records[:start])[:OFFERS_AT_ONCE])
         self._start = start + OFFERS_AT_ONCE if len(records) > OFFERS_AT_ONCE else 0
 
-    def _offer(self, records: Iterable[AbortedTrial | TrialRecord]) -> None:
+    def _offer(self, records: Iterable[DeliveredRecord]) -> None:
         for record in records:
-            body = json.dumps(record_to_json(record), allow_nan=False)
+            task = {"task": record.task} if isinstance(record, DrillRecord) else {}
+            body = json.dumps(task | record_to_json(record), allow_nan=False)
             number = next(self._numbers) % _NUMBERS
             is_aborted = isinstance(record, AbortedTrial)
             name = CommandName.TRIAL_ABORTED if is_aborted else CommandName.TRIAL_COMPLETED

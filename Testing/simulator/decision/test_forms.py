@@ -1,0 +1,81 @@
+"""A form has twenty new cases, half of them sound, which no residual and no order gives away."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from rastrainer.decision.drill_record import CASES, Fault
+from rastrainer.decision.drill_score import MOST_HARMFUL, MOST_VAIN
+from rastrainer_simulator.decision.cases import NEVER_SOUND, CaseMaker
+from rastrainer_simulator.decision.forms import DIFFICULTY_SLACK, MEAN_DIFFICULTY, draw_form
+from Testing.error_rates.decisions import FILE, Shown, Watcher
+from Testing.error_rates.hands import scenario_of
+from Testing.error_rates.row_files import stored_rows
+from Testing.simulator.decision.test_cases import maker
+
+
+@cache
+def stored():
+    """Return the cases of the stored forms, by form."""
+    forms = {}
+    for each in stored_rows(FILE, Shown):
+        forms.setdefault(each.form, []).append(each)
+    return list(forms.values())
+
+
+def test_a_form_is_repeatable_half_sound_and_holds_no_case_seen_before():
+    keys = draw_form(maker(), np.random.default_rng(8), ())
+    assert keys == draw_form(maker(), np.random.default_rng(8), ())
+    assert len({seed for seed, _ in keys}) == CASES
+    assert sum(maker().case(*key).is_sound for key in keys) == CASES // 2
+    seen = {seed for seed, _ in keys[:7]}
+    others = draw_form(maker(), np.random.default_rng(8), seen)
+    assert not seen & {seed for seed, _ in others}
+
+
+def test_a_coarse_head_without_landmarks_has_forms():
+    egg = CaseMaker(scenario_of("egg"))
+    keys = draw_form(egg, np.random.default_rng(1), ())
+    assert sum(egg.case(*key).is_sound for key in keys) == CASES // 2
+
+
+def test_stored_forms_are_half_sound_and_alike_in_difficulty():
+    assert len(stored()) == 100
+    for form in stored():
+        assert [each.number for each in form] == list(range(CASES))
+        assert sum(each.is_sound for each in form) == CASES // 2
+        mean = np.mean([each.difficulty for each in form])
+        assert abs(mean - MEAN_DIFFICULTY) <= DIFFICULTY_SLACK + 1e-3
+        assert not any(each.is_sound for each in form if Fault(each.fault) in NEVER_SOUND)
+
+
+@pytest.mark.parametrize("name", ["residual_mm", "largest_mm", "expected_mm"])
+def test_no_stored_form_is_passed_by_a_limit_of_what_is_shown(name):
+    for form in stored():
+        for limit in [0.0, *(getattr(each, name) for each in form)]:
+            refused = [getattr(each, name) > limit for each in form]
+            pairs = list(zip(form, refused, strict=True))
+            harmful = sum(not each.is_sound and not is_refused for each, is_refused in pairs)
+            vain = sum(each.is_sound and is_refused for each, is_refused in pairs)
+            assert harmful > MOST_HARMFUL or vain > MOST_VAIN
+
+
+def test_every_fault_comes_sound_and_unsound_but_what_is_never_sound():
+    found = {(each.fault, each.is_sound) for form in stored() for each in form}
+    for fault in Fault:
+        assert (fault.value, False) in found
+        assert ((fault.value, True) in found) == (fault not in NEVER_SOUND)
+
+
+def test_sound_and_unsound_cases_come_at_every_place_of_a_form():
+    of_places = np.array([[each.is_sound for each in form] for form in stored()])
+    # Twenty shares of a hundred forms, each with a standard deviation of 5 %.
+    assert np.all(np.abs(of_places.mean(axis=0) - 0.5) < 0.2)
+
+
+def test_a_stored_case_is_made_again():
+    watcher, row = Watcher(), stored()[3][4]
+    again = watcher.shown(3, 4, watcher.maker.case(row.seed, Fault(row.fault)))
+    assert again.residual_mm == pytest.approx(row.residual_mm, abs=0.02)
+    assert again.offsets == pytest.approx(row.offsets, abs=0.2)
