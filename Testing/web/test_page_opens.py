@@ -85,7 +85,10 @@ def page(place, browser):
 
 
 @pytest.mark.parametrize("origin", ["loopback", "network"])
-def test_an_unpaired_visitor_sees_the_form_and_nothing_else(place, stranger, origin):
+def test_an_unpaired_visitor_sees_the_form_alone_and_then_how_much_of_the_scene_has_loaded(
+    place, stranger, origin
+):
+    stranger.add_init_script(NOTE_LOADING)
     url = place.url if origin == "loopback" else place.network
     stranger.goto(url)
     stranger.wait_for_selector("#pairing:not([hidden])")
@@ -105,6 +108,14 @@ def test_an_unpaired_visitor_sees_the_form_and_nothing_else(place, stranger, ori
         stranger.wait_for_selector(f"#status:has-text('{place.code}')")
     text = stranger.inner_text("#status")
     assert (place.code in text, place.network in text) == (origin == "loopback",) * 2
+    stranger.wait_for_selector("#loading", state="hidden")
+    notes = stranger.evaluate("notes")
+    assert all(text.startswith("Loading the scene: ") for text, _loaded, _total in notes)
+    (total,) = {total for _text, _loaded, total in notes}
+    assert 1e6 < total < 5e6
+    loaded = [loaded for _text, loaded, _total in notes]
+    assert loaded == sorted(loaded)
+    assert loaded[0] < loaded[-1] == total
 
 
 @pytest.fixture(scope="module")
@@ -167,20 +178,6 @@ def test_without_javascript_the_page_says_so_in_every_language(place, browser):
 
 def address(place) -> str:
     return f"{place.url}/#code={place.code}"
-
-
-def test_the_scene_shows_how_much_of_it_has_loaded(place, stranger):
-    stranger.add_init_script(NOTE_LOADING)
-    stranger.goto(address(place))
-    stranger.wait_for_selector("body[data-scene]")
-    stranger.wait_for_selector("#loading", state="hidden")
-    notes = stranger.evaluate("notes")
-    assert all(text.startswith("Loading the scene: ") for text, _loaded, _total in notes)
-    (total,) = {total for _text, _loaded, total in notes}
-    assert 1e6 < total < 5e6
-    loaded = [loaded for _text, loaded, _total in notes]
-    assert loaded == sorted(loaded)
-    assert loaded[0] < loaded[-1] == total
 
 
 def test_without_webgl_menus_work_and_the_page_says_what_is_missing(place, driver):

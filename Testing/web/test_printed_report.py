@@ -10,6 +10,7 @@ import pytest
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.report.report import report_html
 from Testing.domain.study.played_study import STUDIES
+from Testing.simulator.report.test_decisions_in_report import studied
 from Testing.simulator.report.test_report import cohort
 from Testing.simulator.report.test_tables_have_n import in_two_groups, with_intervals
 from Testing.simulator.report.without_charts import without_charts
@@ -24,6 +25,7 @@ STUDY = {
     "many tasks": lambda: cohort(30, tasks=20),
     "every section": lambda: with_intervals(drawn()),
     "four trainees": lambda: with_intervals(drawn(trainees=4)),
+    "decisions": studied,
     "groups": lambda: in_two_groups(cohort(30, tasks=6)),
 }
 LEAST_FILLED = 0.5

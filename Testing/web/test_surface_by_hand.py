@@ -216,11 +216,11 @@ def test_landmarks_and_trace_are_recorded_with_that_device_alone(drawn):
     assert len(drawn["traced"]) >= POINTS > MIN_TRACE_POINTS
 
 
+@pytest.mark.parametrize("drawn", [XR], indirect=True)
 def test_the_headset_shows_the_points_the_paint_and_the_ring(drawn):
-    if drawn["device"] == XR:
-        count, has_ring, is_painted = drawn["shown"]
-        assert 0 < count <= len(drawn["traced"])
-        assert (has_ring, is_painted) == (True, True)
+    count, has_ring, is_painted = drawn["shown"]
+    assert 0 < count <= len(drawn["traced"])
+    assert (has_ring, is_painted) == (True, True)
 
 
 def test_each_ring_leads_to_another_place(drawn):

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from rastrainer.commands import CommandName
 from rastrainer.journal.entries import FeedChange, PhaseChange, Reach, Rejected
 from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.core.arm import start_tip
+from rastrainer_simulator.flow.session.arm_move import ArmMove, way_over_head
 from rastrainer_simulator.flow.session.operator_device import SHOW, TILT
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
@@ -80,6 +82,28 @@ class ArmScreen:
 
     _session: TrainingSession
     _arm: ArmEvents
+    _move: ArmMove | None = field(default=None, init=False)
+
+    @property
+    def _start(self) -> Vector:
+        """Where the tip is at the start of a trial: above the head; World, m."""
+        session = self._session
+        return start_tip(session.scenario, session.control_loop.setup.settings.start_height)
+
+    @property
+    def _is_moving(self) -> bool:
+        """Whether the arm moves by itself."""
+        return self._move is not None and not self._move.is_over
+
+    def _begin_move(self, goal: Vector, above: Vector) -> None:
+        """Have the arm move over the head to a place above a goal, and down to it; World, m."""
+        session = self._session
+        way = way_over_head(session.state.tip, above, goal, self._start[2])
+        self._move = ArmMove(session.move_tip, way)
+
+    def _advance_move(self, dt: float) -> None:
+        if self._move is not None and not self._move.is_over:
+            self._move.advance(dt, self._session.state.tip, self._session.controls.held)
 
     @property
     def _state(self) -> SimulationState:

@@ -7,7 +7,11 @@ from dataclasses import replace
 
 from rastrainer.journal.entries import GhostReport, GuidanceReport
 from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, GhostRule, Guidance, Phase
+from rastrainer_simulator.decision.drill import Drill
 from rastrainer_simulator.flow.arm_screen import ArmEvents
+from rastrainer_simulator.flow.drill_screen import DrillScreen, shown_in_drill
+from rastrainer_simulator.flow.pages.case import case_page, decision_page, leave_drill
+from rastrainer_simulator.flow.pages.decide import open_drill
 from rastrainer_simulator.flow.pages.experiment import open_experiment
 from rastrainer_simulator.flow.pages.introduction import practiced_page, tutorial_done_page
 from rastrainer_simulator.flow.pages.result import ResultPage, waiting_page
@@ -16,7 +20,7 @@ from rastrainer_simulator.flow.pages.trial_review import ReplayPage
 from rastrainer_simulator.flow.procedure_screen import ProcedureScreen
 from rastrainer_simulator.flow.session.chosen_trial import begin_ghost, needs_tutorial
 from rastrainer_simulator.flow.session.open_pages import Page
-from rastrainer_simulator.flow.session.session import SessionPage, TrainingSession
+from rastrainer_simulator.flow.session.session import HURRY_S, SessionPage, TrainingSession
 from rastrainer_simulator.flow.session.tutorial import Tutorial
 from rastrainer_simulator.flow.trial_screen import (
     TrialScreen,
@@ -53,6 +57,8 @@ class Flow:
         self._trial_screen = TrialScreen(session, self._arm)
         self._procedure_screen = ProcedureScreen(session, self._arm, self._trial_screen)
         self._tutorial_screen = TutorialScreen(session, self._arm)
+        self._drill_screen = DrillScreen(session, self._arm)
+        self._late: tuple[Drill, int] | None = None
         self._seen = ("", Phase.IDLE)
         self._seen_result: TrialResult | None = None
         self._touch = TouchStage.FAR
@@ -70,6 +76,8 @@ class Flow:
     def shown(self, state: SimulationState) -> SimulationState:
         """Return a state as the trainee sees it; called in any thread."""
         tutorial = self._session.tutorial
+        if self._session.drill is not None:
+            return shown_in_drill(state)
         return state if tutorial is None else tutorial.practice.shown(state)
 
     def process_tick(self, result: StepResult) -> None:
@@ -104,10 +112,17 @@ class Flow:
         self._had_slicer = self._had_slicer or is_connected
         is_lost = self._had_slicer and not is_connected
         session.notices.warn("slicer", "warning.slicer" if is_lost else "")
+        self._follow_clock()
+        self._advance_work(dt)
+
+    def _advance_work(self, dt: float) -> None:
+        session = self._session
         if session.pages.top is not None:
             session.pages.advance(dt)
         elif session.tutorial is not None:
             self._advance_tutorial(dt, session.tutorial)
+        elif session.drill is not None:
+            self._drill_screen.advance(dt)
         elif self._trial_screen.has_practice_just_ended():
             self._trial_screen.open_menu()
 
@@ -128,6 +143,9 @@ class Flow:
         if self.playback is not None:
             self.playback.pause(True)
         session, page = self._session, self._session.pages.top
+        if session.drill is not None and session.drill.decided is None:
+            self._leave_drill()
+            return
         # A view that loads its picture may be too busy to say anything.
         if page is not None and page.name == PREPARING and why != "unseen.still":
             self._unseen = why
@@ -172,7 +190,7 @@ class Flow:
         in_head = shown if self._procedure_screen.is_open else Screen()
         hint = session.operator.hint
         return Screen(
-            menu=menu,
+            menu=replace(menu, clock=session.drill_clock),
             warnings=why,
             status=shown.status,
             hints=(
@@ -191,29 +209,72 @@ class Flow:
         The answer's `isNeeded` says whether the trial run has to wait for it.
         """
         session = self._session
-        say = session.say
-        if session.has_open_trial:
-            open_ = session.training
-            task = session.task_title(open_.task)
-            return Answer(0, False, say("trial is open", trainee=open_.trainee, task=task))
-        tutorial = session.tutorial
-        if tutorial is not None and tutorial.trainee != trainee:
-            return Answer(0, False, say("tutorial is open", trainee=tutorial.trainee))
-        if tutorial is None:
-            if session.reload.is_under_way:
-                return Answer(0, False, say("being set up"))
+        if refused := self._refused(trainee, session.tutorial):
+            return Answer(0, False, refused)
+        if session.tutorial is None:
             session.trainee, session.mode = trainee, mode
             if not needs_tutorial(session):
                 return Answer(0, True, data={"isNeeded": False})
             session.begin_tutorial()
         return Answer(0, True, data={"isNeeded": True})
 
+    def start_drill(self, trainee: str, mode: str) -> Answer:
+        """Open the trainee's drill of decisions, because Slicer wants it.
+
+        The answer has a `trialId` unless the trainee still has to read the explanation.
+        """
+        session = self._session
+        if refused := self._refused(trainee, session.drill):
+            return Answer(0, False, refused)
+        if session.drill is None:
+            session.trainee, session.mode = trainee, mode
+            session.pages.show_start()
+            open_drill(session)
+        drill = session.drill
+        return Answer(0, True, data={} if drill is None else {"trialId": drill.trial_id})
+
+    def _refused(self, trainee: str, own: Tutorial | Drill | None) -> str:
+        """Return why Slicer cannot open or show the trainee's `own` work; "" if it can."""
+        session, say = self._session, self._session.say
+        if session.has_open_trial:
+            open_ = session.training
+            task = session.task_title(open_.task)
+            return say("trial is open", trainee=open_.trainee, task=task)
+        for key, work in (("tutorial is open", session.tutorial), ("drill is open", session.drill)):
+            if work is not None and (work is not own or work.trainee != trainee):
+                return say(key, trainee=work.trainee)
+        return say("being set up") if own is None and session.reload.is_under_way else ""
+
     @property
-    def _screen_of_work(self) -> TrialScreen | ProcedureScreen | TutorialScreen:
+    def _screen_of_work(self) -> TrialScreen | ProcedureScreen | TutorialScreen | DrillScreen:
         if self._session.tutorial is not None:
             return self._tutorial_screen
+        if self._session.drill is not None:
+            return self._drill_screen
         is_at_procedure = self._procedure_screen.is_open
         return self._procedure_screen if is_at_procedure else self._trial_screen
+
+    def _follow_clock(self) -> None:
+        """Warn of the end of a drill's case; open the decision's page once the clock is down."""
+        session, clock = self._session, self._session.drill_clock
+        is_hurried = clock is not None and clock.tone is Tone.WARNING
+        session.notices.warn("clock", "case.hurry" if is_hurried else "", seconds=HURRY_S)
+        drill = session.drill
+        if drill is None:
+            return
+        case = drill, drill.number
+        if drill.header.scenario.name != session.scenario.name:
+            self._leave_drill()
+        elif clock is not None and drill.left_s <= 0.0 and self._late != case:
+            self._late = case
+            session.pages.show(case_page(session))
+            session.pages.open(decision_page(session), ignore_input_briefly=True)
+
+    def _leave_drill(self) -> None:
+        """Leave a drill that cannot go on now; it is kept."""
+        session = self._session
+        leave_drill(session)
+        session.notices.add(session.say("case-leave.kept"), Tone.WARNING)
 
     def _advance_tutorial(self, dt: float, tutorial: Tutorial) -> None:
         session = self._session
@@ -240,6 +301,10 @@ class Flow:
         # Another client started or ended a trial: leave the tutorial.
         session.end_tutorial()
         self._note_trial(before[0])
+        if session.drill is not None:
+            if not session.has_open_trial:
+                return
+            self._leave_drill()
         is_requested = self._trial_screen.has_requested_menu
         self._trial_screen.has_requested_menu = False
         was_working = session.pages.top is None

@@ -98,6 +98,7 @@ class FlowPresenter(Presenter):
     def close(self) -> None:
         self._unsubscribe()
         self._session.pages.show(None)
+        self._session.leave_drill()
         self._session.view.close()
         self._session.ghost.close()
         self._session.places.close()
@@ -156,7 +157,8 @@ class FlowPresenter(Presenter):
 
     def instruct(self, order: InstructorOrder, text: str) -> str:
         say, page = self._session.say, self._session.pages.top
-        is_running = self._session.training.is_running or self._session.tutorial is not None
+        is_practiced = self._session.tutorial is not None or self._session.drill is not None
+        is_running = self._session.training.is_running or is_practiced
         problem = ""
         if order is InstructorOrder.SAY:
             self._session.notices.add(say("instructor.says", text=text), seconds=SENTENCE_S)
@@ -173,6 +175,11 @@ class FlowPresenter(Presenter):
 
     def start_tutorial(self, trainee: str, mode: str) -> Answer:
         answer = self._flow.start_tutorial(trainee, mode)
+        self._settle(is_changed=True)
+        return answer
+
+    def start_drill(self, trainee: str, mode: str) -> Answer:
+        answer = self._flow.start_drill(trainee, mode)
         self._settle(is_changed=True)
         return answer
 
@@ -400,7 +407,8 @@ class FlowPresenter(Presenter):
     def _settle(self, is_changed: bool = False) -> None:
         self._is_changed = self._is_changed or is_changed
         self.shown.show(self._flow.playback)
-        self.shown.alter = None if self._session.tutorial is None else self._flow.shown
+        is_altered = self._session.tutorial is not None or self._session.drill is not None
+        self.shown.alter = self._flow.shown if is_altered else None
         is_at_work = self._session.pages.top is None
         self.controls.enter(ControlContext.WORK if is_at_work else ControlContext.MENU)
         holder, setup = self.controls.holder, self._control_loop.setup

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from rastrainer.commands import CommandName
 from rastrainer.journal.entries import GUIDED_TOUCHES
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.core.arm import start_tip
 from rastrainer_simulator.flow.arm_screen import ArmScreen
 from rastrainer_simulator.flow.pages.introduction import tutorial_page
 from rastrainer_simulator.flow.pages.trial_review import POOR_MM, error_arrow, error_tone
@@ -24,31 +23,21 @@ from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 from rastrainer_simulator.presentation.screen import ErrorArrow, Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.state import SimulationState, TouchStage
 from rastrainer_simulator.training.training import TrainingReply
-from rastrainer_simulator.vectors import Vector, distance
+from rastrainer_simulator.vectors import distance
 
 LIMIT_MM = f"{MM_PER_M * CENTERED_M:g}"
 STEP_MM, STEP_DEG = 5, 5
 """Progress is shown in these steps: a constantly changing figure is unreadable."""
 NEAR_M = 0.02
-"""Within this distance the arm counts as arrived."""
-SPEED_MM_S = 250.0
-LONGEST_S = 6.0
-TAKEN_OVER = 0.2
-"""A stick that is pushed farther counts as intended."""
+"""Within this distance of the start the arm stays where it is."""
 
 
 @dataclass(eq=False)
 class TutorialScreen(ArmScreen):
-    """The present step of the session's tutorial, its progress and its controls.
-
-    `_way` is where the tip still has to go to the start, World, m.
-    """
+    """The present step of the session's tutorial, its progress and its controls."""
 
     _seen: Tutorial | None = None
     _has_paused: bool = False
-    _way: list[Vector] = field(default_factory=list)
-    _is_commanded: bool = False
-    _left_s: float = 0.0
 
     @property
     def _tutorial(self) -> Tutorial:
@@ -78,15 +67,12 @@ class TutorialScreen(ArmScreen):
     def advance(self, dt: float) -> None:
         session, tutorial = self._session, self._tutorial
         if tutorial is not self._seen:
-            self._seen, self._has_paused, self._is_commanded = tutorial, False, False
-            start_height = session.control_loop.setup.settings.start_height
-            tip, goal = session.state.tip, start_tip(session.scenario, start_height)
-            high = max(tip[2], goal[2])
-            is_near = distance(tip, goal) < NEAR_M
-            self._way = [] if is_near else [(*tip[:2], high), (*goal[:2], high), goal]
-            self._left_s = LONGEST_S
-        if self._way:
-            self._move_to_start(dt)
+            self._seen, self._has_paused = tutorial, False
+            self._move = None
+            if distance(session.state.tip, self._start) > NEAR_M:
+                self._begin_move(self._start, self._start)
+        self._advance_move(dt)
+        if self._is_moving:
             return
         tutorial.use(session.operator.learned(session.mode))
         tutorial.practice.training.end_refusal(session.state.sim_time)
@@ -110,21 +96,6 @@ class TutorialScreen(ArmScreen):
             if not is_heard_anyway:
                 session.happened(FeedbackEvent.STEP)
 
-    def _move_to_start(self, dt: float) -> None:
-        """Move the tip up, then across, and down to the start; using the sticks ends it."""
-        session = self._session
-        self._left_s -= dt
-        is_taken_over = max(map(abs, session.controls.held.translation)) > TAKEN_OVER
-        if self._left_s < 0.0 or is_taken_over:
-            self._way.clear()
-        while self._way and distance(session.state.tip, self._way[0]) < NEAR_M / 4.0:
-            del self._way[0]
-            self._is_commanded = False
-        if self._way and not self._is_commanded:
-            self._is_commanded = True
-            place = [MM_PER_M * value for value in self._way[0]]
-            session.do(CommandName.MOVE_TIP_TO, {"positionMm": place, "speedMmS": SPEED_MM_S})
-
     def pressed(self, control: ControlName) -> None:
         session, tutorial = self._session, self._tutorial
         if control is ControlName.CAMERA:
@@ -145,7 +116,7 @@ class TutorialScreen(ArmScreen):
     def _instruction(self) -> ScreenMessage:
         tutorial = self._tutorial
         practice, errors = tutorial.practice.training.state, tutorial.practice.errors_mm()
-        if self._way:
+        if self._is_moving:
             return self._message("tutorial.homing")
         if self._is_refused:
             return self._instructed(Tone.WARNING)

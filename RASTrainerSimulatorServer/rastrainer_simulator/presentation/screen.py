@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from enum import Enum
 from typing import Annotated, Any, Literal
 
-from rastrainer.json_checks import number
+from rastrainer.json_checks import number, numbers
 from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.vectors import RecordVector
 
@@ -86,12 +86,58 @@ class ScoreTrend:
     mark: Annotated[float, number(0, 100)] = 0.0
 
 
+class SliceMark(str, Enum):
+    """The meaning of a line in a slice; a view gives each its color and shape."""
+
+    SKIN = "skin"
+    POINT = "point"
+    TRACE = "trace"
+    RESIDUAL = "residual"
+    TARGET = "target"
+    REACHED = "reached"
+    TIP = "tip"
+
+
+@dataclasses.dataclass(frozen=True)
+class SliceLine:
+    """A line in a slice, or its single points: right and up from the slice's middle, mm."""
+
+    mark: SliceMark
+    points: tuple[Annotated[tuple[float, float], numbers(2, 5000.0, "mm")], ...]
+
+
+@dataclasses.dataclass(frozen=True)
+class Slice:
+    """A slice of the images; `letters` name the patient's sides at its left, right, bottom, top."""
+
+    name: Words
+    letters: tuple[Words, ...]
+    lines: tuple[SliceLine, ...]
+
+
+@dataclasses.dataclass(frozen=True)
+class SliceLegend:
+    """The name of a mark."""
+
+    mark: SliceMark
+    name: Words
+
+
+@dataclasses.dataclass(frozen=True)
+class HeadSlices:
+    """Slices of the images, all to one scale; as text for people who cannot see them."""
+
+    text: Words
+    slices: tuple[Slice, ...]
+    legend: tuple[SliceLegend, ...]
+
+
 @dataclasses.dataclass(frozen=True)
 class Menu:
     """A panel over the picture; its name is never shown.
 
     `focus` is the name of an item, or "". The picture is of the controls, in which the inputs
-    named by the facts are colored.
+    named by the facts are colored. `clock` is the time left, None without a limit.
     """
 
     name: Words
@@ -102,6 +148,8 @@ class Menu:
     focus: Words = ""
     picture: ControlsPicture = ""
     trend: ScoreTrend | None = None
+    slices: HeadSlices | None = None
+    clock: ScreenMessage | None = None
 
 
 @dataclasses.dataclass(frozen=True)

@@ -130,6 +130,35 @@ export interface ScoreTrend {
   readonly mark: number;
 }
 
+/** The meaning of a line in a slice; a view gives each its color and shape. */
+export type SliceMark = "skin" | "point" | "trace" | "residual" | "target" | "reached" | "tip";
+
+/** A line in a slice, or its single points: right and up from the slice's middle, mm. */
+export interface SliceLine {
+  readonly mark: SliceMark;
+  readonly points: readonly (readonly [number, number])[];
+}
+
+/** A slice of the images; `letters` name the patient's sides at its left, right, bottom, top. */
+export interface Slice {
+  readonly name: string;
+  readonly letters: readonly string[];
+  readonly lines: readonly SliceLine[];
+}
+
+/** The name of a mark. */
+export interface SliceLegend { readonly mark: SliceMark; readonly name: string; }
+
+/** Slices of the images, all to one scale; as text for people who cannot see them. */
+export interface HeadSlices {
+  readonly text: string;
+  readonly slices: readonly Slice[];
+  readonly legend: readonly SliceLegend[];
+}
+
+/** A sentence to the trainee. */
+export interface ScreenMessage { readonly text: string; readonly tone: Tone; }
+
 /** A panel over the picture; its name is never shown. */
 export interface Menu {
   readonly name: string;
@@ -140,10 +169,9 @@ export interface Menu {
   readonly focus: string;
   readonly picture: "" | "gamepad" | "keyboard" | "controllers";
   readonly trend: ScoreTrend | null;
+  readonly slices: HeadSlices | null;
+  readonly clock: ScreenMessage | null;
 }
-
-/** A sentence to the trainee. */
-export interface ScreenMessage { readonly text: string; readonly tone: Tone; }
 
 /** Which control does what at the moment, such as "A" and "Touch". */
 export interface Hint { readonly control: string; readonly action: string; readonly item: string; }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from concurrent.futures import Future
 from unittest import mock
 
@@ -72,6 +73,7 @@ class Outside:
             use_scenario=self._load,
             is_slicer_connected=lambda: self.has_slicer,
             quit=lambda: setattr(self, "has_quit", True),
+            draw_seed=itertools.count(7).__next__,
             pin=self.pin,
         )
 

@@ -13,15 +13,20 @@ from unicodedata import east_asian_width
 
 import pytest
 
+from rastrainer.decision.drill_record import DecidedCase, Decision, Fault
 from rastrainer.procedure.record import UsedRegistration
 from rastrainer.protocol import MAX_ASSIGNMENTS, AssignmentState, GoalKind, Phase
 from rastrainer.registration.fits import RIGID
 from rastrainer.study.ratings import FORMS
 from rastrainer.study_messages import AssignmentStanding, CurriculumMessage, StudyStep
+from rastrainer_simulator.decision.cases import CaseMaker
 from rastrainer_simulator.flow import pages, procedure_screen, trial_screen
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.pages import (
+    case,
     controls,
+    decide,
+    drill_result,
     experiment,
     introduction,
     result,
@@ -67,7 +72,7 @@ FAILED = {
                 "residual": 5.12,
                 "where": {"key": "touch aside", "text": ""},
                 "hurry": {"key": "touch hurry", "text": ""},
-                "tremor": "",
+                "shaking": "",
             },
         },
         {"key": "depth", "text": "Most of the error is in depth.", "values": {}},
@@ -278,6 +283,8 @@ def _pages(session) -> Iterator[Page]:
     with_curriculum(session)
     yield experiment.ExperimentPage(session)
     yield experiment.assignments_page(session)
+    yield experiment.DecidePage(session)
+    yield from _drill_pages(session)
     yield trainee_id.keyboard_page(session, lambda *_: None)
     yield trainee_id.clicked_id_page(session, lambda *_: None)
     yield trainee_id.character_page(session, lambda *_: None, trainee_id.ROWS[0])
@@ -309,6 +316,68 @@ def _pages(session) -> Iterator[Page]:
     session.history.own = lambda _trainee: OWN_TRIALS
     yield trial_review.own_trials_page(session)
     yield trial_review.ReplayPage(session, _Loading(), begins_at_worst=False)
+
+
+_CASES = {}
+
+
+def _case(scenario):
+    """Return a case with many points, made once for each scenario."""
+    if scenario.name not in _CASES:
+        maker = CaseMaker(scenario)
+        made = (maker.case(seed, Fault.BAD_FIDUCIAL) for seed in range(20))
+        _CASES[scenario.name] = max(made, key=lambda each: len(each.labels))
+    return _CASES[scenario.name]
+
+
+def _drill(scenario, is_decided: bool) -> SimpleNamespace:
+    """Return a drill at its last case, as far as pages show it."""
+    made = _case(scenario)
+    decided = [
+        DecidedCase(
+            seed=number,
+            fault=fault,
+            method=made.method,
+            limit_mm=made.limit_mm,
+            true_error_mm=5.0,
+            expected_error_mm=1.0,
+            residual_mm=1.0,
+            difficulty=0.0,
+            decision=Decision.PROCEED if number % 3 else Decision.REGISTER_AGAIN,
+            confidence=100,
+            suspected=Fault.MIRRORED,
+            time_s=99.0,
+        )
+        for number, fault in enumerate((*Fault, Fault.MIRRORED))
+    ]
+    return SimpleNamespace(
+        case=made,
+        number=20,
+        count=20,
+        left_s=7.0,
+        checks=tuple(made.places),
+        is_ready=True,
+        is_over=True,
+        is_finished=True,
+        cases=decided,
+        decided=decided[-1] if is_decided else None,
+    )
+
+
+def _drill_pages(session) -> Iterator[Page]:
+    yield decide.introduction_page(session)
+    session.drill = _drill(session.scenario, is_decided=False)
+    yield case.case_page(session)
+    yield case.places_page(session)
+    yield case.images_page(session, session.drill.case.target_mm)
+    yield case.decision_page(session)
+    yield case.confidence_page(session, Decision.PROCEED)
+    yield case.suspect_page(session, Decision.STOP, 50)
+    yield case.leave_page(session)
+    session.drill = _drill(session.scenario, is_decided=True)
+    yield case.truth_page(session)
+    yield drill_result.drill_result_page(session, session.drill.cases)
+    session.drill = None
 
 
 LONGEST = "longest"

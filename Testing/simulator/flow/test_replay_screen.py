@@ -23,6 +23,7 @@ from Testing.simulator.flow.trainee import PATIENCE_S, Keys, Trainee
 WAYS = ((1, 0, 0), (0, 1, 0), (0, 0, 1), (-1, 0, 0), (0, -1, 0))
 """The tip has to be at another position at each touch; which one does not matter here."""
 PAGE = 2
+W3C_B, W3C_LEFT, W3C_RIGHT = 1, 14, 15
 
 
 class Place(Trainee):
@@ -197,6 +198,22 @@ def test_the_keys_of_the_replay_command_play_and_seek(result):
     result.step(20)
     assert "the worst touch" in result.presenter.screen.instruction.text
     result.hands.key("KeyM")
+    result.until_menu("result")
+
+
+def test_a_gamepad_at_a_browser_seeks_through_a_replay_and_leaves_it(result):
+    result.show_again()
+
+    def press(number):
+        for value in (1.0, 0.0):
+            buttons = [value if each == number else 0.0 for each in range(17)]
+            result.presenter.receive(1, "pad", [0.0] * 4, buttons)
+            result.step(20)
+
+    for button, seconds in ((W3C_RIGHT, 5), (W3C_LEFT, 0)):
+        press(button)
+        assert result.seconds == seconds
+    press(W3C_B)
     result.until_menu("result")
 
 

@@ -150,7 +150,7 @@ def test_the_worst_point_is_practiced_again_and_nothing_is_recorded(registered, 
     assert shown().next_point == "7"
     screen = registered.presenter.screen
     assert screen.status[0] == "Task 1: practice of point 7"
-    registered.until(lambda: not registered.presenter._flow._tutorial_screen._way, "the arm")
+    registered.until(lambda: not registered.presenter._flow._tutorial_screen._is_moving, "the arm")
     registered.touch_point("7")
     registered.until_menu("practiced")
     assert registered.menu.facts[0].label == "Error of your touch"

@@ -9,7 +9,7 @@ from rastrainer_simulator.flow.session.services import SET_UP_AFTER_S, Simulatio
 from rastrainer_simulator.loop.control_loop import BEING_SET_UP, TRIAL_IS_OPEN
 from rastrainer_simulator.state import Answer
 
-PRESENT, NEW, NEWER = "present", "new", "newer"
+PRESENT, NEW = "present", "new"
 
 
 class Process:

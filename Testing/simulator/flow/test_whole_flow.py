@@ -31,7 +31,7 @@ SCORE = {
         "feedback": [
             "Hold still before you touch.",
             7,
-            say("touch", label="3", residual=2.5, where=ABOVE, hurry="", tremor="").to_json(),
+            say("touch", label="3", residual=2.5, where=ABOVE, hurry="", shaking="").to_json(),
             {"key": "of another version", "values": {}, "text": "What only another one knows."},
             {"key": "passed", "values": {"mark": "high"}, "text": "You passed."},
             {"key": "passed", "values": {"mark": {"mark": {}}}, "text": 7},

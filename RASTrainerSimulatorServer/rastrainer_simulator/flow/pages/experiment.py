@@ -10,11 +10,13 @@ from concurrent.futures import Future
 from functools import partial
 from typing import Any
 
-from rastrainer.protocol import TRIAL_RUN, Mode, StepKind, TutorialRule
+from rastrainer.decision.drill_record import CASE_S, CASES
+from rastrainer.protocol import DECIDE, TRIAL_RUN, Mode, StepKind, TutorialRule
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.scenario import method_of, playable_methods
 from rastrainer.study_messages import AssignmentStanding, StudyStep
 from rastrainer.trial.scoring import PASS_MARK
+from rastrainer_simulator.flow.pages.decide import introduction_page, open_drill
 from rastrainer_simulator.flow.pages.trainee_id import (
     clicked_id_page,
     keyboard_page,
@@ -69,11 +71,7 @@ class ExperimentPage(SessionPage):
         session, step, say = self.session, self.session.step, self.say
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
             yield self.button("answer", partial(self._open_questionnaire, step))
-        yield from self._trainee()
-        modes = [mode.value for mode in Mode]
-        yield self.choice("mode", modes, session.mode, say(f"mode.{session.mode}"))
-        heads = self.open_page(lambda own: scenario_page(own, own.services.list_scenarios()))
-        yield self.button("scenario", heads, value=session.scenario.title)
+        yield from self._surroundings()
         methods, offered = playable_methods(session.scenario), chosen_trial.offered_method(session)
         others: dict[str, Any] = {"is_enabled": step is None}
         if len(methods) > 1:
@@ -87,6 +85,15 @@ class ExperimentPage(SessionPage):
             shown = session.procedure_title(chosen if step is None else step.procedure)
             yield self.choice("procedure", names, chosen, shown, **others)
 
+    def _surroundings(self) -> Iterator[PageRow]:
+        session, say = self.session, self.say
+        yield from self._trainee()
+        modes, shown = [mode.value for mode in Mode], say(f"mode.{session.mode}")
+        yield self.choice("mode", modes, session.mode, shown, label=say("experiment.mode"))
+        heads = self.open_page(lambda own: scenario_page(own, own.services.list_scenarios()))
+        title = session.scenario.title
+        yield self.button("scenario", heads, say("experiment.scenario"), value=title)
+
     def _trainee(self) -> Iterator[PageRow]:
         """Yield the trainee's ID, and for who only clicks what enters one."""
         session = self.session
@@ -98,7 +105,8 @@ class ExperimentPage(SessionPage):
             enter = partial(session.pages.move, 1)
         yield PageRow(item, enter, write=self._write_id)
         if session.operator.is_one_of(SourceKind.MOUSE):
-            yield self.button("clicked", self.open_page(clicked_id_page, self._write_id))
+            clicked = self.open_page(clicked_id_page, self._write_id)
+            yield self.button("clicked", clicked, self.say("experiment.clicked"))
 
     def _write_id(self, value: str) -> None:
         """Set the trainee's ID; the first typed character replaces the usual ID."""
@@ -139,6 +147,8 @@ class ExperimentPage(SessionPage):
                 is_enabled=not reason,
                 help=reason or self.say("experiment.task help"),
             )
+        if session.step is not None and session.step.kind == StepKind.DECIDE:
+            yield self.button(DECIDE, self.open_page(DecidePage), session.task_title(DECIDE))
         count = len(session.history.own(session.trainee_id))
         if count:
             yield self.button("trials", self.open_page(own_trials_page), value=str(count))
@@ -154,6 +164,8 @@ class ExperimentPage(SessionPage):
         session, step = self.session, self.session.step
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
             return "answer"
+        if step is not None and step.kind == StepKind.DECIDE:
+            return DECIDE
         if chosen_trial.needs_tutorial(session) and not chosen_trial.tutorial_obstacle(session):
             return "tutorial"
         curriculum = session.curriculum
@@ -172,6 +184,31 @@ class ExperimentPage(SessionPage):
     def _open_questionnaire(self, step: StudyStep) -> None:
         with self.session.complaining():
             self.session.pages.open(questionnaire_page(self.session, step))
+
+
+class DecidePage(ExperimentPage):
+    """Begins or continues a drill of decisions."""
+
+    name = "decide"
+
+    def content(self) -> PageContent:
+        session, step = self.session, self.session.step
+        is_open, reason = session.has_open_drill, chosen_trial.drill_obstacle(session)
+        rows = (
+            self.button(
+                "continue" if is_open else "begin",
+                partial(open_drill, session),
+                is_enabled=not reason,
+                help=reason,
+            ),
+            *self._surroundings(),
+            self.button("introduction", self.open_page(introduction_page)),
+            self.button("back"),
+        )
+        text = self.say("decide.text", cases=CASES, minutes=CASE_S / 60.0)
+        said = (text, *(() if step is None else (session.step_sentence(step),)))
+        first = "trainee" if reason and not session.trainee_id else rows[0].item.name
+        return PageContent(said, rows=rows, first=first)
 
 
 def open_experiment(
@@ -241,7 +278,10 @@ def assignments_page(page: SessionPage) -> PageContent:
     def begin(each: AssignmentStanding) -> None:
         session.mode = each.mode or session.mode
         session.method, session.procedure = method_of(each.method), each.procedure
-        chosen_trial.start_task(session, each.task)
+        if each.task == DECIDE:
+            session.pages.open(DecidePage(session))
+        else:
+            chosen_trial.start_task(session, each.task)
 
     said = (curriculum.title, words.advice(curriculum))
     rows = (*map(row, curriculum.assignments), back)

@@ -7,7 +7,7 @@ from concurrent.futures import Future
 from functools import partial
 
 from rastrainer_simulator.flow.pages.controls import controls_page
-from rastrainer_simulator.flow.pages.experiment import ExperimentPage
+from rastrainer_simulator.flow.pages.experiment import DecidePage, ExperimentPage
 from rastrainer_simulator.flow.pages.introduction import introduction_page
 from rastrainer_simulator.flow.session import preferences
 from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow, page_kind
@@ -23,6 +23,7 @@ def start_page(page: SessionPage) -> PageContent:
     has_read = page.session.has_read_introduction
     rows = (
         page.button("train", page.open_page(ExperimentPage if has_read else introduction_page)),
+        page.button("decide", page.open_page(DecidePage)),
         page.button("introduction", page.open_page(introduction_page)),
         page.button("controls", page.open_page(controls_page)),
         page.button("settings", page.open_page(settings_page)),

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from rastrainer.protocol import FREE, AssignmentState, GoalKind, StepKind
+from rastrainer.protocol import DECIDE, FREE, AssignmentState, GoalKind, StepKind
 from rastrainer.study.protocol.steps import StepAnswers
 from rastrainer.study_messages import FIDUCIALS, AssignmentStanding, CurriculumMessage, StudyStep
 from rastrainer_simulator.texts.texts import Texts
@@ -66,8 +66,9 @@ class AssignedTraining:
 
     def note_registered(self, trainee: str, task: str, mode: str) -> None:
         step = self.steps.get(trainee)
-        wanted = (StepKind.TRIAL.value, task, mode)
-        if step is not None and (step.kind, step.task, step.mode) == wanted:
+        if step is None or step.kind not in (StepKind.TRIAL, StepKind.DECIDE):
+            return
+        if (step.task, step.mode) == (task, mode):
             self.steps[trainee] = replace(step, kind=PLAYED)
 
     def answer(self, trainee: str, answers: Sequence[int]) -> None:
@@ -123,7 +124,8 @@ class AssignmentTexts:
             return self.texts.say("assignments.no mark")
         if each.goal is GoalKind.COMPETENT:
             return self.texts.say("assignments.competent", mark=each.mark)
-        key = "assignments.one trial" if each.needed == 1 else "assignments.trials"
+        kind = "drill" if each.task == DECIDE else "trial"
+        key = f"assignments.one {kind}" if each.needed == 1 else f"assignments.{kind}s"
         return self.texts.say(key, needed=each.needed, mark=each.mark)
 
     def gate(self, curriculum: CurriculumMessage, each: AssignmentStanding) -> str:

@@ -6,6 +6,7 @@ import numpy as np
 
 from rastrainer.commands import CommandName
 from rastrainer.protocol import (
+    DECIDE,
     TRIAL_RUN,
     AssignmentState,
     GhostRule,
@@ -105,6 +106,16 @@ def obstacle(session: TrainingSession, task: str) -> str:
     return _missing_before(session, task, is_assigned=bool(own))
 
 
+def drill_obstacle(session: TrainingSession) -> str:
+    """Return why the trainee cannot begin or continue a drill; "" if nothing prevents it."""
+    curriculum, unready = session.curriculum, _unready(session)
+    if unready or session.step is not None:
+        return unready or obstacle(session, DECIDE)
+    drills = () if curriculum is None else curriculum.assignments
+    own = [each for each in drills if each.task == DECIDE]
+    return "" if curriculum is None or not own else assignment_obstacle(session, own[0])
+
+
 def _not_now(session: TrainingSession, step: StudyStep) -> str:
     return session.say("experiment.study", step=session.step_sentence(step))
 
@@ -119,13 +130,13 @@ def assignment_obstacle(session: TrainingSession, each: AssignmentStanding) -> s
     scenario = session.scenario
     is_on_head = (
         each.scenario in ("", scenario.name)
-        and each.task in {task.name for task in scenario.tasks}
+        and each.task in {DECIDE, *(task.name for task in scenario.tasks)}
         and each.procedure in {"", *(procedure.name for procedure in scenario.procedures)}
         and (not each.method or each.method in {m.value for m in playable_methods(scenario)})
     )
     if not is_on_head:
         return session.say("assignments.other head")
-    return _missing_before(session, each.task, is_assigned=True)
+    return "" if each.task == DECIDE else _missing_before(session, each.task, is_assigned=True)
 
 
 def _missing_before(session: TrainingSession, task: str, is_assigned: bool) -> str:

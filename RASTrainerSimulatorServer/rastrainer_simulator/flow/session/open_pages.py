@@ -13,6 +13,7 @@ from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 from rastrainer_simulator.presentation.screen import (
     ControlsPicture,
     Fact,
+    HeadSlices,
     ItemKind,
     Menu,
     MenuItem,
@@ -57,6 +58,7 @@ class PageContent:
     title: str = ""
     picture: ControlsPicture = ""
     trend: ScoreTrend | None = None
+    slices: HeadSlices | None = None
     first: str = ""
 
 
@@ -241,6 +243,7 @@ class OpenPages:
             self._focused(shown.rows),
             shown.picture,
             shown.trend,
+            shown.slices,
         )
 
     def pressed(self, control: ControlName) -> None:

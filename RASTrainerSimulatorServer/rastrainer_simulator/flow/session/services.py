@@ -27,6 +27,7 @@ class FlowServices:
         use_settings, use_scenario: have the simulation continue with others between two trials.
         scores_alone: whether a trial outside of a study is scored here where no Slicer is
             connected.
+        draw_seed: draws the seed of a drill.
     """
 
     config: Path
@@ -36,6 +37,7 @@ class FlowServices:
     use_scenario: Callable[[str], Future[Answer]]
     is_slicer_connected: Callable[[], bool]
     quit: Callable[[], None]
+    draw_seed: Callable[[], int]
     assigned: AssignedTraining = field(default_factory=AssignedTraining)
     scores_alone: bool = False
     pin: InstructorPin | None = None

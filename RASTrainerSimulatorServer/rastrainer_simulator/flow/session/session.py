@@ -3,23 +3,34 @@
 from __future__ import annotations
 
 import logging
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import Future
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rastrainer import transforms
 from rastrainer.commands import CommandName, check_arguments
-from rastrainer.errors import InputError
+from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.journal.folder import journals_of
 from rastrainer.number_text import clock
 from rastrainer.procedure.geometry import BoneAhead
-from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, AssignmentState, Mode, RegistrationMethod
+from rastrainer.protocol import (
+    DECIDE,
+    OPEN_PHASES,
+    TRIAL_RUN,
+    AssignmentState,
+    Mode,
+    RegistrationMethod,
+)
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
 from rastrainer.study_messages import CurriculumMessage, StudyStep
+from rastrainer_simulator.decision.cases import DecisionCase
+from rastrainer_simulator.decision.drill import Drill, begin_drill, continue_drill
 from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
 from rastrainer_simulator.flow.session.open_pages import OpenPages, Page
 from rastrainer_simulator.flow.session.operator_device import OperatorDevice
@@ -37,7 +48,7 @@ from rastrainer_simulator.input.bindings import BINDINGS_FILE, Bindings, write_b
 from rastrainer_simulator.input.controls import Controls
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_event
-from rastrainer_simulator.presentation.screen import Notices, Tone
+from rastrainer_simulator.presentation.screen import Notices, ScreenMessage, Tone
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.replay.ghost import TrialGhost
 from rastrainer_simulator.replay.recorded_trial import TrialLoading, load_trial
@@ -49,10 +60,15 @@ from rastrainer_simulator.vectors import Vector, in_meters
 from rastrainer_simulator.viewpoint.trial_view import TrialView
 from rastrainer_simulator.viewpoint.view_control import Orbit
 
+if TYPE_CHECKING:
+    from rastrainer_simulator.decision.cases import DecisionCase
+
 _log = logging.getLogger(__name__)
 
 REACHED_S = 20.0
 """How long a reached assignment is shown: it comes while the result is read."""
+HURRY_S = 20.0
+"""Time left for a case at which the clock begins to warn."""
 TUTORIAL_VIEW = Orbit(zoom=1.7)
 """Farther away than in a trial: the tip starts above the head and must be visible."""
 
@@ -80,6 +96,7 @@ class TrainingSession:
     method: RegistrationMethod = RegistrationMethod.FIDUCIALS
     has_read_introduction: bool = False
     tutorial: Tutorial | None = None
+    drill: Drill | None = None
     practiced: tuple[str, str] = TRIAL_RUN, ""
     picture_share: float | None = None
     goes_on_blind: str = ""
@@ -162,6 +179,8 @@ class TrainingSession:
             # A touch that does not count comes as a separate event, with its own sound.
             elif not answer.result().ok and command != CommandName.CAPTURE:
                 self.complain(answer.result().message)
+        if self.drill is not None and self.picture_share is None:
+            self._advance_drill(dt, self.drill)
         self._note_reached()
         self.reload.advance(dt, self.has_open_trial)
 
@@ -171,6 +190,9 @@ class TrainingSession:
         checked = self._checked(command, arguments or {})
         if checked is not None:
             self._asked.append((command, self.control_loop.submit(command, checked, sender)))
+
+    def move_tip(self, place_mm: list[float], speed_mm_s: float) -> None:
+        self.do(CommandName.MOVE_TIP_TO, {"positionMm": place_mm, "speedMmS": speed_mm_s})
 
     def _checked(self, command: str, arguments: Mapping[str, Any]) -> dict[str, Any] | None:
         """Return checked arguments; the reason against them, which names a command, is logged."""
@@ -212,6 +234,63 @@ class TrainingSession:
             with self.complaining():
                 self.history.keep_tutorial(outcome)
         return outcome
+
+    @property
+    def has_open_drill(self) -> bool:
+        """Whether the trainee has a drill to continue on this scenario."""
+        setup = self.control_loop.setup
+        return self.history.open_drill(self.trainee_id, setup) is not None
+
+    def begin_drill(self) -> None:
+        """Begin a drill of decisions for the trainee; one that is open has to be continued."""
+        self.leave_drill()
+        if self.reload.is_under_way:
+            self.complain(self.say("being set up"))
+            return
+        trainee, loop, history = self.trainee_id, self.control_loop, self.history
+        seen = {case.seed for drill in history.drills(trainee) for case in drill.cases}
+        path = history.open_drill(trainee, loop.setup)
+        if path is not None:
+            with self.complaining():
+                self.drill = continue_drill(path, loop, seen)
+                return
+        with self.complaining():
+            seed, records = self.services.draw_seed(), self.services.records
+            self.drill = begin_drill(records, trainee, self.mode, loop, seed, seen)
+            history.drill_changed(self.drill.trial_id)
+
+    @property
+    def placed_case(self) -> DecisionCase:
+        """The present case of the open drill, with the head where the last trial has left it."""
+        assert self.drill is not None, "It is asked for while there is a drill."
+        case, pose = self.drill.case, self.control_loop.simulation.truth.head_to_world
+        to_case = case.head_to_world @ transforms.inverse(pose)
+        return replace(case, head_to_world=pose, registration=case.registration @ to_case)
+
+    @property
+    def drill_clock(self) -> ScreenMessage | None:
+        """The time left for the present case of a drill; None without one."""
+        drill = self.drill
+        if drill is None or not drill.is_ready or drill.decided is not None:
+            return None
+        # Rounding first: an error in a float's last digit must not add a second.
+        left = math.ceil(round(drill.left_s, 6))
+        hurry = Tone.WARNING if left else Tone.ERROR
+        return ScreenMessage(clock(left), hurry if left <= HURRY_S else Tone.PLAIN)
+
+    def leave_drill(self) -> None:
+        """Leave the drill, to be continued with its present clock."""
+        drill, self.drill = self.drill, None
+        if drill is not None:
+            drill.close()
+
+    def _advance_drill(self, dt: float, drill: Drill) -> None:
+        was_finished = drill.is_finished
+        with self.complaining():
+            drill.advance(dt)
+        if drill.is_finished and not was_finished:
+            self.history.drill_changed(drill.trial_id)
+            self.services.assigned.note_registered(drill.trainee, DECIDE, drill.mode)
 
     def prefer(self, **changes: Any) -> None:
         before = self.control_loop.setup.settings
@@ -259,8 +338,9 @@ class TrainingSession:
     def complaining(self) -> Iterator[None]:
         try:
             yield
-        except InputError as error:
-            self.complain(str(error))
+        except RASTrainerError as error:
+            # Not str(error), which is not said again in the trainee's language.
+            self.complain(error.args[0])
 
     def feel(self, events: Iterable[Event], touch: TouchStage, not_recorded: bool = False) -> None:
         """Give the feedback to events, as `feedback_event` has it."""

@@ -21,8 +21,8 @@ from rastrainer_simulator.presentation.presenter import TraceGuidance
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.trial_state import TraceState
-from rastrainer_simulator.vectors import Vector, add, in_meters, scale, subtract, unit, vector
-from rastrainer_simulator.viewpoint.view_control import Orbit, orbit_to
+from rastrainer_simulator.vectors import Vector, in_meters, vector
+from rastrainer_simulator.viewpoint.view_control import Orbit, orbit_beside
 
 LOOK_S = 0.25
 """Time between two searches; a search takes about 10 ms."""
@@ -88,17 +88,12 @@ class TracePlaces:
         return in_meters(place)
 
     def orbit(self, camera: Camera) -> Orbit | None:
-        """Return a view of the next place; None if there is no next place.
-
-        Its eye is between the skin's normal, along which the tool hides the tip, and the camera.
-        """
+        """Return a view of the next place; None if there is no next place."""
         place = self.in_world()
         if self._trial is None or self._place is None or place is None:
             return None
         outward = self._trial[2].head_to_world[:3, :3] @ np.array(self._place.normal)
-        line = subtract(vector(camera.position_mm.tolist()), place)
-        between = unit(add(vector(outward.tolist()), unit(line)))
-        return orbit_to(camera, add(place, scale(between, EYE_M)), place)
+        return orbit_beside(camera, place, vector(outward.tolist()), EYE_M)
 
     def _find(self, setup: SimulationSetup, truth: Truth, trace: TraceState) -> SkinPlace | None:
         """Return the next place; called in the thread."""

@@ -14,11 +14,13 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
+import rastrainer
+from rastrainer.decision.drill_record import DrillRecord
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import make_folder, write_text
-from rastrainer.journal.entries import iso
-from rastrainer.journal.folder import TUTORIAL_SUFFIX, journals_of
+from rastrainer.journal.entries import DrillEnd, JournalHeader, iso
+from rastrainer.journal.folder import DRILL_SUFFIX, TUTORIAL_SUFFIX, journals_of
 from rastrainer.journal.journal_file import (
     MAX_LINE_BYTES,
     NO_LINE,
@@ -32,6 +34,7 @@ from rastrainer.protocol import TRIAL_RUN, AbortReason, Phase, RegistrationMetho
 from rastrainer.trial.record import AbortedTrial, TrialRecord
 from rastrainer.trial.scoring import PASS_MARK, passes
 from rastrainer.trial.trial_row import TrialRow
+from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 
@@ -52,7 +55,7 @@ MAX_SHOWN = 20
 _MAX_TUTORIAL_BYTES = 1 << 20
 _TAIL_BYTES = 1 << 17
 _START = re.compile(
-    rb'\{"n":(\d+),"previous":"([0-9a-f]{64})","kind":"(registered|scored|attempt)"'
+    rb'\{"n":(\d+),"previous":"([0-9a-f]{64})","kind":"(registered|scored|attempt|drill)"'
 )
 
 
@@ -92,6 +95,9 @@ class TraineeHistory:
         self._own: dict[Path, OwnTrial | None] = {}
         for path in sorted(records.glob("*.journal")):
             self._note_journal(path)
+        self._drills: dict[Path, tuple[JournalHeader, DrillRecord | None]] = {}
+        for path in sorted(records.glob(f"*{DRILL_SUFFIX}")):
+            self._note_drill(path)
         for path in sorted(records.glob(f"*{TUTORIAL_SUFFIX}")):
             with contextlib.suppress(InputError, OSError):
                 outcome = read_json(path, _MAX_TUTORIAL_BYTES)
@@ -135,6 +141,28 @@ class TraineeHistory:
             if path not in known:
                 known.append(path)
 
+    def drill_changed(self, trial_id: str) -> None:
+        """Note that a drill has begun or is finished."""
+        for path in journals_of(self._records, trial_id, DRILL_SUFFIX):
+            self._note_drill(path)
+
+    def drills(self, trainee: str) -> tuple[DrillRecord, ...]:
+        """Return the trainee's finished drills, oldest first."""
+        records = [record for _, record in self._drills.values() if record is not None]
+        return tuple(record for record in records if record.trainee == trainee)
+
+    def open_drill(self, trainee: str, setup: SimulationSetup) -> Path | None:
+        """Return the journal of the drill that a trainee has to continue on a scenario.
+
+        A drill of another version of the program is none: its cases may be other ones.
+        """
+        for path, (header, record) in self._drills.items():
+            is_same = header.versions.get("rastrainer") == rastrainer.__version__
+            is_here = is_same and not setup.difference(header) and path.exists()
+            if record is None and header.trainee == trainee and is_here:
+                return path
+        return None
+
     def own(self, trainee: str) -> tuple[OwnTrial, ...]:
         """Return the trainee's scored trials except trial runs, and the failures, oldest first."""
         paths = self._journals.get(trainee, ())
@@ -162,6 +190,15 @@ class TraineeHistory:
         ]
         return tuple(scores[-MAX_SHOWN:])
 
+    def _note_drill(self, path: Path) -> None:
+        """Note what a drill's journal says; ignore it if it cannot be read."""
+        with contextlib.suppress(OSError, DamagedLineError, InputError):
+            with path.open("rb") as file:
+                first = decode_line(file.readline(MAX_LINE_BYTES).rstrip(b"\n"), 1, NO_LINE)
+            end = _last_entries(path).get(DrillEnd.kind)
+            record = None if end is None else record_from_json(DrillRecord, end.get("record"))
+            self._drills[path] = record_from_json(JournalHeader, first), record
+
     def _note_journal(self, path: Path) -> None:
         """Note what a journal says; ignore it if it cannot be read."""
         try:
@@ -181,16 +218,20 @@ class TraineeHistory:
             self.done[trainee, scenario].add(task)
 
 
+def _last_entries(journal: Path) -> dict[str, dict[str, Any]]:
+    """Return the entries at the end of a journal that have an outcome, by kind, as written."""
+    with journal.open("rb") as file:
+        file.seek(max(0, journal.stat().st_size - _TAIL_BYTES))
+        lines = file.read(_TAIL_BYTES).split(b"\n")
+    found = ((line, start) for line in lines if (start := _START.match(line)))
+    entries = (decode_line(line, int(start[1]), start[2].decode()) for line, start in found)
+    return {entry["kind"]: entry for entry in entries}
+
+
 def _own_trial(journal: Path) -> OwnTrial | None:
     """Return the scored or failed trial of a journal; None for other and damaged journals."""
     try:
-        with journal.open("rb") as file:
-            file.seek(max(0, journal.stat().st_size - _TAIL_BYTES))
-            lines = file.read(_TAIL_BYTES).split(b"\n")
-        # The entries with the trial's outcome, each as it was written.
-        found = ((line, start) for line in lines if (start := _START.match(line)))
-        entries = (decode_line(line, int(start[1]), start[2].decode()) for line, start in found)
-        last = {entry["kind"]: entry for entry in entries}
+        last = _last_entries(journal)
         if "attempt" in last:
             aborted = record_from_json(AbortedTrial, last["attempt"]["record"])
             failed = OwnTrial.of(aborted, is_passed=False, journal=journal)

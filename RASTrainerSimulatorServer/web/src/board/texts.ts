@@ -1,10 +1,23 @@
 /** Texts and times on the teacher's board, in the language of the browser. */
 
-import { useLanguage } from "../texts";
+import { filled, useLanguage, type Values } from "../texts";
+import { board as de } from "../texts/de.json";
+import { board as en } from "../texts/en.json";
+import { board as es } from "../texts/es.json";
+import { board as fr } from "../texts/fr.json";
+import { typeset } from "../texts/typesetting";
+import { board as zh } from "../texts/zh-Hans.json";
 
-export { figure, holderName, sayOnBoard as say, type BoardText } from "../texts";
+export { figure, holderName } from "../texts";
+export type BoardText = keyof typeof en;
 
-useLanguage(navigator.language.slice(0, 2));
+const language = navigator.language.slice(0, 2);
+const table: Readonly<Record<BoardText, string>> = typeset({ de, en, es, fr, zh })[language] ?? en;
+useLanguage(language);
+
+export function say(name: BoardText, values: Values = {}): string {
+  return filled(table[name], values);
+}
 
 /** Return a day, such as "Nov 26, 2026". */
 export function date(when: Date): string {

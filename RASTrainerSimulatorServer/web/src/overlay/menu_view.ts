@@ -7,6 +7,7 @@ import type { Fact, MenuItem, Menu } from "../generated";
 import { say } from "../texts";
 
 export class MenuView {
+  private readonly clock = element("span", "", { className: "clock", role: "timer" });
   private readonly title = element("h2");
   private readonly text = element("div");
   private readonly list = element("ul");
@@ -27,7 +28,7 @@ export class MenuView {
     this.title.id = `${parent.id}-title`;
     this.text.id = `${parent.id}-text`;
     this.help.id = `${parent.id}-help`;
-    this.parent.append(this.title, this.text, this.list, this.help, this.spoken);
+    this.parent.append(this.clock, this.title, this.text, this.list, this.help, this.spoken);
   }
 
   /** Show a menu, null for none; `drawn` is the address of the drawing that belongs to it, or "". */
@@ -48,7 +49,10 @@ export class MenuView {
 
   private fill(menu: Menu, drawn: string): void {
     const focused = menu.items.find((item) => item.name === menu.focus);
-    this.parent.className = drawn !== "" ? "menu pictured" : menu.facts.length > 0 ? "menu wide" : "menu";
+    const drawnKind = menu.slices ? "menu pictured sliced" : "menu pictured";
+    this.parent.className = drawn !== "" ? drawnKind : menu.facts.length > 0 ? "menu wide" : "menu";
+    this.clock.textContent = menu.clock?.text ?? "";
+    this.clock.dataset.tone = menu.clock?.tone ?? "plain";
     this.title.textContent = menu.title;
     this.fillText(menu, drawn, focused);
     const shape = JSON.stringify([menu.name, menu.items.map((item) => [item.name, item.kind])]);
@@ -66,7 +70,7 @@ export class MenuView {
     if (content === this.shownText) return;
     this.shownText = content;
     const parts: HTMLElement[] = menu.paragraphs.map((text) => element("p", text));
-    if (drawn !== "") parts.unshift(picture(drawn, menu.trend?.text ?? say("picture"), "drawn"));
+    if (drawn !== "") parts.unshift(picture(drawn, menu.trend?.text ?? menu.slices?.text ?? say("picture"), "drawn"));
     if (menu.facts.length > 0) parts.push(factsOf(menu.facts));
     if (focused?.picture) parts.push(picture(focused.picture, focused.label, "head"));
     this.text.replaceChildren(...parts);

@@ -7,7 +7,7 @@ import { MenuView } from "./menu_view";
 import { factLines, hintLine, message } from "./parts";
 import type { ControlNews, Menu, ScreenMessage, PairingNews, Screen } from "../generated";
 import { controlsPicture, inputsOf } from "../panels/controls_picture";
-import { trendPlot } from "../panels/trend_plot";
+import { plotOf } from "../panels/slices_plot";
 import { say, sayHolder, type TextName } from "../texts";
 
 /** Caption of the inset. */
@@ -107,8 +107,7 @@ export class Overlay {
   }
 
   private showMenu(menu: Menu | null): void {
-    let drawn = menu?.picture ? controlsPicture(menu.picture, inputsOf(menu)) : "";
-    if (menu?.trend) drawn = trendPlot(menu.trend);
-    this.menuView.show(menu, drawn);
+    const plot = menu === null ? "" : plotOf(menu);
+    this.menuView.show(menu, menu?.picture ? controlsPicture(menu.picture, inputsOf(menu)) : plot);
   }
 }

@@ -134,9 +134,9 @@ export class ElementPanel extends Panel {
     const copy = this.root.cloneNode(true) as HTMLElement;
     const images = this.root.querySelectorAll("img");
     copy.querySelectorAll("img").forEach((image, index) => {
-      image.removeAttribute("src");
-      image.style.visibility = "hidden";
-      image.style.height = `${images[index]!.height}px`;
+      const gap = element("div");
+      gap.style.height = `${images[index]!.offsetHeight}px`;
+      image.replaceWith(gap);
     });
     const fields = this.root.querySelectorAll("input");
     copy.querySelectorAll("input").forEach((field, index) => field.setAttribute("value", fields[index]!.value));
@@ -238,5 +238,5 @@ function pageStyle(): string {
 }
 
 function clocksIn(parent: HTMLElement): HTMLElement[] {
-  return [...parent.querySelectorAll<HTMLElement>(".status li")].filter((line) => CLOCK.test(line.textContent!));
+  return [...parent.querySelectorAll<HTMLElement>(".status li, .clock")].filter((line) => CLOCK.test(line.textContent!));
 }

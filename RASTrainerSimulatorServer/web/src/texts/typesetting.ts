@@ -5,13 +5,18 @@ const NO_BREAK_SPACE = "\u00a0";
 
 type Texts = Readonly<Record<string, string>>;
 
+/** Return the texts of each language as its typography asks. */
+export function typeset<Table extends Texts>(tables: Record<"fr" | "zh", Table> & Record<string, Table>): Readonly<Record<string, Table>> {
+  return { ...tables, fr: french(tables.fr), zh: chinese(tables.zh) };
+}
+
 /** Return French texts with narrow no-break spaces before and after signs of two parts. */
-export function french<Table extends Texts>(texts: Table): Table {
+function french<Table extends Texts>(texts: Table): Table {
   return eachSet(texts, (text) => text.replace(/ ([:;!?%»])/g, `${NARROW_SPACE}$1`).replace(/« /g, `«${NARROW_SPACE}`));
 }
 
 /** Return Chinese texts with no-break spaces around numbers and inserted values. */
-export function chinese<Table extends Texts>(texts: Table): Table {
+function chinese<Table extends Texts>(texts: Table): Table {
   return eachSet(texts, (text) => text.replace(/ (?=[\d{/])|(?<=[\d}/]) /g, NO_BREAK_SPACE));
 }
 

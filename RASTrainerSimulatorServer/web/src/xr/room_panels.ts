@@ -10,7 +10,7 @@ import { factLines, hintLine, message } from "../overlay/parts";
 import { controlsPicture, inputsOf, PICTURE_HEIGHT, PICTURE_WIDTH } from "../panels/controls_picture";
 import { ElementPanel } from "../panels/element_panel";
 import { Panel } from "../panels/panel";
-import { trendPlot } from "../panels/trend_plot";
+import { plotOf } from "../panels/slices_plot";
 import type { Connection } from "../stream/connection";
 import { say, sayHolder } from "../texts";
 import { CloseUp } from "./close_up";
@@ -213,7 +213,7 @@ export class RoomPanels {
     const holder = part("p", "control", sayHolder(this.control?.holder ?? "", this.control?.isYou ?? false));
     this.closeUp.mesh.visible = menu === null;
     if (menu !== null) {
-      this.menuView.show(menu, menu.trend ? trendPlot(menu.trend) : "");
+      this.menuView.show(menu, plotOf(menu));
       const buttons = LOCAL.map((action) => this.button(action));
       this.actions.root.replaceChildren(part("div", "actions", ...buttons, holder));
       if (menu.picture) this.drawing.src = controlsPicture(menu.picture, inputsOf(menu));

@@ -1,0 +1,264 @@
+"""The drill of decisions at the screens: its cases, checks, decisions and result."""
+
+from __future__ import annotations
+
+import itertools
+from types import SimpleNamespace
+from unittest import mock
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.decision.drill_record import Decision, Fault
+from rastrainer.study_messages import StudyStep
+from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.decision import drill, forms, prepared_cases
+from rastrainer_simulator.decision.cases import CaseMaker
+from rastrainer_simulator.presentation.screen import SliceMark, Tone
+
+
+@pytest.fixture(scope="module")
+def form(setup):
+    """A short form: a case that must be registered again, and a sound one."""
+    maker = CaseMaker(setup.scenario)
+
+    def first(fault: Fault, is_sound: bool) -> tuple[int, Fault]:
+        made = (maker.case(seed, fault) for seed in itertools.count())
+        fits = (each for each in made if each.is_sound == is_sound and not len(each.trace_mm))
+        return next(fits).seed, fault
+
+    return first(Fault.MOVED_HEAD, False), first(Fault.BAD_FIDUCIAL, True)
+
+
+@pytest.fixture(scope="module")
+def cases(setup, form):
+    maker = CaseMaker(setup.scenario)
+    return [maker.case(*key) for key in form]
+
+
+@pytest.fixture(autouse=True)
+def _short_drills(form):
+    with (
+        mock.patch.object(drill, "CASES", len(form)),
+        mock.patch.object(prepared_cases, "CASES", len(form)),
+        mock.patch.object(forms, "draw_form", return_value=form),
+    ):
+        yield
+
+
+def until_case(trainee, number: int) -> None:
+    """Wait until a case is prepared and shown."""
+    trainee.until_menu("case")
+    title = f"Case {number} of 2"
+    trainee.until(lambda: trainee.menu.facts and trainee.menu.title == title, title)
+
+
+def begin(trainee) -> None:
+    """Go from the start menu to the first case of a new drill of the usual trainee."""
+    trainee.choose("decide", "decide")
+    trainee.choose("begin", "decide-introduction")
+    trainee.choose("begin")
+    until_case(trainee, 1)
+
+
+def check(trainee, place: str) -> None:
+    trainee.choose("check", "case-places")
+    trainee.choose(f"point {place}", None)
+    trainee.until(lambda: trainee.presenter.screen.instruction.text.startswith("By the"), place)
+
+
+def decide(trainee, *pressed: str) -> None:
+    """Press an item in each menu of the decision."""
+    menus = ("case-confidence", "case-suspect")[: len(pressed) - 1]
+    for press, menu in zip(pressed, (*menus, "case-truth"), strict=True):
+        trainee.choose(press, menu)
+
+
+def play(trainee, loop, cases) -> None:
+    """Play a drill whole, with a check and the images of the first case."""
+    begin(trainee)
+    check(trainee, "Nasion")
+    trainee.tap_until("menu", "case")
+    trainee.choose("images", "case-images")
+    trainee.choose("back", "case")
+    trainee.choose("decide", "case-decision")
+    decide(trainee, "register again", "90", "moved head")
+    harmful, sound = (case.is_sound for case in cases)
+    assert (harmful, sound) == (False, True)
+    assert trainee.menu.title == "Right: this registration was off"
+    trainee.choose("next")
+    until_case(trainee, 2)
+    trainee.choose("decide", "case-decision")
+    decide(trainee, "proceed", "80")
+    trainee.until(lambda: trainee.item("result").is_enabled, "the record")
+    trainee.choose("result", "drill-result")
+    assert trainee.menu.title.startswith("Passed")
+    trainee.until(lambda: loop.archive.unacknowledged(), "the delivery")
+    (record,) = loop.archive.unacknowledged()
+    first, second = record.cases
+    assert (first.checks, first.has_read_images) == (("Nasion",), True)
+    assert first.suspected is Fault.MOVED_HEAD
+    assert (second.decision, second.confidence) == (Decision.PROCEED, 80)
+
+
+def test_a_drill_is_played_by_keys(trainee, loop, cases):
+    play(trainee, loop, cases)
+
+
+def test_a_drill_is_played_by_gamepad(pilot, loop, cases):
+    pilot.until_menu("start")
+    play(pilot, loop, cases)
+
+
+def test_the_robot_goes_where_the_registration_puts_a_place(trainee, cases):
+    begin(trainee)
+    check(trainee, "Nasion")
+    goal = cases[0].tip_for(cases[0].places["Nasion"])
+    away = np.linalg.norm(MM_PER_M * np.array(trainee.state.tip) - goal)
+    said = trainee.presenter.screen.instruction
+    assert f"{away:.0f} mm" in said.text if said.tone is Tone.WARNING else away < 1.0
+    assert not trainee.presenter.screen.warnings
+    clock = trainee.presenter.screen.status[1]
+    assert clock < "01:50", "a check takes ten seconds"
+
+
+def test_one_place_is_checked_after_the_other(trainee):
+    begin(trainee)
+    for number, place in enumerate(("Nasion", "Vertex", "Nasion"), start=1):
+        check(trainee, place)
+        trainee.tap_until("menu", "case")
+        assert trainee.item("check").value == f"{number}"
+    trainee.choose("check", "case-places")
+    assert trainee.item("point Vertex").value == "checked"
+
+
+def test_fiducials_are_drawn_where_they_truly_are(trainee, cases):
+    begin(trainee)
+    trainee.choose("look", None)
+    marks = {each.name: each.end for each in trainee.presenter.screen.errors}
+    assert set(marks) == set(cases[0].labels)
+    for label, place in zip(cases[0].labels, cases[0].fixed_mm, strict=True):
+        assert marks[label] == pytest.approx(cases[0].truly(place) / MM_PER_M)
+
+
+def test_the_tip_is_shown_in_the_images_where_the_registration_puts_it(trainee, cases):
+    begin(trainee)
+    trainee.choose("look", None)
+    trainee.tap_until("touch", "case-images")
+    slices = trainee.menu.slices
+    tip = cases[0].in_images(MM_PER_M * np.array(trainee.state.tip))
+    offset = tip - cases[0].target_mm
+    axial = next(each for each in slices.slices if each.name == "Axial")
+    assert axial.letters == ("R", "L", "P", "A"), "as radiologists see it"
+    marks = {line.mark: np.array(line.points[0]) for line in axial.lines}
+    drawn = marks[SliceMark.TIP] - marks[SliceMark.TARGET]
+    assert drawn == pytest.approx([-offset[0], offset[1]], abs=0.2)
+
+
+def test_the_truth_shows_where_the_robot_really_gets(trainee, cases):
+    begin(trainee)
+    trainee.choose("decide", "case-decision")
+    decide(trainee, "proceed", "100")
+    assert trainee.menu.title == "Wrong: this registration was off"
+    off = np.zeros(3)
+    rows = {"Axial": (0, 1), "Coronal": (0, 2), "Sagittal": (1, 2)}
+    for each in trainee.menu.slices.slices:
+        marks = {line.mark: np.array(line.points[0]) for line in each.lines}
+        off[list(rows[each.name])] = marks[SliceMark.REACHED] - marks[SliceMark.TARGET]
+    assert np.linalg.norm(off) == pytest.approx(cases[0].true_error_mm, abs=0.3)
+
+
+def test_nothing_can_be_taken_back_after_the_truth(trainee):
+    begin(trainee)
+    trainee.choose("decide", "case-decision")
+    trainee.choose("proceed", "case-confidence")
+    assert "final" in trainee.menu.paragraphs[1]
+    trainee.tap_until("back", "case-decision")
+    decide(trainee, "stop", "60", "none")
+    trainee.tap_until("back", "case-leave")
+    trainee.choose("stay", "case-truth")
+
+
+def test_the_decision_opens_when_the_time_is_over(trainee):
+    begin(trainee)
+    trainee.step_s = 1.0
+    trainee.until(lambda: trainee.menu.clock.tone is Tone.WARNING, "the last seconds")
+    assert trainee.menu.clock.text == "00:20"
+    trainee.until_menu("case-decision")
+    assert (trainee.menu.clock.text, trainee.menu.clock.tone) == ("00:00", Tone.ERROR)
+    trainee.choose("back", "case")
+    for name in ("look", "check", "images"):
+        assert not trainee.item(name).is_enabled
+        assert trainee.item(name).help == "The time is over: decide."
+    trainee.step(5)
+    assert trainee.menu.name == "case", "the page that the trainee has left stays closed"
+    trainee.choose("decide", "case-decision")
+    decide(trainee, "stop", "50", "bent tool")
+
+
+def test_a_drill_that_was_left_goes_on_at_its_clock(trainee):
+    begin(trainee)
+    check(trainee, "Nasion")
+    trainee.tap_until("menu", "case")
+    trainee.choose("leave", "case-leave")
+    trainee.choose("leave", "start")
+    trainee.step_s = 1.0
+    trainee.step(30)
+    trainee.step_s = 0.016
+    trainee.choose("decide", "decide")
+    trainee.choose("continue")
+    until_case(trainee, 1)
+    assert trainee.menu.clock.text > "01:30"
+    assert trainee.item("check").value == "1"
+
+
+def test_slicer_opens_a_drill(trainee, presenter):
+    assert presenter.start_drill("P9", "desktop").data == {}
+    trainee.until_menu("decide-introduction")
+    trainee.choose("begin")
+    until_case(trainee, 1)
+    answer = presenter.start_drill("P9", "desktop")
+    assert answer.data["trialId"] == presenter._session.drill.trial_id
+    assert "P9" in presenter.start_drill("P8", "desktop").message
+    assert not presenter.start_tutorial("P9", "desktop").ok
+    trainee.start("task-1")
+    assert presenter.start_drill("P9", "desktop").message.startswith("P07 is still doing")
+
+
+def test_a_study_decides_when_a_drill_comes(trainee, outside):
+    steps = outside.services.assigned
+    steps.take_step(StudyStep("7", "decide", 2, 3, task="decide", mode="desktop"))
+    trainee.go_to_experiment("7")
+    assert not trainee.item("task-1").is_enabled
+    trainee.choose("decide", "decide")
+    assert trainee.item("begin").is_enabled
+    steps.take_step(StudyStep("7", "trial", 2, 3, task="task-1", mode="desktop"))
+    trainee.step(20)
+    assert not trainee.item("begin").is_enabled
+
+
+def test_a_head_is_checked_where_a_trial_has_left_it(trainee, presenter, cases):
+    begin(trainee)
+    case, nasion = cases[0], cases[0].places["Nasion"]
+    moved = transforms.rigid(np.eye(3), np.array([10.0, 0.0, 0.0]))
+    truth = SimpleNamespace(head_to_world=moved @ case.head_to_world)
+    with mock.patch.object(Simulation, "truth", truth):
+        placed = presenter._session.placed_case
+    assert placed.tip_for(nasion) == pytest.approx(transforms.apply(moved, case.tip_for(nasion)))
+    assert placed.in_images(placed.tip_for(nasion)) == pytest.approx(nasion)
+
+
+def test_a_drill_that_was_left_after_a_decision_goes_on_with_its_truth(trainee):
+    begin(trainee)
+    trainee.choose("decide", "case-decision")
+    decide(trainee, "proceed", "100")
+    title = trainee.menu.title
+    trainee.choose("leave", "case-leave")
+    trainee.choose("leave", "start")
+    trainee.choose("decide", "decide")
+    trainee.choose("continue", "case-truth")
+    trainee.until(lambda: trainee.menu.title == title, "the truth")
+    trainee.choose("next")
+    until_case(trainee, 2)

@@ -1,0 +1,139 @@
+"""A trainee's session begins a drill, has an open one continued, and hands a finished one over."""
+
+from __future__ import annotations
+
+import os
+import time
+
+import pytest
+
+from rastrainer.decision.drill_record import CASES, Decision
+from rastrainer.journal.folder import DRILL_SUFFIX
+from rastrainer_simulator.decision.drill import CLOCK_S
+from rastrainer_simulator.flow.session.preferences import Preferences
+from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.input.controls import Controls, ControlsListener
+from Testing.simulator.decision.drills import PATIENCE_S, cheap_forms
+from Testing.simulator.record.test_interrupted_trial import on_full_disk
+
+
+@pytest.fixture(autouse=True)
+def _cheap_forms():
+    with cheap_forms():
+        yield
+
+
+@pytest.fixture
+def session(loop, outside):
+    return start(loop, outside)
+
+
+def start(loop, outside, trainee="P01", **preferences):
+    """Return the session of a simulator that has just been started."""
+    nothing = ControlsListener(*[lambda *_: False] * 4)
+    controls = Controls(DEFAULT_BINDINGS, nothing, lambda: True)
+    given = Preferences(**preferences)
+    session = TrainingSession(loop, controls, outside.services, given, lambda _event: None)
+    session.trainee = trainee
+    return session
+
+
+def wait(session, is_there):
+    give_up = time.monotonic() + PATIENCE_S
+    while not is_there():
+        session.advance(0.0, session.control_loop.latest)
+        time.sleep(0.001)
+        assert time.monotonic() < give_up
+
+
+def begin(session):
+    session.begin_drill()
+    drill = session.drill
+    wait(session, lambda: drill.is_ready)
+    return drill
+
+
+def told(session):
+    return [notice.text for notice in session.notices.shown(session.texts)]
+
+
+def play(session, drill):
+    while not drill.is_over:
+        if drill.decided is not None:
+            drill.next_case()
+        wait(session, lambda: drill.is_ready)
+        drill.decide(Decision.STOP, 60)
+    wait(session, lambda: drill.is_finished)
+
+
+def test_an_open_drill_has_to_be_continued_by_its_trainee_alone_until_it_is_over(
+    session, loop, outside
+):
+    assert not session.has_open_drill
+    drill = begin(session)
+    drill.decide(Decision.STOP, 60)
+    session.leave_drill()
+    assert (session.drill, session.has_open_drill) == (None, True)
+    again = begin(session)
+    assert (again.trial_id, again.decided) == (drill.trial_id, drill.decided)
+    session.trainee = "P02"
+    assert not session.has_open_drill
+    assert begin(session).trial_id != drill.trial_id
+    session.leave_drill()
+    restarted = start(loop, outside)
+    assert restarted.has_open_drill
+    play(restarted, last := begin(restarted))
+    assert not restarted.has_open_drill
+    (record,) = restarted.history.drills("P01")
+    assert (record.trial_id, len(record.cases)) == (drill.trial_id, CASES)
+    following = begin(restarted)
+    assert following.trial_id != last.trial_id
+    assert following.case.seed not in {case.seed for case in record.cases}
+    wait(
+        restarted,
+        lambda: record.trial_id in {one.trial_id for one in loop.archive.unacknowledged()},
+    )
+    restarted.leave_drill()
+
+
+def test_a_full_disk_is_told_in_the_trainees_language_and_the_drill_begins_with_room(
+    loop, outside, monkeypatch
+):
+    session = start(loop, outside, language="de")
+    with monkeypatch.context() as full:
+        full.setattr(os, "write", on_full_disk)
+        session.begin_drill()
+    assert session.drill is None
+    assert any("zählt nicht; schaffe Platz" in text for text in told(session))
+    drill = begin(session)
+    with monkeypatch.context() as full:
+        full.setattr(os, "write", on_full_disk)
+        session.advance(CLOCK_S, loop.latest)
+    assert drill.time_s == 0.0
+    session.advance(CLOCK_S, loop.latest)
+    assert drill.time_s > 0.0
+    session.leave_drill()
+
+
+def test_a_drill_whose_journal_was_altered_is_left_and_another_begins(session, loop, outside):
+    drill = begin(session)
+    session.leave_drill()
+    (path,) = outside.services.records.glob(f"*{DRILL_SUFFIX}")
+    path.write_bytes(path.read_bytes().replace(b'"timeS":0.0', b'"timeS":0.1', 1))
+    session = start(loop, outside)
+    assert begin(session).trial_id != drill.trial_id
+    assert any("the drill cannot be continued" in text for text in told(session))
+    session.leave_drill()
+
+
+def test_no_drill_begins_without_an_id_or_while_another_head_is_loaded(session, outside):
+    session.trainee = "  "
+    session.begin_drill()
+    assert session.drill is None
+    assert any("trainee must be" in text for text in told(session))
+    session.trainee = "P01"
+    session.reload.use_scenario("other")
+    session.begin_drill()
+    assert session.drill is None
+    assert list(outside.services.records.glob(f"*{DRILL_SUFFIX}")) == []
