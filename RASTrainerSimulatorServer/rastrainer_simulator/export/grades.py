@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from rastrainer.protocol import RegistrationMethod
 from rastrainer.study.tidy_csv import csv_text
 from rastrainer.trial.trial_row import TrialRow
 
@@ -18,14 +17,15 @@ def grade(
     trials: Iterable[TrialRow],
     task: str | None,
     mode: str | None,
-    method: RegistrationMethod,
+    method: str,
     rule: str,
 ) -> float | None:
     """Return the score of the trial that counts, 0 to 100; None without an acceptable one.
 
     A trial that is not acceptable gives no grade: its registration would have misled an
     instrument. The trials are a trainee's attempts, in order of starting. A trial counts if it has
-    the `task`, the `mode` (None for any) and the `method`, since methods are not compared.
+    the `task`, the `mode` (None for any) and the `method`, since methods are not compared. Drills
+    have none, "", and those that are not passed are not acceptable.
     """
     scores = [
         trial.score

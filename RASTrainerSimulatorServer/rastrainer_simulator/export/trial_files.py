@@ -2,14 +2,14 @@
 
 In the dataset (BIDS specification 1.10, motion) each trial with a journal becomes `motion/` files
 of its trainee: the tip's position and the clearance at 50 Hz in trial time, and the touches as
-events. Dates are not exported.
+events. Drills of decisions become `beh/` files. Dates are not exported.
 """
 
 from __future__ import annotations
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +30,7 @@ from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.study_data import StudyData
 from rastrainer.study.tidy_csv import csv_text
 from rastrainer.trial.trial_row import TrialRow
+from rastrainer_simulator.export.drill_files import tsv, write_drills
 
 BIDS_VERSION = "1.10.0"
 TRACKING = "tooltip"
@@ -58,9 +59,10 @@ def write_motion_bids(data: StudyData, folder: Path, find_trajectory: FindTrajec
         run = runs[trial.trainee, trial.mode, trial.task]
         _write_trial(folder, labels[trial.trainee], trial, run, trajectory)
         written += 1
-    if not written:
+    if not written and not data.drills:
         raise InputError("No trial of the study has a journal with a trajectory to export.")
-    present = {trainee for trainee, _, _ in runs}
+    write_drills(data.drills, labels, folder)
+    present = {trainee for trainee, _, _ in runs} | {drill.trainee for drill in data.drills}
     _write_dataset(folder, data, {name: labels[name] for name in labels if name in present})
     return written
 
@@ -90,7 +92,7 @@ def _write_trial(
     write_text(place / f"{whole}_motion.tsv", "\n".join(lines) + "\n")
     write_json(place / f"{whole}_motion.json", _motion_json(task, trajectory))
     rows = [("name", "component", "type", "tracked_point", "units"), *CHANNELS]
-    write_text(place / f"{whole}_channels.tsv", _tsv(rows))
+    write_text(place / f"{whole}_channels.tsv", tsv(rows))
     found = [
         *((touch.time_s, 0.0, "touch", touch.label) for touch in trajectory.touches),
         *((touch.time_s, 0.0, "refused_touch", touch.label) for touch in trajectory.refused),
@@ -102,7 +104,7 @@ def _write_trial(
         for onset, duration, kind, label in sorted(found)
     ]
     events.insert(0, ("onset", "duration", "trial_type", "fiducial"))
-    write_text(place / f"{start}_{end}_events.tsv", _tsv(events))
+    write_text(place / f"{start}_{end}_events.tsv", tsv(events))
     write_json(place / f"{start}_{end}_events.json", _EVENTS_JSON)
 
 
@@ -155,19 +157,16 @@ def _write_dataset(folder: Path, data: StudyData, labels: Mapping[str, str]) -> 
         f"# {data.title}\n\nMovements of a simulated surgical robot, teleoperated by trainees who "
         "touched fifteen fiducials on a virtual head in each run. `acq-desktop` was seen on a "
         "screen, `acq-hmd` in a headset. Positions are in the robot's frame (x forward, y left, "
-        "z up, mm); time is the trial's own, without pauses. Trainees are pseudonymous.\n",
+        "z up, mm); time is the trial's own, without pauses. Tables in `beh` have the cases of "
+        "drills of decisions. Trainees are pseudonymous.\n",
     )
     rows = [("participant_id", "species", "pseudonym")]
     rows += [(f"sub-{label}", "homo sapiens", name) for name, label in labels.items()]
-    write_text(folder / "participants.tsv", _tsv(rows))
+    write_text(folder / "participants.tsv", tsv(rows))
     write_json(
         folder / "participants.json",
         {"pseudonym": {"Description": "The trainee's name in the study."}},
     )
-
-
-def _tsv(rows: Sequence[tuple[str, ...]]) -> str:
-    return "".join("\t".join(cell.replace("\t", " ") for cell in row) + "\n" for row in rows)
 
 
 _TO_LPS = np.diag([-1.0, -1.0, 1.0, 1.0])

@@ -1,10 +1,13 @@
-"""Trials and questionnaires as xAPI statements (IEEE 9274.1.1, xAPI 1.0.3)."""
+"""Trials, drills and questionnaires as xAPI statements (IEEE 9274.1.1, xAPI 1.0.3)."""
 
 from __future__ import annotations
 
 import uuid
 from typing import Any
 
+from rastrainer.decision.case_table import COLUMNS, cells
+from rastrainer.decision.drill_record import DrillRecord
+from rastrainer.decision.drill_rows import drill_rows
 from rastrainer.study.outcomes import mode_title, task_title
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers
 from rastrainer.study.protocol.study_protocol import pass_mark_of
@@ -28,7 +31,7 @@ NAMESPACE = uuid.UUID("6f0f2f3e-6f53-5d8f-9a1a-7f7a52415354")
 
 
 def statements(data: StudyData, home_page: str = HOME_PAGE) -> list[dict[str, Any]]:
-    """Return a statement for each finished or aborted trial and each answered questionnaire.
+    """Return a statement for each finished or aborted trial, drill and answered questionnaire.
 
     They have the trials' UUIDs, so duplicates are recognized; `home_page` is of the lab's system
     and makes pseudonyms unique.
@@ -39,6 +42,8 @@ def statements(data: StudyData, home_page: str = HOME_PAGE) -> list[dict[str, An
         if trial.trial_id
     ]
     trials += [_aborted(record, home_page) for record in data.aborted]
+    rows = drill_rows(data.drills)
+    trials += [_drill(*each, home_page) for each in zip(data.drills, rows, strict=True)]
     return trials + [_answers(answered, home_page) for answered in data.answers]
 
 
@@ -68,6 +73,14 @@ def _trial(trial: TrialRow, mark: float | None, home_page: str) -> dict[str, Any
             result["success"] = passes(score, trial.acceptable, mark)
             context[f"{home_page}/xapi/pass-mark"] = mark
     return _trial_statement("completed", trial, trial.completed_utc, result, context, home_page)
+
+
+def _drill(drill: DrillRecord, row: TrialRow, home_page: str) -> dict[str, Any]:
+    statement = _trial(row, None, home_page)
+    cases = [dict(zip(COLUMNS, cells(case), strict=True)) for case in drill.cases]
+    statement["result"]["extensions"][f"{home_page}/xapi/cases"] = cases
+    statement["result"]["success"] = row.acceptable
+    return statement
 
 
 def _aborted(record: AbortedTrial, home_page: str) -> dict[str, Any]:

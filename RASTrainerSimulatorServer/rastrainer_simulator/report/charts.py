@@ -19,7 +19,7 @@ from markupsafe import Markup
 
 from rastrainer.number_text import fixed, significant
 from rastrainer.study.outcomes import mode_title, short_mode_title
-from rastrainer.study.tre_calibration import CalibrationPoint
+from rastrainer.study.tre_calibration import CalibrationPoint, Proportion
 from rastrainer_simulator.report.comparisons import ModeComparison
 
 if TYPE_CHECKING:
@@ -419,6 +419,26 @@ def calibration_chart(
         chart.axes.scatter([], [], label="outside of its interval", **rim)
         chart.axes.plot([], [], "|", color=FAINT, markersize=14, label="95 % interval")
         _equal(chart, "true = expected")
+        return chart.svg()
+
+
+def reliability_chart(shares: Mapping[int, Proportion]) -> Markup:
+    """Return how often decisions were right, by the stated probability in percent."""
+    stated = sorted(shares)
+    right = np.array([100 * shares[each].share for each in stated])
+    ends = 100 * np.array([shares[each].interval for each in stated]).T
+    title = "Right decisions by stated confidence, %"
+    with drawn(WIDTH, 232, (48, 672, 32, 178), title) as chart:
+        axes = chart.axes
+        axes.plot([50, 100], [50, 100], "--", color=FAINT, linewidth=1.3)
+        axes.vlines(stated, ends[0], ends[1], INK, linewidth=1.6)
+        counts = [f"{shares[each].count} of {shares[each].total}" for each in stated]
+        titles = [f"stated {each} %: right in {n}" for each, n in zip(stated, counts, strict=True)]
+        chart.dots(stated, right, INK, 4.2, titles=titles)
+        axes.set_xlim(46, 104)
+        axes.set_ylim(0, 104)
+        axes.set_xticks(stated, [f"{each}\n({shares[each].total})" for each in stated])
+        axes.set_xlabel("stated (number of cases)")
         return chart.svg()
 
 

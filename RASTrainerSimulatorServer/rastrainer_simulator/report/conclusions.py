@@ -18,6 +18,7 @@ from rastrainer.study.protocol.study_protocol import BALANCED
 from rastrainer.study.study_data import StudyData
 from rastrainer.trial import score_reference, scoring
 from rastrainer_simulator.report.comparisons import ModeComparison, compared_method
+from rastrainer_simulator.report.decisions import Decisions
 from rastrainer_simulator.report.page import render
 from rastrainer_simulator.report.passing import ModePassing
 from rastrainer_simulator.report.target_errors import TITLES
@@ -34,6 +35,7 @@ def answers(
     of_methods: Sequence[ModeComparison],
     passed: Sequence[ModePassing],
     left_out: Mapping[str, int],
+    decided: Decisions | None,
 ) -> Markup:
     """Return the first screen: who passed, the differences shown, and the limits."""
     results = [one.result for one in comparisons if one.result is not None]
@@ -50,12 +52,14 @@ def answers(
         titles=TITLES,
         has_results=bool(results),
         compared=n,
+        few=FEW_SUBJECTS,
         are_few=0 < n < FEW_SUBJECTS,
         effect=detectable_effect(n, with_period) if results else None,
         with_period=with_period,
         is_order_known=any(comparison.order is not None for comparison in comparisons),
         method=compared_method(data),
         left_out=left_out,
+        decided=decided,
     )
 
 

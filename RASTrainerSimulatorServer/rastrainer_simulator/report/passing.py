@@ -130,7 +130,7 @@ def _failures(data: StudyData, mode: str, mark: float) -> tuple[dict[str, list[b
         for record in data.aborted
         if record.mode == mode and record.counts_as_failed
     ]
-    finished = sorted(data.of_mode(mode), key=lambda trial: trial.number)
+    finished = data.of_mode(mode)
     failures: dict[str, list[bool]] = {trial.trainee: [] for trial in [*finished, *aborted]}
     for trial in sorted([*aborted, *finished], key=lambda trial: moment(trial.started_utc)):
         failures[trial.trainee].append(not scoring.passes(trial.score, trial.acceptable, mark))

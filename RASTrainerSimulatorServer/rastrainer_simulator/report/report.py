@@ -1,4 +1,4 @@
-"""The report of a study: one HTML page, and its numbers as a CSV file."""
+"""The report of a study: one HTML page, and its numbers as CSV files."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from rastrainer.files.writing import make_folder, write_text
 from rastrainer.number_text import with_units
 from rastrainer.study.outcomes import MAIN_OUTCOMES, MOTION_OUTCOMES
 from rastrainer.study.study_data import StudyData
-from rastrainer.study.tidy_csv import trials_csv
+from rastrainer.study.tidy_csv import cases_csv, trials_csv
 from rastrainer.work_progress import Progress, no_progress
 from rastrainer_simulator.report.comparisons import compare_modes, compared_method
 from rastrainer_simulator.report.conclusions import answers, left_out_methods, limits, methods
+from rastrainer_simulator.report.decisions import decisions, decisions_of
 from rastrainer_simulator.report.mode_comparison import mode_comparison, motion, paired_statistics
 from rastrainer_simulator.report.page import render
 from rastrainer_simulator.report.passing import passing, passing_of, started_trials
@@ -34,7 +35,7 @@ from rastrainer_simulator.report.target_errors import (
 from rastrainer_simulator.report.trainees import curricula, groups, learning, questionnaires
 from rastrainer_simulator.report.variation import variation
 
-PAGE, NUMBERS = "report.html", "trials.csv"
+PAGE, NUMBERS, CASES = "report.html", "trials.csv", "cases.csv"
 
 
 def write_report(data: StudyData, folder: Path, progress: Progress = no_progress) -> Path:
@@ -42,6 +43,8 @@ def write_report(data: StudyData, folder: Path, progress: Progress = no_progress
     make_folder(folder)
     write_text(folder / PAGE, page_text)
     write_text(folder / NUMBERS, trials_csv(data.trials))
+    if data.drills:
+        write_text(folder / CASES, cases_csv(data.drills))
     return folder / PAGE
 
 
@@ -51,6 +54,7 @@ def report_html(
     """Return the page, in the order of its readers: answers, the paper's tables, and the rest."""
     left_out, everything = left_out_methods(data), data
     of_methods = compare_methods(as_conditions(data))
+    decided = decisions_of(data)
     data = with_ctps(with_one_method(data))
     pairs = list(itertools.combinations(sorted(data.modes), 2))
     main = [compare_modes(data, MAIN_OUTCOMES, *pair) for pair in pairs]
@@ -58,13 +62,14 @@ def report_html(
     comparisons = [comparison for of_pair in main for comparison in of_pair]
     passed = passing_of(data)
     steps = (
-        ("Answers", lambda: answers(data, comparisons, of_methods, passed, left_out)),
+        ("Answers", lambda: answers(data, comparisons, of_methods, passed, left_out, decided)),
         ("The paper's tables", lambda: published_tables(data) + paper_notes(data)),
         ("Comparison of modes", lambda: Markup().join(map(paired_statistics, main))),
         ("Charts by task", lambda: mode_comparison(data)),
         ("Learning", lambda: learning(data)),
         ("Sources of variation", lambda: variation(data)),
         ("Passed trials", lambda: started_trials(data) + passing(data, passed) + curricula(data)),
+        ("Decisions", lambda: decisions(decided)),
         ("Target errors", lambda: calibration(data)),
         ("Methods of registration", lambda: method_comparison(everything)),
         ("Shifted skin", lambda: shifted_skin(everything)),

@@ -11,6 +11,7 @@ from markupsafe import Markup
 
 from rastrainer.study.study_data import StudyData
 from rastrainer.study.tre_calibration import Proportion, proportion
+from rastrainer.trial.ctps import RMSE, TIME
 from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.report.page import interval_text, render
 from rastrainer_simulator.statistics.intervals import Estimate, mean
@@ -22,7 +23,7 @@ from rastrainer_simulator.statistics.variation import (
     trade_off,
 )
 
-TIME, ERROR, LAPSES = "completion_time_s", "rmse_mm", "undone_touches"
+LAPSES = "undone_touches"
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ def study_variation(data: StudyData) -> StudyVariation | None:
         if {row.mode for row in own} == set(data.modes)
         for number, row in enumerate(own, start=1)
         # A logarithm needs more than 0, as times and errors are.
-        if min(row.values.get(TIME, 0.0), row.values.get(ERROR, 0.0)) > 0
+        if min(row.values.get(TIME, 0.0), row.values.get(RMSE, 0.0)) > 0
     ]
     if not rows:
         return None
@@ -66,7 +67,7 @@ def study_variation(data: StudyData) -> StudyVariation | None:
     )
     time, error = (
         fit_variation(trials, np.array([row.values[name] for row, _number in rows]))
-        for name in (TIME, ERROR)
+        for name in (TIME, RMSE)
     )
     if time is None or error is None:
         return None

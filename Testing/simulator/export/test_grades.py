@@ -1,7 +1,9 @@
 """Grades of a course: files that Moodle and Canvas import."""
 
+import numpy as np
 import pytest
 
+from rastrainer.decision.drill_score import drill_score
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.study.database.study import Study
 from rastrainer.trial.trial_row import TrialRow
@@ -9,6 +11,7 @@ from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.export.grades import grade
 from Testing.domain.study.played_study import study_with_trials
 from Testing.domain.trial.trial_records import gentle_score, make_record
+from Testing.drawn_drills import draw_drill
 
 FIDUCIALS, SURFACE = RegistrationMethod.FIDUCIALS, RegistrationMethod.SURFACE
 
@@ -88,6 +91,20 @@ def test_canvas_gets_the_columns_and_the_possible_points_of_its_own_export(place
     )
     words = ("--grades", "canvas", "--rule", "latest", "--task", "task-1")
     assert exported(place, *words) == ("canvas.csv", expected)
+
+
+def test_drills_give_the_grade_of_their_task_if_they_are_passed(place):
+    random = np.random.default_rng(8)
+    drills = [draw_drill(random, "T002", day, sensitivity=4.0) for day in (1, 2)]
+    drills += [draw_drill(random, "T003", 1, sensitivity=0.2)]
+    with Study.open(place) as study:
+        for drill in drills:
+            study.add_drill(drill)
+    scores = [drill_score(drill.cases) for drill in drills]
+    assert [score.is_passed for score in scores] == [True, True, False]
+    _, text = exported(place, "--grades", "moodle", "--task", "decide")
+    best = max(score.score for score in scores[:2])
+    assert text == f"ID number,RASTrainer\nT002,{best:.2f}\n"
 
 
 def test_an_address_that_would_put_a_password_into_every_statement_is_refused(tmp_path, capsys):

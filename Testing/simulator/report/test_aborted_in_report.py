@@ -5,6 +5,7 @@ import io
 import uuid
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from rastrainer.json_records import record_from_json
@@ -19,6 +20,7 @@ from rastrainer_simulator.export.xapi import statements
 from rastrainer_simulator.report.report import report_html
 from Testing.domain.study.played_study import study_with_trials
 from Testing.domain.trial.trial_records import make_aborted
+from Testing.drawn_drills import draw_drill
 from Testing.simulator.report.test_report import words_of
 
 pytestmark = pytest.mark.usefixtures("undrawn")
@@ -149,10 +151,15 @@ def test_an_aborted_trial_is_a_statement_that_it_was_terminated(path):
     assert [statement["result"].get("success") for statement in found] == [None, False, False]
 
 
-def test_a_trainees_history_is_written_with_the_aborted_trials(path, tmp_path):
+def test_a_trainees_history_is_written_with_the_aborted_trials_and_the_decided_cases(
+    path, tmp_path
+):
     with Study.open(path) as study:
         study.create_trainee("D")
+        study.add_drill(draw_drill(np.random.default_rng(1), "D"))
         write_history(study, ["A"], tmp_path / "a.csv")
         write_history(study, ["D"], tmp_path / "d.csv")
     assert len((tmp_path / "a-aborted.csv").read_text().splitlines()) == 3
     assert not (tmp_path / "d-aborted.csv").exists()
+    assert len((tmp_path / "d-cases.csv").read_text().splitlines()) == 21
+    assert not (tmp_path / "a-cases.csv").exists()

@@ -31,7 +31,7 @@ def limits_of(*differences_and_order):
 
 def answers_of(differences, adjusted_p=1.0):
     found = comparison(differences, adjusted_p=adjusted_p)
-    return words_of(answers(DATA, [found], [], [], {}))
+    return words_of(answers(DATA, [found], [], [], {}, None))
 
 
 def test_the_limits_of_few_subjects_are_stated():

@@ -10,6 +10,7 @@ from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.report.report import report_html
 from Testing.simulator.report.studied_procedures import with_procedures
 from Testing.simulator.report.test_aborted_in_report import path  # noqa: F401
+from Testing.simulator.report.test_decisions_in_report import studied
 from Testing.simulator.report.test_methods_in_report import played
 from Testing.simulator.report.test_raters_in_report import rated
 from Testing.simulator.report.test_report import PUBLISHED, cohort
@@ -63,6 +64,7 @@ def drawn_pages():
         with_procedures(cohort(4)),
         played(4),
         rated(),
+        studied(),
     )
     with without_charts():
         return [report_html(data, "today") for data in studies]

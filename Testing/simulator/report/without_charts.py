@@ -9,7 +9,7 @@ from rastrainer_simulator.report import charts
 
 CHARTS = (
     *("grouped_bars", "distribution", "learning_curves", "paired_lines", "effect_sizes"),
-    *("calibration_chart", "split_chart"),
+    *("calibration_chart", "reliability_chart", "split_chart"),
 )
 
 
