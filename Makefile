@@ -46,7 +46,7 @@ soak: .venv/soak-installed page
 
 bench: .venv/bench-installed page
 	$(BIN)/python tools/system_packages.py test
-	$(BIN)/python -m Testing.benchmarks
+	PYTHONDONTWRITEBYTECODE= $(BIN)/python -m Testing.benchmarks
 
 # What Slicer's extension needs beyond the sources: the simulator's wheel, put beside its module.
 extension: .venv/installed
@@ -92,11 +92,17 @@ lock: .venv/installed
 	$(COMPILE) --constraints requirements/base.lock --excludes tools/simulator-leaves-out.txt -o $(SIMULATOR)/requirements.lock
 	$(BIN)/python tools/measure_simulator.py
 
-# Notices and bills of materials go to build; the audit asks a service in the internet.
+# Notices and bills of materials of all that is installed go to build; the audits ask services in the
+# internet, and fail where these do not know every package.
+LOCK := requirements/base.lock
+LICENSES := --from=mixed --with-urls --with-license-file --with-notice-file --no-license-path
 audit: .venv/supply-installed
-	$(BIN)/python tools/third_party_notices.py
-	$(BIN)/python tools/bill_of_materials.py
-	$(BIN)/python tools/audit_packages.py
+	mkdir -p build
+	$(BIN)/pip-licenses --packages $$(sed -n 's/==.*//p' $(LOCK)) $(LICENSES) --format=plain-vertical --output-file=build/third-party-notices.txt
+	$(BIN)/cyclonedx-py requirements $(LOCK) --pyproject pyproject.toml --output-reproducible --output-file build/rastrainer.cdx.json
+	$(BIN)/python tools/build_page.py npm sbom --package-lock-only --omit=dev --sbom-format=cyclonedx > build/rastrainer-page.cdx.json
+	for lock in requirements/*.lock; do $(BIN)/pip-audit --strict --require-hashes --disable-pip -r $$lock || exit 1; done
+	$(BIN)/python tools/build_page.py npm audit --package-lock-only
 
 SIMULATOR := RASTrainer/Resources/RASTrainerSimulator
 COMPILE := $(BIN)/uv pip compile pyproject.toml --quiet --universal --python-version 3.10 \

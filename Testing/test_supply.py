@@ -1,10 +1,9 @@
-"""What RASTrainer is made of: pinned by hashes, and listed in notices and bills of materials."""
+"""What RASTrainer is made of: pinned by hashes, and listed in the wheel's notices."""
 
 from __future__ import annotations
 
 import json
 import re
-import subprocess
 import sys
 from collections.abc import Iterable
 from importlib import import_module
@@ -21,9 +20,7 @@ SIMULATORS_LOCK = RESOURCES / "requirements.lock"
 LEFT_OUT = ROOT / "tools" / "simulator-leaves-out.txt"
 PACKAGE_LOCK = ROOT / "RASTrainerSimulatorServer" / "web" / "package-lock.json"
 sys.path.insert(0, str(ROOT / "tools"))
-audit_packages, bill_of_materials, third_party_notices, wheel_page = map(
-    import_module, ("audit_packages", "bill_of_materials", "third_party_notices", "wheel_page")
-)
+wheel_page = import_module("wheel_page")
 
 EXTRAS = {
     "base.lock": ("page", "slicer"),
@@ -129,69 +126,3 @@ def test_a_wheel_includes_the_notices_of_what_its_page_is_made_of(tmp_path):
     notices = Path(folder, "third-party-notices.txt").read_text(encoding="utf-8")
     assert re.search(r"^three \d\S*\nLicense: MIT", notices, re.MULTILINE)
     assert "Permission is hereby granted" in notices
-
-
-def test_the_notices_name_every_installed_package_with_its_license(tmp_path):
-    count = third_party_notices.write_notices(tmp_path / "notices.txt")
-    notices = [*third_party_notices.python_notices(), *third_party_notices.page_notices()]
-    assert len(notices) == count > 60
-    text = (tmp_path / "notices.txt").read_text(encoding="utf-8")
-    for name in ("numpy", "vtk", "pin", "aiohttp", "python-fcl", "trimesh", "three"):
-        assert re.search(rf"^{name} \d\S*\nLicense: \S", text, re.MULTILINE), name
-    silent = [notice.name for notice in notices if not (notice.license or notice.texts)]
-    assert silent == []
-
-
-def test_the_pages_bill_of_materials_names_what_the_page_is_made_of(tmp_path):
-    bill = tmp_path / "page.json"
-    assert bill_of_materials.write_page_bill(bill) >= 1
-    content = json.loads(bill.read_text(encoding="utf-8"))
-    assert content["bomFormat"] == "CycloneDX"
-    assert "three" in {component["name"] for component in content["components"]}
-    first = bill.read_bytes()
-    bill_of_materials.write_page_bill(bill)
-    assert bill.read_bytes() == first
-
-
-def answering(monkeypatch, stdout: str) -> None:
-    """Have every program answer with `stdout`, as the audit's services would."""
-    done = subprocess.CompletedProcess([], 0, stdout, "")
-    monkeypatch.setattr(subprocess, "run", lambda *_arguments, **_others: done)
-
-
-@pytest.mark.parametrize(
-    ("answer", "status", "words"),
-    [
-        ('{"dependencies": [{"name": "a", "version": "1", "vulns": []}]}', 0, "nothing is known"),
-        (
-            '{"dependencies": [{"name": "a", "version": "1", "vulns": '
-            '[{"id": "CVE-1", "fix_versions": ["2"]}]}]}',
-            1,
-            "a 1: CVE-1, fixed in 2",
-        ),
-        ("", 3, "not checked"),
-        (
-            '{"dependencies": [{"name": "a", "skip_reason": "not found"}, '
-            '{"name": "b", "version": "1", "vulns": []}]}',
-            3,
-            "not checked",
-        ),
-        ('{"error": "ENOTFOUND"}', 3, "not checked"),
-    ],
-)
-def test_an_audit_reports_what_is_known_and_whether_it_was_checked(
-    monkeypatch, answer, status, words
-):
-    answering(monkeypatch, answer)
-    found = audit_packages.audit_python(REQUIREMENTS / "base.lock")
-    assert found[0] == status
-    assert words in found[1]
-
-
-def test_an_audit_that_was_not_possible_is_not_a_success(monkeypatch, capsys):
-    monkeypatch.setattr(audit_packages, "audit_python", lambda _lock: (0, "well"))
-    monkeypatch.setattr(audit_packages, "audit_page", lambda: (3, "not checked"))
-    assert audit_packages.main() == 3
-    monkeypatch.setattr(audit_packages, "audit_python", lambda _lock: (1, "known"))
-    assert audit_packages.main() == 1
-    assert "known" in capsys.readouterr().out

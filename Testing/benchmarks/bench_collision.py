@@ -15,7 +15,7 @@ from rastrainer.head.mesh import read_head_mesh
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.collision import APART, Collision
 from rastrainer_simulator.collision.contact import Contact
-from rastrainer_simulator.collision.robot_shape import ArmCapsules, PosedArm, robot_shape
+from rastrainer_simulator.collision.robot_shape import ArmCapsules, PosedArm, load_shape
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.robot.fabrik import Fabrik
@@ -44,7 +44,7 @@ class Bench:
         self.kinematics, self.fabrik = make_kinematics(self.robot), Fabrik(self.robot)
 
     def collision(self, vertices: np.ndarray, triangles: np.ndarray) -> Collision:
-        found = Collision(robot_shape(self.robot), vertices, triangles)
+        found = Collision(load_shape(), vertices, triangles)
         found.set_head_pose(self.to_world)
         return found
 
@@ -129,7 +129,7 @@ class CoalArm:
     """
 
     def __init__(self, bench: Bench, vertices: np.ndarray, triangles: np.ndarray) -> None:
-        self._arm = ArmCapsules(robot_shape(bench.robot))
+        self._arm = ArmCapsules(load_shape())
         self._head = coal.BVHModelOBBRSS()
         self._head.beginModel(len(triangles), len(vertices))
         self._head.addVertices(np.asfortranarray(vertices))

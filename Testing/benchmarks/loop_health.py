@@ -44,12 +44,13 @@ class WatchedLoop:
         self._healths: list[LoopStatistics] = []
 
     def __enter__(self) -> "WatchedLoop":
-        self._listener.submit(self._listen)
+        self._heard = self._listener.submit(self._listen)
         return self
 
     def __exit__(self, *_exception: object) -> None:
         self._is_over.set()
         self._listener.shutdown()
+        self._heard.result()
 
     def row(self, name: str) -> dict:
         """Return the share of ticks on time in each second, %; `success` is that of all ticks."""

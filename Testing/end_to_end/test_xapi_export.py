@@ -1,4 +1,4 @@
-"""Ralph, a learning record store, accepts the exported statements of a whole virtual study."""
+"""Ralph, a learning record store, accepts the exported statements of trials and of drills."""
 
 from __future__ import annotations
 
@@ -12,9 +12,13 @@ import time
 import urllib.request
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from rastrainer.study.study_data import StudyData
 from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.export.xapi import statements
+from Testing.drawn_drills import draw_drills
 from Testing.free_port import free_port
 
 # Ralph has its own environment, which `make soak` makes.
@@ -110,3 +114,10 @@ def test_ralph_answers_200_to_every_statement_and_204_to_repeats(ralph, study, t
     assert ralph.post(found) == 200
     for statement in found:
         assert ralph.post([statement]) == 204
+
+
+def test_ralph_answers_200_to_the_statements_of_drills(ralph):
+    drills = draw_drills(np.random.default_rng(3), TRAINEES)
+    found = statements(StudyData("Drills", (), drills=drills), "https://lab.example.org")
+    assert ralph.post(found) == 200
+    assert ralph.post(found[:1]) == 204

@@ -21,6 +21,7 @@ COMMANDS = {
     "ListTasks": {},
     "LoadScenario": {"folder": "nowhere"},
     "StartTutorial": {"trainee": "P01", "mode": "desktop"},
+    "StartDrill": {"trainee": "P01", "mode": "desktop"},
     "StartTask": {"task": "task-1", "trainee": "P01", "mode": "desktop", "seed": 4},
     "Jog": {"velocityMmS": [10, -20, 30], "frame": "world", "durationS": 0.1},
     "MoveTipTo": {"positionMm": [500, 0, 400], "speedMmS": 100},

@@ -52,8 +52,7 @@ class StreamAttack:
     """Sends damaged messages to the stream of a view server, one view after the other.
 
     Attributes:
-        good: messages that were sent to bring a view into some state.
-        mutated: damaged messages that were sent after those, one a view.
+        mutated: damaged messages that were sent, each after some good ones, one a view.
         closed: views that the server has closed.
     """
 
@@ -62,7 +61,7 @@ class StreamAttack:
         self._key = key
         self._random = random.Random(seed)
         self._good = [json.dumps(message).encode() for message in MESSAGES]
-        self.good = self.mutated = self.closed = 0
+        self.mutated = self.closed = 0
 
     def run(self, count: int) -> None:
         """Send a number of damaged messages, each on a separate view: many end theirs."""
@@ -72,7 +71,6 @@ class StreamAttack:
                 with suppress(OSError):  # The other side has ended it.
                     while self._random.random() < 0.7:
                         peer.sendall(frame(TEXT, self._random.choice(self._good[1:])))
-                        self.good += 1
                     peer.sendall(self._bad())
                     peer.shutdown(socket.SHUT_WR)
                 self.mutated += 1

@@ -15,8 +15,7 @@ import trimesh
 
 from rastrainer.errors import InputError
 from rastrainer.files.point_files import read_markups, read_points
-from rastrainer.files.reading import MAX_DEPTH, MAX_ELEMENTS
-from rastrainer.head.volume import read_nrrd
+from rastrainer.head.volume import read_nrrd, write_nrrd
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.procedure.plan import read_procedure
 from rastrainer.scenario.library import checked_scenario, unpack
@@ -36,13 +35,12 @@ from rastrainer_simulator.flow.session.preferences import (
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS, read_bindings, write_bindings
 from rastrainer_simulator.robot.meshes import load_meshes
 from rastrainer_simulator.robot.model import load_robot
-from Testing.security.hostile_content import HOSTILE_GLB, HOSTILE_JSON, HOSTILE_XML, mutations
+from Testing.security.hostile_content import HOSTILE_JSON, mutations
 
 SCENARIO = asset_path("scenarios", "colin27")
 STUDIES = asset_path("studies")
 ROBOT = asset_path("robots", "iiwa7")
 MESH = next((ROBOT / "meshes" / "visual").glob("*.stl"))
-VOLUME = SCENARIO / "volume.nrrd"
 TASK = SCENARIO / "tasks" / "task-1.mrk.json"
 
 
@@ -71,6 +69,22 @@ def _scenario(path: Path) -> object:
     return load_scenario(folder)
 
 
+def _volume(path: Path) -> object:
+    """Read a volume; a damaged one that is not refused has voxels and a place in space."""
+    values, matrix = read_nrrd(path)
+    assert values.dtype in (np.uint8, np.int16)
+    assert values.ndim == 3
+    assert np.isfinite(np.linalg.inv(matrix)).all()
+    assert matrix[3].tolist() == [0.0, 0.0, 0.0, 1.0]
+    return values, matrix
+
+
+def _write_volume(path: Path) -> None:
+    """Write images so small that damage often meets the header."""
+    values = np.random.default_rng(8).integers(-1000, 1000, (8, 7, 6), dtype=np.int16)
+    write_nrrd(path, values, np.diag([1.0, 2.0, 3.0, 1.0]))
+
+
 JSON_FAMILIES = {
     "scenario": Family(_scenario, lambda _: (SCENARIO / "scenario.json").read_bytes()),
     "procedure": Family(
@@ -95,7 +109,7 @@ JSON_FAMILIES = {
 }
 OTHER_FAMILIES = {
     "points": Family(read_points, lambda _: b"label,x,y,z\n1,1,2,3\n2,4,5,6\n3,7,8,9\n", "p.csv"),
-    "volume": Family(read_nrrd, lambda _: VOLUME.read_bytes(), "volume.nrrd"),
+    "volume": Family(_volume, _saved(_write_volume), "volume.nrrd"),
 }
 FAMILIES = {**JSON_FAMILIES, **OTHER_FAMILIES}
 
@@ -151,65 +165,22 @@ def test_a_damaged_file_is_read_or_refused_and_breaks_nothing(tmp_path, family):
     assert "refused" in outcomes
 
 
-@pytest.mark.parametrize(("name", "content"), HOSTILE_XML.items(), ids=HOSTILE_XML.keys())
-def test_malicious_xml_is_refused(tmp_path, name, content):
-    (tmp_path / "link_2.dae").write_bytes(content)
-    with pytest.raises(InputError) as caught:
-        load_meshes(load_robot(tmp_path))
-    wanted = {
-        "deep": f"more than {MAX_DEPTH} deep",
-        "many": f"more than {MAX_ELEMENTS} elements",
-        "entities that expand": "document type",
-        "an entity of a file": "document type",
-        "a document type elsewhere": "document type",
-    }
-    assert wanted.get(name, "") in str(caught.value)
-
-
-COLLADA = (
-    b"<?xml version='1.0' encoding='%s'?>%s<COLLADA xmlns='http://www.collada.org/2005/11/"
-    b"COLLADASchema' version='1.4.1'><asset/>%s</COLLADA>"
-)
-
-
-@pytest.mark.parametrize(
-    ("content", "words"),
-    [
-        (COLLADA % (b"utf-8", b"<!DOCTYPE a [<!ENTITY b 'c'>]>", b"&b;"), "document type"),
-        (COLLADA % (b"utf-8", b"", b"<a>" * 100 + b"</a>" * 100), "deep"),
-        (COLLADA % (b"utf-8", b"", b"<a/>" * 100_000), "elements"),
-        (COLLADA % (b"utf-7", b"", b""), "cannot be read as a DAE mesh"),
-    ],
-)
-def test_a_collada_mesh_is_checked_as_xml_too(tmp_path, content, words):
-    (tmp_path / "link_2.dae").write_bytes(content)
-    with pytest.raises(InputError, match=words):
-        load_meshes(load_robot(mesh_folder=tmp_path))
-
-
-@pytest.mark.parametrize("content", HOSTILE_GLB.values(), ids=HOSTILE_GLB.keys())
-def test_a_mesh_that_claims_more_than_it_holds_is_refused_before_it_is_expanded(tmp_path, content):
-    (tmp_path / "link_2.glb").write_bytes(content)
-    with pytest.raises(InputError, match=r"unfolds into|not a GLB"):
-        load_meshes(load_robot(mesh_folder=tmp_path))
-
-
 def _mesh(kind: str) -> bytes:
     content = trimesh.creation.box((0.1, 0.1, 0.1)).export(file_type=kind)
     return content if isinstance(content, bytes) else content.encode()
 
 
-@pytest.mark.parametrize("kind", ["stl", "ply", "obj", "glb", "dae"])
+@pytest.mark.parametrize("kind", ["stl", "ply", "obj"])
 def test_a_damaged_mesh_is_read_or_refused_and_breaks_nothing(tmp_path, kind):
     robot = load_robot()
     path = tmp_path / f"link_7.{kind}"
     path.write_bytes(_mesh(kind))
     robot = load_robot(mesh_folder=tmp_path)
-    assert load_meshes(robot, "collision")
+    assert load_meshes(robot)
     for content in mutations(_mesh(kind), 40, seed=10):
         path.write_bytes(content)
         try:
-            meshes = load_meshes(robot, "collision")
+            meshes = load_meshes(robot)
         except InputError:
             continue
         assert all(np.isfinite(mesh.vertices).all() for mesh, _ in meshes["iiwa_link_7"])

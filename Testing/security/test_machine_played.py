@@ -10,7 +10,7 @@ from rastrainer.study.protocol.steps import objections_to
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.study_data import read_study_data
-from rastrainer.trial.how_played import HowPlayed, MovedBy, SeedSource
+from rastrainer.trial.how_played import Allowance, HowPlayed, MovedBy, SeedSource
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.report.report import report_html
@@ -83,6 +83,15 @@ def test_a_machines_trial_is_stored_but_counts_for_no_step_and_the_report_says_w
     page = report_html(read_study_data(study.database.path))
     assert "Trials that did not count, and why" in page
     assert "the pose of the head was chosen by a client" in page
+
+
+def test_a_step_in_the_headset_needs_a_headset():
+    assert BY_HAND.objections("desktop", ()) == ()
+    assert BY_HAND.objections("hmd", ()) == ("the headset was worn 0 % of the time",)
+    assert BY_HAND.objections("hmd", (Allowance.OTHER_VIEW.value,)) == ()
+    worn = replace(BY_HAND, view_s={"headset": 60, "desktop": 1})
+    assert worn.objections("hmd", ()) == ()
+    assert worn.objections("desktop", ()) == ("it was played in a headset",)
 
 
 def vars_of(played: HowPlayed) -> dict:

@@ -25,7 +25,8 @@ class _AtOnce:
     def __init__(self, *_how):
         pass
 
-    def submit(self, work, *args):
+    def submit(self, work, trial, label, q=None):
+        """Search for a view; without a posture it is only prepared, which can wait till then."""
         done = Future()
-        done.set_result(work(*args))
+        done.set_result(None if q is None else work(trial, label, q))
         return done

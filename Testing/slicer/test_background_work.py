@@ -8,18 +8,11 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.slicer import background_work
-from rastrainer.slicer.background_work import TIME_S, BackgroundWork, Job, inBackground
+from rastrainer.slicer.background_work import TIME_S, Job, inBackground
 from Testing.slicer.host.event_loop import process_events_keeping_lock, wait_keeping_lock
 
 MAIN = threading.get_ident()
 USUAL_SWITCH_INTERVAL_S = 0.005
-
-
-@pytest.fixture
-def work():
-    work = BackgroundWork()
-    yield work
-    work.close()
 
 
 def run(work):
@@ -149,12 +142,9 @@ def test_a_job_canceled_by_its_user_is_aborted():
     assert ended.wait(120.0)
 
 
-def test_jobs_start_only_after_deferred_calls():
+def test_jobs_start_only_after_deferred_calls(work):
     seen = []
-    work = BackgroundWork()
     work.later(lambda: seen.append("later"))
     work.do(lambda: seen.append("work"), lambda _none: seen.append("taken"))
-    while work.isBusy:
-        work.process()
-        work.yieldTime()
+    run(work)
     assert seen == ["later", "work", "taken"]

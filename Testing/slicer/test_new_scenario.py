@@ -79,7 +79,7 @@ def test_zip_files_are_added_listed_with_their_picture_or_refused(host, package,
     assert host.find("scenarioComboBox").currentText == "A ball"
     assert host.find("scenarioPicture").visible
     assert (user_library() / "ball" / "scenario.json").is_file()
-    assert host.find("taskComboBox").count == 2
+    assert host.find("taskComboBox").count == 3
     add_zip(host, package)
     assert "already" in host.messages[-1].text
     host.choose("scenarioComboBox", "broken")

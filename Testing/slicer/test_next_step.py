@@ -155,6 +155,7 @@ def test_a_study_decides_what_its_trainee_does_next():
     assert actions == {
         StepKind.TRIAL: NextAction.START_STUDY_STEP,
         StepKind.TRIAL_RUN: NextAction.START_STUDY_STEP,
+        StepKind.DECIDE: NextAction.START_STUDY_STEP,
         StepKind.QUESTIONNAIRE: NextAction.ANSWER,
         StepKind.BREAK: NextAction.WAIT,
     }

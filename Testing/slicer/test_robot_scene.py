@@ -125,7 +125,7 @@ def test_a_folder_without_a_robot_is_reported(tmp_path):
     [
         pytest.param("<child ", "<offspring ", "<child> with link", id="joint-without-child"),
         pytest.param("rgba=", "rgb=", "<color> with rgba", id="color-without-values"),
-        pytest.param("</robot>", "", "not well-formed", id="cut-short"),
+        pytest.param("</robot>", "", "cannot be used", id="cut-short"),
     ],
 )
 def test_a_malformed_urdf_is_refused_with_a_message(tmp_path, before, after, problem):

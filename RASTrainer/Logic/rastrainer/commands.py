@@ -90,6 +90,13 @@ class StartTutorialArguments:
     mode: AnyMode = Mode.DESKTOP.value
 
 
+class StartDrillArguments(StartTutorialArguments):
+    """Opens the trainee's [drill of decisions](views.md#the-drill-of-decisions).
+
+    One that the trainee has not finished goes on at its present case.
+    """
+
+
 @dataclass(frozen=True)
 class StartTaskArguments:
     """Starts a trial."""
@@ -324,6 +331,7 @@ class CommandName:
     START_TUTORIAL = CommandEntry(
         "StartTutorial", StartTutorialArguments, "`isNeeded`; false if there are no views"
     )
+    START_DRILL = CommandEntry("StartDrill", StartDrillArguments, "`trialId`, once it has begun")
     START_TASK = CommandEntry(
         "StartTask",
         StartTaskArguments,

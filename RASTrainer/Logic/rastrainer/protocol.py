@@ -164,6 +164,7 @@ class StepKind(str, Enum):
     QUESTIONNAIRE = "questionnaire"
     TRIAL_RUN = "trial-run"
     TRIAL = "trial"
+    DECIDE = "decide"
     BREAK = "break"
 
 

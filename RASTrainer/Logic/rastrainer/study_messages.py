@@ -93,7 +93,7 @@ class StudyStep:
 
     @property
     def is_played(self) -> bool:
-        return self.kind in (StepKind.TRIAL.value, StepKind.TRIAL_RUN.value)
+        return self.kind in (StepKind.TRIAL, StepKind.TRIAL_RUN, StepKind.DECIDE)
 
     def left_s(self, passed_s: float = 0.0) -> float:
         """Return the remaining time in s, `passed_s` after it was sent."""

@@ -15,10 +15,10 @@ from rastrainer.trial.score_reference import score_reference
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli.printing import picked, text_table
 from rastrainer_simulator.virtual.cohort import simulate_cohort
+from rastrainer_simulator.virtual.hand import Skill
 from rastrainer_simulator.virtual.outcome_model import OutcomeModel, rejection_rates
 from rastrainer_simulator.virtual.play import PlaySettings
 from rastrainer_simulator.virtual.population import ModeEffect, Population
-from rastrainer_simulator.virtual.scripted_trainee import Skill
 
 SHIPPED_PROTOCOL = ("studies", "published-protocol.json")
 TYPICAL_FLE_MM = 1.5

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from urllib.parse import urlsplit
 
+from rastrainer.decision.drill_rows import drill_rows
 from rastrainer.errors import InputError
 from rastrainer.files.writing import make_empty_folder, write_text
 from rastrainer.journal.recording import read_trajectory
 from rastrainer.number_text import counted
-from rastrainer.protocol import RegistrationMethod
+from rastrainer.protocol import DECIDE
 from rastrainer.study import tidy_csv
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
@@ -44,13 +45,16 @@ def export_study(arguments: argparse.Namespace) -> int:
 
 def _export_grades(arguments: argparse.Namespace) -> int:
     with Study.open_for_reading(arguments.study) as opened:
+
+        def attempts(pseudonym: str) -> Iterable[TrialRow]:
+            if arguments.task == DECIDE:
+                return drill_rows(opened.drills(pseudonym))
+            return opened.attempts(pseudonym)
+
+        method = "" if arguments.task == DECIDE else arguments.method
         found = {
             trainee.pseudonym: grade(
-                opened.attempts(trainee.pseudonym),
-                arguments.task,
-                arguments.mode,
-                RegistrationMethod(arguments.method),
-                arguments.rule,
+                attempts(trainee.pseudonym), arguments.task, arguments.mode, method, arguments.rule
             )
             for trainee in opened.trainees()
         }
@@ -68,13 +72,15 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
         count = write_motion_bids(
             data, folder, lambda trial_id: read_trajectory(arguments.records, trial_id)
         )
-        return f"{count} of {len(data.trials)} trials"
+        return f"{count} of {len(data.trials)} trials, {counted(len(data.drills), 'drill')}"
     make_empty_folder(folder)
     if name == "csv":
         tables = {
             "trials": tidy_csv.trials_csv(data.trials),
             "touches": tidy_csv.touches_csv(_stored(data, arguments.study)),
             "procedures": tidy_csv.procedures_csv(data.trials),
+            "drills": tidy_csv.trials_csv(drill_rows(data.drills)),
+            "cases": tidy_csv.cases_csv(data.drills),
             "aborted": tidy_csv.aborted_csv(data.aborted),
             "aborted_touches": tidy_csv.aborted_touches_csv(data.aborted),
             "scores": tidy_csv.scores_csv(data),
@@ -90,7 +96,8 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
         for trial, stored in _stored(data, arguments.study):
             write_slicer_files(stored, folder / trial.trial_id)
         return f"{len(data.trials)} trials"
-    return f"{len(data.trials)} trials, {len(data.aborted)} aborted ones"
+    drills = counted(len(data.drills), "drill")
+    return f"{len(data.trials)} trials, {len(data.aborted)} aborted ones, {drills}"
 
 
 def _home_page(value: str) -> str:

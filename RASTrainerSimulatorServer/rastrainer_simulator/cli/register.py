@@ -41,8 +41,7 @@ RESIDUAL_NOTE = (
 
 
 def register_points(arguments: argparse.Namespace) -> int:
-    if arguments.fle is not None and arguments.weights is not None:
-        raise InputError("--fle and --weights exclude each other.")
+    _check_options(arguments)
     left_out: dict[str, tuple[str, ...]] = {}
 
     def read(name: str) -> PointList:
@@ -65,6 +64,18 @@ def register_points(arguments: argparse.Namespace) -> int:
     for name, names in left_out.items():
         print(f"Left out of {name}, deselected or not placed in Slicer: {', '.join(names)}")
     return 0
+
+
+def _check_options(arguments: argparse.Namespace) -> None:
+    """Refuse options that exclude each other, before any file is read."""
+    if arguments.surface is not None:
+        for name in ("type", "fle", "weights"):
+            if getattr(arguments, name) not in (None, "rigid"):
+                raise InputError(f"--surface matches rigidly and unweighted: leave out --{name}.")
+        if arguments.head is None:
+            raise InputError("--surface needs the head: give its mesh with --head HEAD.ply.")
+    elif arguments.fle is not None and arguments.weights is not None:
+        raise InputError("--fle and --weights exclude each other.")
 
 
 Answer = tuple[dict[str, Any], list[str], list[str]]
@@ -159,11 +170,6 @@ def _matched(
     fixed: np.ndarray,
 ) -> Answer:
     """Match a trace to a head; the paired points, three landmarks or more, give the start."""
-    for name in ("type", "fle", "weights"):
-        if getattr(arguments, name) not in (None, "rigid"):
-            raise InputError(f"--surface matches rigidly and unweighted: leave out --{name}.")
-    if arguments.head is None:
-        raise InputError("--surface needs the head: give its mesh with --head HEAD.ply.")
     mesh, trace = read_head_mesh(arguments.head), read(arguments.surface).points
     match = match_surface(trace, mesh, register(moving, fixed, labels=labels).matrix)
     target = mesh.middle if arguments.target is None else np.array(arguments.target)

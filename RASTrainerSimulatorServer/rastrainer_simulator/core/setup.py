@@ -77,7 +77,7 @@ def load_setup(
     return SimulationSetup(
         scenario=scenario,
         robot=robot,
-        shape=load_shape(robot),
+        shape=load_shape(),
         settings=settings or SimulationSettings(),
         scenario_sha256=scenario_sha256(scenario),
         landmarks_sha256=landmarks_sha256(scenario),

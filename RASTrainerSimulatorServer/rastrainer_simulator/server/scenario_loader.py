@@ -117,10 +117,10 @@ class ScenarioLoader:
         known = self._known()
         if folder in known:
             return known[folder].folder
-        if not self._may_be_anywhere:
-            names = ", ".join(name for name, entry in known.items() if not entry.problem)
-            raise InputError(
-                f"The scenarios here are {names}; a simulator that listens beyond its own "
-                "computer loads no other folder."
-            )
-        return Path(folder)
+        if self._may_be_anywhere:
+            return Path(folder)
+        names = ", ".join(name for name, entry in known.items() if not entry.problem)
+        raise InputError(
+            f"The scenarios here are {names}; a simulator that listens beyond its own computer "
+            "loads no other folder."
+        )

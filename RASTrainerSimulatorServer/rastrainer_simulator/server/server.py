@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from numpy.random import default_rng
+
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.journal.journal_file import JournalReading
@@ -229,6 +231,7 @@ class SimulatorServer:
             assigned=self._assigned,
             scores_alone=self._options.scores_alone,
             pin=self._pin,
+            draw_seed=lambda: int(default_rng(next(self._seeds)).integers(2**63)),
         )
         running = RunningPresenter(self._control_loop, services, self._options.has_gamepad)
         guidance, loop = running.presenter.trace_guidance, self._control_loop
@@ -285,6 +288,10 @@ class SimulatorServer:
             if self._presenter is None:
                 return answered(Answer(0, True, data={"isNeeded": False}))
             return answered(self._presenter.presenter.start_tutorial(**arguments))
+        if name == CommandName.START_DRILL:
+            if self._presenter is None:
+                return answered(Answer(0, False, "A drill needs views, which are off here."))
+            return answered(self._presenter.presenter.start_drill(**arguments))
         return self._control_loop.submit(name, arguments, sender)
 
     def _health(self) -> dict[str, Any]:

@@ -48,7 +48,7 @@ def intraclass_correlations(ratings: np.ndarray) -> IntraclassCorrelations:
     The coefficients are defined by Shrout and Fleiss (1979). Their 95 % limits are generalized
     confidence limits (Weerahandi 1993): the limits of McGraw and Wong (1996, table 7) hold the
     truth in as few as 75 % of simulated studies if raters differ as much as objects; see
-    docs/error-rates.md. Raters who differ by nothing but a constant leave no limits.
+    Testing/error_rates/tables.md. Raters who differ by nothing but a constant leave no limits.
     """
     ratings = np.asarray(ratings, dtype=float)
     n, k = ratings.shape
@@ -105,7 +105,7 @@ def quadratic_kappa(first: np.ndarray, second: np.ndarray, lowest: int, highest:
 
     Its 95 % limits are the jackknife's on the scale of Fisher's z, by Student's t with n − 1
     degrees of freedom. The large-sample limits (Fleiss, Cohen and Everitt 1969) hold the truth of
-    ten objects in 81 to 86 % of simulated studies only; see docs/error-rates.md.
+    ten objects in 81 to 86 % of simulated studies only; see Testing/error_rates/tables.md.
     """
     first, second = np.asarray(first, dtype=int), np.asarray(second, dtype=int)
     n, marks = len(first), highest - lowest + 1

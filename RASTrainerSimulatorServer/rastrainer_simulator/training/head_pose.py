@@ -13,7 +13,7 @@ from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.trial_head import SkinShift
 from rastrainer.journal.entries import RecordedTruth
 from rastrainer.json_records import record_to_json
-from rastrainer.registration.target_error import true_errors
+from rastrainer.registration.target_error import true_target_error_mm
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.trial_state import PlannedLine
 from rastrainer_simulator.vectors import Vector, dot, in_meters, scale, subtract, vector
@@ -54,10 +54,10 @@ class Truth(RecordedTruth):
         target|, mm.
         """
         world_to_head = np.array(matrix, dtype=float).reshape(4, 4)
-        errors = true_errors(world_to_head, self.head_to_world, self.target_ras)
+        tre_mm = true_target_error_mm(world_to_head, self.head_to_world, self.target_ras)
         return {
             "headToWorld": [float(value) for value in self.head_to_world.ravel()],
-            "trueTreMm": float(np.linalg.norm(errors)),
+            "trueTreMm": tre_mm,
             "touchErrorsMm": self.touch_errors_mm(touches),
             **({} if self.skin.is_none else {"skin": record_to_json(self.skin)}),
         }

@@ -49,7 +49,7 @@ def test_path_time_and_top_speed_are_computed_from_the_samples():
         ([0.0, 1.0, 0.0, 1.0, 0.0], 3),
     ],
 )
-def test_backward_motion_counts_as_a_reversal_only_beyond_tremor(depths_mm, reversals):
+def test_backward_motion_counts_as_a_reversal_only_beyond_jitter(depths_mm, reversals):
     assert metrics_of(INSERTING, *samples(depths_mm))["instrument_reversals"] == reversals
 
 

@@ -25,7 +25,7 @@ HEAD = ball_head()
 
 def wrong(*trajectories, meshes=None, **changes):
     procedure = made_up_procedure(*trajectories, **changes)
-    return check_procedure(procedure, HEAD, meshes or made_up_meshes())
+    return check_procedure(procedure, HEAD, meshes or made_up_meshes())[1]
 
 
 def test_a_good_plan_has_no_errors():
@@ -69,7 +69,7 @@ def test_a_line_that_leaves_the_head_is_reported_with_the_distance_before_its_ta
         np.concatenate([left, right]), np.concatenate([triangles, triangles + len(left)])
     )
     procedure = made_up_procedure(trajectory(entry=(-90, 0, 0), target=(30, 0, 0)))
-    assert check_procedure(procedure, two, made_up_meshes()) == [
+    assert check_procedure(procedure, two, made_up_meshes())[1] == [
         "Two leads: Left leaves the head 40 mm before its target; it must stay within it."
     ]
 

@@ -11,7 +11,7 @@ import pytest
 from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_to_json
-from rastrainer.protocol import ALL_DONE, FREE, RegistrationMethod, StepKind
+from rastrainer.protocol import ALL_DONE, DECIDE, FREE, RegistrationMethod, StepKind
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.steps import instruction
 from rastrainer.study.protocol.study_progress import StudyProgress
@@ -188,7 +188,24 @@ OPTIONS = {
     "procedures": {"task-1": "dbs"},
     "methods": {"task-2": "surface", "task-3": "landmarks"},
     "skin": {"task-4": {"shiftMm": 2, "indentationMm": 0.5}, "task-5": {}},
+    "drills": ["before-all", "before-mode", "after-all"],
 }
+
+
+def test_drills_come_after_the_questionnaires_of_their_occasion_and_frame_the_study_in_one_mode():
+    asked = [{"name": "sus", "when": "before-all"}, {"name": "ssq", "when": "before-mode"}]
+    own = protocol(drills=OPTIONS["drills"], questionnaires=asked)
+    for place in range(2):
+        steps = steps_for(own, place)
+        drills = [step for step in steps if step.kind is StepKind.DECIDE]
+        assert [step.name for step in steps][:2] == ["before-all/sus", "before-all/decide"]
+        assert {(step.task, step.is_played) for step in drills} == {(DECIDE, True)}
+        modes = [step.mode for step in drills]
+        assert (modes[0], modes[-1], len(modes)) == ("hmd", "hmd", 4)
+        first = steps.index(drills[1])
+        assert steps[first - 1].questionnaire == "ssq"
+        assert steps[first + 1].kind is StepKind.TRIAL_RUN
+    assert instruction(drills[0]) == "Do the drill of decisions with the headset."
 
 
 def test_the_options_of_a_protocol_reach_its_steps():
@@ -314,7 +331,10 @@ def test_the_sequence_number_of_a_deleted_trainee_is_reused(study):
         ({"formatVersion": 2}, "formatVersion must be 1"),
         ({"modes": ["desktop", "hologram"]}, "modes must be a list of some of desktop, hmd"),
         ({"modeOrder": "random"}, "modeOrder must be one of fixed, balanced"),
-        ({"tasks": ["trial-run"]}, "the trial run is not one"),
+        ({"tasks": ["trial-run"]}, "the trial run and the drill of decisions are none"),
+        ({"tasks": ["decide"]}, "the trial run and the drill of decisions are none"),
+        ({"drills": ["before-task"]}, "drills must be a list of some of before-all, before-mode"),
+        ({"drills": ["after-all"] * 2}, "drills must be a list without duplicates"),
         ({"repetitions": 2.5}, "repetitions must be a whole number from 1 to 50"),
         (
             {"questionnaires": [{"name": "mmpi", "when": "after-all", "modes": []}]},

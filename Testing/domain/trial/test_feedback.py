@@ -66,12 +66,12 @@ def test_errors_in_depth_and_along_the_skin_are_distinguished():
     assert findings["4"].depth_mm == pytest.approx(findings["4"].residual_mm, rel=0.05)
 
 
-def test_hurry_and_tremor_are_found_in_the_recording():
+def test_hurry_and_shaking_are_found_in_the_recording():
     errors = np.zeros((15, 3))
     errors[[4, 11]] = 4.0 * TANGENTS[[4, 11]]
     findings = touch_findings(registered(errors), NORMALS, recording(hurried=[4], shaking=[11]))
     assert Reason.HURRY in findings[4].reasons
-    assert Reason.TREMOR in findings[11].reasons
+    assert Reason.SHAKING in findings[11].reasons
     assert Reason.HURRY not in findings[11].reasons
     assert findings[7].reasons == ()
     assert findings[11].replay_s == pytest.approx((21.98, 23.98))

@@ -4,31 +4,13 @@ import os
 import shutil
 import subprocess
 import sys
-from dataclasses import fields, is_dataclass
 
-import numpy as np
 import pytest
 
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli.main import main
-from rastrainer_simulator.collision.robot_shape import robot_shape
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation
-
-
-def same(one, other) -> bool:
-    """Return whether two values are equal to the last bit, arrays and nested dataclasses too."""
-    if is_dataclass(one):
-        names = [field.name for field in fields(one)]
-        return all(same(getattr(one, name), getattr(other, name)) for name in names)
-    if isinstance(one, tuple):
-        return len(one) == len(other) and all(map(same, one, other))
-    return bool(np.array_equal(one, other)) and type(one) is type(other)
-
-
-def test_the_prepared_shape_is_that_of_the_meshes_to_the_last_bit():
-    setup = load_setup()
-    assert same(setup.shape, robot_shape(setup.robot))
 
 
 def test_a_simulator_starts_without_the_packages_that_read_meshes_draw_and_report():

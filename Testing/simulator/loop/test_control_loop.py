@@ -28,6 +28,7 @@ from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.record.trial_recorder import FLUSH_TICKS
 from rastrainer_simulator.replay.resimulation import replay
 from rastrainer_simulator.state import OperatorCommand, OperatorInput, StepResult
+from Testing.simulator.record.test_interrupted_trial import on_full_disk
 
 TIMEOUT_S = 120.0
 
@@ -233,11 +234,8 @@ def test_on_a_full_disk_the_trial_pauses_and_continues_once_there_is_room(
     running.loop.hold_sticks(OperatorInput(translation=(0.5, -0.5, 0.0)))
     assert running.do(CommandName.CAPTURE).ok
 
-    def full(*_arguments):
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
     with monkeypatch.context() as patch:
-        patch.setattr(os, "write", full)
+        patch.setattr(os, "write", on_full_disk)
         refused = running.do(CommandName.CAPTURE)
         wait_for(lambda: running.loop.latest.training.phase is Phase.PAUSED)
         still_full = running.do(CommandName.RESUME)
@@ -262,11 +260,8 @@ def test_on_a_full_disk_the_trial_pauses_and_continues_once_there_is_room(
 def test_a_disk_that_fills_up_between_two_touches_pauses_the_trial(running, monkeypatch):
     running.start()
 
-    def full(*_arguments):
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
     with monkeypatch.context() as patch:
-        patch.setattr(os, "write", full)
+        patch.setattr(os, "write", on_full_disk)
         wait_for(lambda: running.loop.latest.training.phase is Phase.PAUSED)
 
 

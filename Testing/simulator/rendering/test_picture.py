@@ -4,7 +4,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import trimesh
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
@@ -19,15 +18,15 @@ from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import load_robot
 from rastrainer_simulator.scene.room_nodes import room_nodes, stand_node, table_node
 from rastrainer_simulator.scene.scene_glb import head_node, robot_nodes
+from Testing.domain.head.spheres import RADIUS_MM, sphere_mesh
 from Testing.read_png import read_png
 
-RADIUS = 80.0
 SIZE = (480, 270)
 UP = np.array([0.0, 0.0, 1.0])
 FAR = Camera(np.array([660.0, -2350.0, 950.0]), np.array([420.0, 0.0, 330.0]), UP, 24.0)
 TABLE = OperatingTable(np.array([300.0, 0.0]), np.array([1300.0, 1000.0, 40.0]))
 STAND = Stand(80.0)
-FRONT = RADIUS * np.array([[0.0, 1.0, 0.0], [0.5, 0.75**0.5, 0.0], [-0.5, 0.75**0.5, 0.0]])
+FRONT = RADIUS_MM * np.array([[0.0, 1.0, 0.0], [0.5, 0.75**0.5, 0.0], [-0.5, 0.75**0.5, 0.0]])
 
 
 def close_up(target_mm: np.ndarray) -> Camera:
@@ -36,8 +35,7 @@ def close_up(target_mm: np.ndarray) -> Camera:
 
 @pytest.fixture(scope="module")
 def ball() -> HeadMesh:
-    sphere = trimesh.creation.icosphere(subdivisions=5, radius=RADIUS)
-    return HeadMesh(np.array(sphere.vertices), np.array(sphere.faces))
+    return sphere_mesh(5)
 
 
 @pytest.fixture(scope="module")

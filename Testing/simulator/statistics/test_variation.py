@@ -12,8 +12,6 @@ from rastrainer_simulator.report.variation import study_variation, variation, vi
 from rastrainer_simulator.statistics.variation import Trials, fit_variation
 from Testing.error_rates.recovery import MODEL, PROTOCOL, draw_protocol_study
 
-NOISELESS = {"trainee_time_sd": 0.0, "trainee_fle_sd": 0.0, "interaction_sd": 0.0}
-
 
 def drawn(trainees=12, seed=1, protocol=PROTOCOL, **changes):
     random = np.random.default_rng(seed)

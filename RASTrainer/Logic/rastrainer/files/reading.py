@@ -1,14 +1,12 @@
-"""Read untrusted files as text, JSON or XML: only regular files of limited size."""
+"""Read untrusted files as text or JSON: only regular files of limited size."""
 
 from __future__ import annotations
 
 import os
-import re
 import stat
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
-from xml.parsers import expat
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import decode_finite_json, text
@@ -118,46 +116,3 @@ def failure_reason(error: Exception) -> str:
 def printable_name(path: object) -> str:
     """Return a path for a sentence; characters that cannot be printed are escaped."""
     return ascii(str(path)) if not str(path).isprintable() else str(path)
-
-
-MAX_ELEMENTS = 20_000
-MAX_DEPTH = 64
-
-_DECLARATION = re.compile(r"\s*<\?xml\s[^>]*\?>")
-
-
-def plain_xml(content: bytes, what: str) -> str:
-    """Return untrusted XML without its declaration, safe for any parser.
-
-    The declaration could name an encoding in which the rest reads differently. `what` starts the
-    error message, such as "The URDF robot.urdf".
-    """
-    decoded = decode_text(content, what)
-    declaration = _DECLARATION.match(decoded)
-    body = decoded[declaration.end() :] if declaration else decoded
-    elements = depth = 0
-
-    def begin_element(_name: str, _attributes: Any) -> None:
-        nonlocal elements, depth
-        elements, depth = elements + 1, depth + 1
-        if elements > MAX_ELEMENTS:
-            raise InputError(f"{what} has more than {MAX_ELEMENTS} elements.")
-        if depth > MAX_DEPTH:
-            raise InputError(f"{what} nests its elements more than {MAX_DEPTH} deep.")
-
-    def end_element(_name: str) -> None:
-        nonlocal depth
-        depth -= 1
-
-    def refuse_type(*_declaration: Any) -> None:
-        raise InputError(f"{what} declares a document type or entities; remove them.")
-
-    parser = expat.ParserCreate("utf-8")
-    parser.StartElementHandler = begin_element
-    parser.EndElementHandler = end_element
-    parser.StartDoctypeDeclHandler = refuse_type
-    try:
-        parser.Parse(body.encode(), True)
-    except expat.ExpatError as error:
-        raise InputError(f"{what} is not well-formed XML: {error}.") from None
-    return body

@@ -186,12 +186,12 @@ def read_head_mesh(path: Path) -> HeadMesh:
     try:
         vertices = content.vertices
         polygons = faces["vertex_indices"] if "vertex_indices" in faces else faces["vertex_index"]
-        sizes = [len(polygon) for polygon in polygons]
+        corners = polygons.size if isinstance(polygons, np.ndarray) else sum(map(len, polygons))
     except (LookupError, ValueError, TypeError):
         raise InputError(
             f"The mesh {path} must have vertices x, y and z and faces with vertex_indices."
         ) from None
-    if not 4 <= sum(sizes) - 2 * len(sizes) <= MAX_TRIANGLES or len(vertices) < 4:
+    if not 4 <= corners - 2 * len(polygons) <= MAX_TRIANGLES or len(vertices) < 4:
         raise InputError(f"The mesh {path} must have 4 to {MAX_TRIANGLES} triangles.")
     if not np.all(np.abs(vertices) <= RAS_LIMIT_MM):
         raise InputError(f"The mesh {path} has a vertex that is not within ±{RAS_LIMIT_MM:g} mm.")

@@ -215,7 +215,7 @@ IDLE_DURATION_S = 0.3
 def path_length(positions_mm: np.ndarray) -> float:
     """Return the length of the path through (n, 3) float positions, in mm.
 
-    Resample and filter first: tremor of the samples would add up.
+    Resample and filter first: the noise of the samples would add up.
     """
     return float(np.linalg.norm(np.diff(positions_mm, axis=0), axis=1).sum())
 

@@ -137,12 +137,16 @@ APART_MM = 1.0
 """Least distance between the surfaces of two instruments. Our own convention."""
 
 
-def check_procedure(procedure: Procedure, head: HeadMesh, meshes: ProcedureMeshes) -> list[str]:
-    """Return a sentence for each error of a plan; `head` is the closed skin, RAS mm."""
-    wrong = unusable_lines(procedure, head, meshes.skull)
+def check_procedure(
+    procedure: Procedure, head: HeadMesh, meshes: ProcedureMeshes
+) -> tuple[list[LineMeasures], list[str]]:
+    """Return the measures of a plan's lines, and a sentence for each error of the plan.
+
+    `head` is the closed skin, RAS mm.
+    """
+    lines, wrong = measure_lines(procedure, meshes), unusable_lines(procedure, head, meshes.skull)
     if wrong:
-        return wrong
-    lines = measure_lines(procedure, meshes)
+        return lines, wrong
     for line, trajectory in zip(lines, procedure.trajectories, strict=True):
         about = f"{procedure.title}: {line.name}"
         wrong += [f"{about} {what}" for what in _questionable(line, trajectory.safety_mm)]
@@ -160,7 +164,7 @@ def check_procedure(procedure: Procedure, head: HeadMesh, meshes: ProcedureMeshe
                 f"{procedure.title}: the checkpoint {checkpoint.name} is {away:.1f} mm off the "
                 f"skin; it must be within {CHECKPOINT_OFF_SKIN_MM:g} mm."
             )
-    return wrong
+    return lines, wrong
 
 
 def unusable_lines(procedure: Procedure, head: HeadMesh, skull: HeadMesh) -> list[str]:

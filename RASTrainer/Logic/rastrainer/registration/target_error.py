@@ -172,6 +172,13 @@ def true_errors(
     return transforms.apply(world_to_head @ head_to_world, points) - points
 
 
+def true_target_error_mm(
+    world_to_head: np.ndarray, head_to_world: np.ndarray, target: np.ndarray
+) -> float:
+    """Return the true TRE at a target (3,), mm: the length of its `true_errors`."""
+    return float(np.linalg.norm(true_errors(world_to_head, head_to_world, target)))
+
+
 def _quantile(probability: float, variances: np.ndarray, dof: float, added: float) -> float:
     """Return the quantile of TRE², mm², for variances along its principal axes."""
     if added == 0.0 and not variances.any():

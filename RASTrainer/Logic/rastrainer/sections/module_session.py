@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rastrainer.protocol import Phase, RegistrationMethod
+from rastrainer.protocol import DECIDE, Phase, RegistrationMethod
 from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario, playable_methods
 from rastrainer.sections.landmarks_logic import LandmarkLogic
@@ -38,6 +38,7 @@ from rastrainer.slicer.scene.scene_watch import SceneWatch
 from rastrainer.slicer.scene.trial_scene import followPlacement
 from rastrainer.slicer.settings import Settings
 from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.translation import _
 from rastrainer.study.database.database import (
     INTERACTIVE_WAIT_S,
     LockWait,
@@ -157,10 +158,12 @@ class ModuleSession:
         self._trial = ""
         self.training.sceneShown.connect(self.procedure.showPlan)
         self.training.sceneShown.connect(self.traces.begin)
-        for kept in (self.trials.trialKept, self.trials.abortedKept):
-            kept.connect(lambda trial: self.study.leadOn(trial.trainee))
+        unscored = self.trials.abortedKept, self.trials.drillKept
+        for kept in (self.trials.trialKept, *unscored):
+            kept.connect(lambda trial: self.study.leadAgain(trial.trainee))
         self.trials.trialScored.connect(self._takeScored)
-        self.trials.abortedKept.connect(self._showTrainees)
+        for kept in unscored:
+            kept.connect(self._showTrainees)
         self.training.changed.connect(self._noticeNewTrial)
         self.replay.shown.connect(self.registration.reset)
         self.replay.procedureShown.connect(self.procedure.showOutcome)
@@ -192,8 +195,11 @@ class ModuleSession:
         self.trials.forgetWaiting()
         self.trainees.reopen()
 
-    def chooseTask(self, task: Task, scenario: Scenario) -> None:
-        self.task, self.taskTitle = task.name, task.title
+    def chooseTask(self, task: Task | None, scenario: Scenario) -> None:
+        """Choose a task of a scenario, or the drill of decisions (None)."""
+        self.task, self.taskTitle = DECIDE, _("Decide")
+        if task is not None:
+            self.task, self.taskTitle = task.name, task.title
         self.procedures = tuple((each.name, each.title) for each in scenario.procedures)
         self.methods = tuple(each.value for each in playable_methods(scenario))
         self.taskChosen.emit()

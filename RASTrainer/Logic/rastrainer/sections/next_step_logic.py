@@ -168,6 +168,7 @@ def _untilConnected(now: WorkflowState) -> NextStep:
 
 _STUDY_STEPS = {
     StepKind.TRIAL: (NextAction.START_STUDY_STEP, _("Start the step")),
+    StepKind.DECIDE: (NextAction.START_STUDY_STEP, _("Start the step")),
     StepKind.TRIAL_RUN: (NextAction.START_STUDY_STEP, _("Start the step")),
     StepKind.QUESTIONNAIRE: (NextAction.ANSWER, _("Answer")),
     StepKind.BREAK: (NextAction.WAIT, _("Break")),

@@ -10,6 +10,7 @@ from typing import Any
 
 import qt
 
+from rastrainer.decision.drill_record import DrillRecord
 from rastrainer.errors import InputError
 from rastrainer.protocol import TRIAL_RUN, Phase, StepKind
 from rastrainer.sections.module_session import ModuleSession
@@ -24,7 +25,7 @@ from rastrainer.sections.panel import Panel
 from rastrainer.slicer.link.link_status import NOT_INSTALLED
 from rastrainer.slicer.translation import _
 from rastrainer.study.protocol.steps import instruction
-from rastrainer.trial.analysis import TrialAnalysis
+from rastrainer.trial.record import TrialRecord
 from rastrainer.widgets.controls import LINK_LOOKS, connectAsPressed, setEnabled, setLight, setText
 from rastrainer.widgets.plain_text import buttonTitle, shortName
 
@@ -65,7 +66,8 @@ class NextStepPanel(Panel):
             (session.trainees.changed, self._lookUp),
             (session.study.changed, self._lookUp),
             # Each section shows it in a separate turn; only then is there something to see.
-            (session.trials.trialScored, lambda a: session.work.later(lambda: self._noteScored(a))),
+            (session.trials.trialScored, lambda each: self._noteResultLater(each.record)),
+            (session.trials.drillKept, self._noteResultLater),
             (session.trials.problemFound, lambda _sentence: self._note(isUnscored=True)),
         )
         self._lookAtSetup()
@@ -163,9 +165,14 @@ class NextStepPanel(Panel):
             self._now = replace(now, hasNewResult=False, isResultShown=False)
         self.showState()
 
-    def _noteScored(self, analysis: TrialAnalysis) -> None:
-        if analysis.record.trainee == self._now.trainee:
-            self._note(hasNewResult=True)
+    def _noteResultLater(self, record: TrialRecord | DrillRecord) -> None:
+        def note() -> None:
+            if record.trainee == self._now.trainee:
+                # A drill has no registration to be viewed before.
+                isDrill = isinstance(record, DrillRecord)
+                self._note(**{"isResultShown" if isDrill else "hasNewResult": True})
+
+        self._session.work.later(note)
 
     def _noteScoreSeen(self, isFolded: bool) -> None:
         """Treat a result as seen when the user opens its section."""

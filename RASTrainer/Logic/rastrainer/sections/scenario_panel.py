@@ -11,7 +11,7 @@ import qt
 import slicer
 
 from rastrainer.number_text import fixed
-from rastrainer.protocol import TRIAL_RUN, RegistrationMethod
+from rastrainer.protocol import DECIDE, TRIAL_RUN, RegistrationMethod
 from rastrainer.sections.application import askWhereToSave, fitSliceViews, fitThreeDViews
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, chosenScenario
@@ -83,7 +83,9 @@ class ScenarioPanel(Panel):
 
         with showErrors(_("The scenario cannot be shown.")):
             scenario = chosenScenario(self._ui, self._session)
-            self._logic.show(scenario.name, self._session.task, showTarget)
+            task = self._session.task
+            shown = scenario.tasks[0].name if task == DECIDE else task
+            self._logic.show(scenario.name, shown, showTarget)
 
     def loadIntoSimulator(self) -> None:
         with showErrors(_("The scenario was not loaded.")):
@@ -184,6 +186,7 @@ class ScenarioPanel(Panel):
             return
         scenario = self._scenarios.find(name)
         tasks = [(task.title, task.name) for task in scenario.tasks]
+        tasks.append((_("Decide"), DECIDE))
         last = self._session.task or self._session.settings.get(TASK)
         others = (task for _title, task in tasks if task != TRIAL_RUN)
         offerEntries(ui.taskComboBox, tasks, last, *others)
@@ -191,7 +194,13 @@ class ScenarioPanel(Panel):
 
     def _chooseTask(self, _index: int = 0) -> None:
         scenario = chosenScenario(self._ui, self._session)
-        task = scenario.task(chosenData(self._ui.taskComboBox))
+        name = chosenData(self._ui.taskComboBox)
+        if name == DECIDE:
+            self._session.chooseTask(None, scenario)
+            text = _("Twenty registrations of this head: proceed, register again or stop?")
+            self._showMessage(text)
+            return
+        task = scenario.task(name)
         self._session.chooseTask(task, scenario)
         text = _("{count} fiducials, complexity {complexity:.2f}; target: {target}.")
         count, target = len(task.labels), scenario.target.name

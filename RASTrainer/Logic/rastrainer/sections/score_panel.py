@@ -9,14 +9,17 @@ from typing import Any
 import qt
 import slicer
 
+from rastrainer.decision.drill_record import DrillRecord
 from rastrainer.errors import InputError
 from rastrainer.number_text import fixed
 from rastrainer.sections.application import TABLES, askWhereToSave, fitThreeDViews, showTable
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, connectClick
+from rastrainer.sections.trainees_logic import recordOf
 from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.score_tables import (
     ctpsRows,
+    drillRows,
     motionRows,
     scoreRows,
     showRows,
@@ -27,8 +30,8 @@ from rastrainer.slicer.scene.trial_replay import moment
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.outcomes import short_mode_title, task_title
-from rastrainer.trial.analysis import TrialAnalysis
 from rastrainer.trial.ctps import CTPS_WARNING
+from rastrainer.trial.record import TrialRecord
 from rastrainer.widgets.controls import (
     CancelableWork,
     chosenData,
@@ -52,6 +55,7 @@ class ScorePanel(Panel):
         shows = (self._showMessage, self._showUsable, partial(showPercent, ui.replayText))
         self._work = CancelableWork(ui.replayButton, self.replay, failure, *shows)
         self._trial: StoredTrial | None = None
+        self._drill: DrillRecord | None = None
         self._newTrial = ""
         self._worst = ""
         self._named: str | None = None
@@ -64,7 +68,8 @@ class ScorePanel(Panel):
         connectClick(ui.worstTouchButton, replayTouch, _("The touch is not shown."))
         self.listen(
             (self._trainees.changed, self._show),
-            (session.trials.trialScored, self._noteNewTrial),
+            (session.trials.trialScored, lambda analysis: self._noteNew(analysis.record)),
+            (session.trials.drillKept, self._noteNew),
             (session.replay.feedbackFound, self._showFeedback),
             (session.sceneChanged, self._showReplay),
         )
@@ -136,21 +141,22 @@ class ScorePanel(Panel):
         if isFolded:
             self._session.layout.giveBack(TABLES)
 
-    def _noteNewTrial(self, analysis: TrialAnalysis) -> None:
-        if analysis.record.trainee == self._trainees.chosen:
-            self._newTrial = analysis.record.trial_id
+    def _noteNew(self, record: TrialRecord | DrillRecord) -> None:
+        if record.trainee == self._trainees.chosen:
+            self._newTrial = record.trial_id
 
     def _show(self) -> None:
         try:
-            history = self._trainees.history()
+            results = self._trainees.results()
         except InputError as error:
             self._named = None
             self._showMessage(str(error))
             return
-        text, entries = _("{number}: {task}, {day}"), list[tuple[str, str]]()
-        for number, record in enumerate((trial.record for trial in history), start=1):
+        text, entries = _("{task}, {day}"), list[tuple[str, str]]()
+        for number, record in ((number, recordOf(result)) for number, result in results):
             day, task = record.started_utc[:16].replace("T", " "), task_title(record.task)
-            entries.insert(0, (text.format(number=number, task=task, day=day), record.trial_id))
+            task = f"{number}: {task}" if number else task
+            entries.insert(0, (text.format(task=task, day=day), record.trial_id))
         wanted = self._newTrial or chosenData(self._ui.trialComboBox)
         self._newTrial = ""
         offerEntries(self._ui.trialComboBox, entries, wanted)
@@ -160,14 +166,19 @@ class ScorePanel(Panel):
         ui, cohort, trialId = self._ui, self._session.cohort, chosenData(self._ui.trialComboBox)
         self._session.replay.retryFeedback()
         try:
-            study = self._trainees.study
-            self._trial = trial = study.trial(trialId) if trialId else None
+            study, results = self._trainees.study, self._trainees.results()
+            found = {recordOf(result).trial_id: result for _number, result in results}
+            result = found.get(trialId)
+            self._trial = trial = result if isinstance(result, StoredTrial) else None
+            self._drill = drill = result if isinstance(result, DrillRecord) else None
             beside = [] if trial is None else standings(study, trial, cohort)
         except InputError as error:
             self._named = None
             self._showMessage(str(error))
             return
         scores = [] if trial is None else scoreRows(trial)
+        if drill is not None:
+            scores = drillRows(drill)
         rows = ((row.title, row.text, row.note) for row in scores)
         fillTable(ui.scoreTable, rows, [row.tip for row in scores])
         ctps = [] if trial is None else ctpsRows(trial, cohort)
@@ -186,12 +197,16 @@ class ScorePanel(Panel):
         # Once for each trial, so that messages about an export or a report stay.
         if trialId != self._named:
             self._named = trialId
-            self._showMessage(_title(trial))
+            self._showMessage(_title(None if result is None else recordOf(result)))
         self._showFeedback()
 
     def _showFeedback(self) -> None:
         trial, self._worst = self._trial, ""
         sentences = [] if trial is None else [_("Feedback on the trial is being prepared.")]
+        if self._drill is not None:
+            sentences = [
+                f"{row.title}: {row.text}, {row.note}." for row in drillRows(self._drill)[:5]
+            ]
         try:
             feedback = None if trial is None else self._session.replay.feedback(trial)
         except InputError as error:
@@ -208,7 +223,7 @@ class ScorePanel(Panel):
 
     def _showUsable(self) -> None:
         ui, isAtWork = self._ui, self._work.isUnderWay
-        hasTrial = bool(chosenData(ui.trialComboBox))
+        hasTrial = self._trial is not None
         reason = _("Choose a trial first.")
         busy = _("Wait until the current work is done.")
         setEnabled(ui.showTablesButton, hasTrial, reason)
@@ -223,9 +238,8 @@ class ScorePanel(Panel):
         self._showReplay()
 
 
-def _title(trial: StoredTrial | None) -> str:
-    if trial is None:
+def _title(record: TrialRecord | DrillRecord | None) -> str:
+    if record is None:
         return _("Choose a trainee with a scored trial.")
-    trainee, task, mode = trial.record.trainee, trial.record.task, trial.record.mode
-    text = _("{trainee}, {task}, {mode}")
-    return text.format(trainee=trainee, task=task_title(task), mode=short_mode_title(mode))
+    task, mode = task_title(record.task), short_mode_title(record.mode)
+    return _("{trainee}, {task}, {mode}").format(trainee=record.trainee, task=task, mode=mode)

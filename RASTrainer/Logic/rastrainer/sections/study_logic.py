@@ -126,9 +126,6 @@ class PracticeMonitor(Listening):
         return None
 
 
-TRIALS = (StepKind.TRIAL, StepKind.TRIAL_RUN)
-
-
 class StudyLogic(Listening):
     """Work of the section Study for the chosen trainee, and for all enrolled trainees.
 
@@ -154,7 +151,7 @@ class StudyLogic(Listening):
         self._sentSteps: dict[str, StudyStep] = {}
         self._ledStudy: Study | None = None
         self._breaks: dict[str, datetime] = {}
-        self._watch = PracticeMonitor(trainees, training, link, self._leadAgain)
+        self._watch = PracticeMonitor(trainees, training, link, self.leadAgain)
         super().__init__(
             (trainees.changed, self._followTrainees),
             (link.opened, self._sendAll),
@@ -283,7 +280,7 @@ class StudyLogic(Listening):
 
     def startStep(self) -> None:
         step = self._next()
-        if step.kind not in TRIALS:
+        if not step.is_played:
             raise InputError(_("No trial comes next. {step}").format(step=instruction(step)))
         self.startTrial(step.task, step.mode)
 
@@ -327,7 +324,7 @@ class StudyLogic(Listening):
         except InputError as error:
             logging.error("Answers given at the simulator were not stored: %s", error)
         else:
-            self._leadAgain(answers.trainee)
+            self.leadAgain(answers.trainee)
 
     def leadOn(self, name: str) -> None:
         """Update one trainee who has something new, such as a trial, and notify all listeners."""
@@ -336,7 +333,7 @@ class StudyLogic(Listening):
                 self._lead(name)
         self.changed.emit()
 
-    def _leadAgain(self, name: str) -> None:
+    def leadAgain(self, name: str) -> None:
         """Update one trainee, and send the simulator the next step even if it knows it."""
         self._sentSteps.pop(name, None)
         self.leadOn(name)

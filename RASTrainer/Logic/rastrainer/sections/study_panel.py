@@ -15,7 +15,6 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import StepKind
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, connectClick
-from rastrainer.sections.study_logic import TRIALS
 from rastrainer.slicer.translation import _
 from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.standing import (
@@ -150,7 +149,7 @@ class StudyPanel(Panel):
             self._form.show(None, None)
         isAborted = progress is not None and bool(progress.unexplained)
         ui.repeatStepButton.visible = isAborted
-        ui.startStepButton.visible = step is not None and step.kind in TRIALS and not isAborted
+        ui.startStepButton.visible = step is not None and step.is_played and not isAborted
         ui.skipStepButton.visible = step is not None
         self._showTime()
         self._followTrial()

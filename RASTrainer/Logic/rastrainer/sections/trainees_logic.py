@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from rastrainer.commands import CommandName
+from rastrainer.decision.drill_record import DrillRecord
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_to_json
 from rastrainer.slicer.background_work import CancelableUntilBegun, inBackground
@@ -19,8 +20,9 @@ from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import CurriculumStanding
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import StoredTrial, Trainee
+from rastrainer.study.database.values import StoredTrial, Trainee, moment
 from rastrainer.study_messages import CurriculumMessage
+from rastrainer.trial.record import TrialRecord
 from rastrainer.work_progress import Progress, no_progress
 
 if TYPE_CHECKING:
@@ -149,6 +151,19 @@ class TraineeLogic:
 
     def history(self) -> tuple[StoredTrial, ...]:
         return self.study.history(self.chosen) if self.chosenTrainee() else ()
+
+    def results(self) -> Sequence[tuple[str, StoredTrial | DrillRecord]]:
+        """Return the trials with their numbers, and the drills without, in order of starting."""
+        found: list[tuple[str, StoredTrial | DrillRecord]] = [
+            (str(number), trial) for number, trial in enumerate(self.history(), start=1)
+        ]
+        drills = self.study.drills(self.chosen) if self.chosenTrainee() else ()
+        found += [("", drill) for drill in drills]
+        return sorted(found, key=lambda each: moment(recordOf(each[1]).started_utc))
+
+
+def recordOf(result: StoredTrial | DrillRecord) -> TrialRecord | DrillRecord:
+    return result.record if isinstance(result, StoredTrial) else result
 
 
 def calibration(study: Study) -> TreCalibration:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
@@ -10,12 +9,15 @@ from typing import Any
 
 import slicer
 
+from rastrainer.decision.drill_record import DrillRecord
+from rastrainer.decision.drill_score import drill_score
 from rastrainer.errors import InputError
+from rastrainer.number_text import fixed
 from rastrainer.protocol import TRIAL_RUN, Mode
 from rastrainer.sections.application import CALIBRATION, CURVE, askWhereToSave, showChart
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, connectClick
-from rastrainer.sections.trainees_logic import calibration
+from rastrainer.sections.trainees_logic import calibration, recordOf
 from rastrainer.slicer.scene.tables import showCalibration, showLearningCurve
 from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS, Setting
 from rastrainer.slicer.translation import _
@@ -245,6 +247,7 @@ class TraineesPanel(Panel):
         try:
             trainees = self._logic.trainees(archived=ui.archivedCheckBox.checked)
             trainee, history = self._logic.chosenTrainee(), self._logic.history()
+            results = self._logic.results()
             aborted = () if trainee is None else self._logic.study.aborted(trainee.pseudonym)
         except InputError as error:
             self._showMessage(str(error), isState=True)
@@ -270,14 +273,17 @@ class TraineesPanel(Panel):
             setEnabled(button, bool(history), nothing)
         if trainee is not None:
             name, day, count = trainee.pseudonym, day_of(trainee.created_utc), len(history)
-            text = _("{name}, since {day}. Trials: {count}. {aborted}")
-            text = text.format(name=name, day=day, count=count, aborted=_aborted(aborted))
+            text = _("{name}, since {day}. Trials: {count}, drills: {drills}. {aborted}")
+            drills = len(results) - count
+            text = text.format(
+                name=name, day=day, count=count, drills=drills, aborted=_aborted(aborted)
+            )
             self._showMessage(text, isState=True)
         elif self._isStateShown or not ui.traineeText.text:
             text = _("Choose who is training, or create a new trainee.")
             self._showMessage(text, isState=True)
-        rows = itertools.starmap(_historyRow, enumerate(history, start=1))
-        fillTable(ui.historyTable, rows, [trial.record.started_utc for trial in history])
+        tips = [recordOf(result).started_utc for _number, result in results]
+        fillTable(ui.historyTable, [_historyRow(*each) for each in results], tips)
 
     def _showMessage(self, sentence: str, isState: bool = False) -> None:
         """Show a sentence; one about the present state, until there is another state."""
@@ -296,14 +302,25 @@ def _aborted(aborted: Sequence[AbortedTrial]) -> str:
     ).format(count=len(records), late=sum(r.is_after_all_touches for r in records), runs=runs)
 
 
-def _historyRow(number: int, trial: StoredTrial) -> tuple[str, ...]:
-    record = trial.record
-    task = task_title(record.task)
+def _historyRow(number: str, result: StoredTrial | DrillRecord) -> tuple[str, ...]:
+    record = recordOf(result)
+    task, start = task_title(record.task), record.started_utc[5:16].replace("T", " ")
+    if record.mode != Mode.DESKTOP.value:
+        task = f"{task}, {short_mode_title(record.mode)}"
+    if isinstance(result, DrillRecord):
+        score, seconds = drill_score(result.cases), sum(case.time_s for case in result.cases)
+        # In two lines: the columns after it stay in view.
+        text = _("{task}: d′ {sensitivity}\nharmful {harmful}, vain {vain}")
+        sensitivity = fixed(score.sensitivity.value, 1)
+        task = text.format(
+            task=task, sensitivity=sensitivity, harmful=score.harmful, vain=score.vain
+        )
+        return number, start, task, f"{seconds:.1f}", "–", fixed(score.score, 1)
     return (
-        str(number),
-        record.started_utc[5:16].replace("T", " "),
-        task if record.mode == Mode.DESKTOP.value else f"{task}, {short_mode_title(record.mode)}",
-        f"{record.completion_time_s:.1f}",
-        numberOrDash(trial.true_tre_mm, 2),
-        numberOrDash(None if trial.score is None else trial.score.score, 1),
+        number,
+        start,
+        task,
+        f"{result.record.completion_time_s:.1f}",
+        numberOrDash(result.true_tre_mm, 2),
+        numberOrDash(None if result.score is None else result.score.score, 1),
     )

@@ -11,7 +11,7 @@ from typing import Any
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
-from rastrainer.protocol import FIDUCIAL_COUNT, TRIAL_RUN, Phase, RegistrationMethod
+from rastrainer.protocol import DECIDE, FIDUCIAL_COUNT, TRIAL_RUN, Phase, RegistrationMethod
 from rastrainer.scenario.scenario import Scenario, method_of
 from rastrainer.sections.trial_status import TrialStatus, readStatus
 from rastrainer.slicer.background_work import CallLater, callNow
@@ -88,7 +88,7 @@ class TrainingLogic(Listening):
         isTutorialFirst: bool = False,
         **others: str | Mapping[str, float],
     ) -> None:
-        """Start a trial, by fiducials and without a procedure unless `others` names them.
+        """Start a drill, or a trial, by fiducials and with no procedure unless `others` names them.
 
         Its skin shifts by the `skin` there, or as the scenario says. With `isTutorialFirst`, the
         simulator may open the tutorial instead of a trial run, which can be started after it.
@@ -98,7 +98,9 @@ class TrainingLogic(Listening):
         if not task:
             raise InputError(_("Choose a task first."))
         who = {"trainee": trainee, "mode": mode}
-        if task == TRIAL_RUN and isTutorialFirst:
+        if task == DECIDE:
+            self.command(CommandName.START_DRILL, who)
+        elif task == TRIAL_RUN and isTutorialFirst:
             self._link.send(
                 CommandName.START_TUTORIAL, who, lambda reply: self._startUnlessTutorial(reply, who)
             )

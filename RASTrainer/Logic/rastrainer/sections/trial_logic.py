@@ -23,6 +23,7 @@ from functools import partial
 from typing import Any
 
 from rastrainer.commands import CommandName
+from rastrainer.decision.drill_record import DrillRecord
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_from_json
 from rastrainer.protocol import MAX_JOURNAL_BYTES
@@ -71,8 +72,9 @@ class TrialLogic(Listening):
 
     Attributes:
         problemFound: emits a sentence about a trial that was not stored, or not scored.
-        trialKept, abortedKept: emit each received `TrialRecord` or `AbortedTrial` when it is in the
-            study; nothing is stored of a trial in which nothing was done.
+        trialKept, abortedKept, drillKept: emit each received `TrialRecord`, `AbortedTrial` or
+            `DrillRecord` when it is in the study; nothing is stored of a trial in which nothing was
+            done.
         trialScored: emits each `TrialAnalysis` with truth and score, when they are in the study.
         received: UUIDs of the received trials that are in the study, in their order.
     """
@@ -89,6 +91,7 @@ class TrialLogic(Listening):
         self.problemFound = Signal()
         self.trialKept = Signal()
         self.abortedKept = Signal()
+        self.drillKept = Signal()
         self.trialScored = Signal()
         self.received: list[str] = []
         self._services = services
@@ -189,18 +192,23 @@ class TrialLogic(Listening):
         self._refused.clear()
         self._services.converse(self._resuming())
 
-    def _store(self, delivery: Delivery) -> tuple[TrialRecord, TrialAnalysis | InputError | None]:
+    def _store(
+        self, delivery: Delivery
+    ) -> tuple[TrialRecord | DrillRecord, TrialAnalysis | InputError | None]:
         isUnderWay = str(delivery.get("trialId")) in self._beingScored
         analyze = self._analyze
         return self._services.inStudy(lambda s: store_delivered(delivery, s, analyze, isUnderWay))
 
-    def _accept(self, record: TrialRecord, analysis: TrialAnalysis | InputError | None) -> None:
-        """Score a trial that is stored and acknowledged."""
+    def _accept(
+        self, record: TrialRecord | DrillRecord, analysis: TrialAnalysis | InputError | None
+    ) -> None:
+        """Score a trial that is stored and acknowledged; a drill has its score."""
         if isinstance(analysis, InputError):
             self._reportUnscored(analysis)
         if record.trial_id not in self.received:
             self.received.append(record.trial_id)
-            self.trialKept.emit(record)
+            isDrill = isinstance(record, DrillRecord)
+            (self.drillKept if isDrill else self.trialKept).emit(record)
         if isinstance(analysis, TrialAnalysis) and record.trial_id not in self._beingScored:
             self._services.converse(self._scoring(analysis, self.report))
             self._services.work.later(lambda: self._show(analysis))

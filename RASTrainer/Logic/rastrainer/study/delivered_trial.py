@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from rastrainer.decision.drill_record import DrillRecord
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import ReplayTrack, find_track, read_trajectory
 from rastrainer.json_records import record_from_json
@@ -37,12 +38,16 @@ def store_delivered(
     study: Study,
     analyze: Callable[[TrialRecord], TrialAnalysis],
     is_being_scored: bool = False,
-) -> tuple[TrialRecord, TrialAnalysis | InputError | None]:
-    """Store a trial with its registration, once; `DeletedTrialError` if it was deleted.
+) -> tuple[TrialRecord | DrillRecord, TrialAnalysis | InputError | None]:
+    """Store a trial with its registration, or a drill, once; `DeletedTrialError` if deleted.
 
     Return its record and its registration, or why it cannot be registered. A known trial is not
     registered again (None) if it was scored, or its score is being sent to the simulator.
     """
+    if "cases" in value:
+        drill = record_from_json(DrillRecord, value)
+        study.add_drill(drill, value)
+        return drill, None
     record = record_from_json(TrialRecord, value)
     is_new = study.is_new(record)
     if not is_new and (is_being_scored or study.is_revealed(record.trial_id)):

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from rastrainer.decision.drill_record import DrillRecord
 from rastrainer.errors import InputError
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.registration.fits import RIGID
@@ -42,6 +43,7 @@ class StudyData:
         undelivered: First and last numbers of trials that never arrived, by their simulator's
             series.
         standings: Of active trainees in their curricula, by pseudonym.
+        drills: Of consenting trainees, in order of time; in a protocol, only drills of its steps.
     """
 
     title: str
@@ -61,6 +63,7 @@ class StudyData:
     undelivered: Mapping[str, tuple[tuple[int, int], ...]] = field(default_factory=dict)
     ratings: tuple[Rating, ...] = ()
     standings: Mapping[str, CurriculumStanding] = field(default_factory=dict)
+    drills: tuple[DrillRecord, ...] = ()
 
     @property
     def modes(self) -> tuple[str, ...]:
@@ -68,7 +71,8 @@ class StudyData:
 
     @property
     def trainees(self) -> tuple[str, ...]:
-        return tuple(dict.fromkeys(trial.trainee for trial in self.trials))
+        done: tuple[TrialRow | DrillRecord, ...] = (*self.trials, *self.drills)
+        return tuple(dict.fromkeys(each.trainee for each in done))
 
     @property
     def tasks(self) -> tuple[str, ...]:
@@ -98,7 +102,7 @@ def read_study_data(place: StudyPlace, allow_incomplete: bool = False) -> StudyD
             f"{data.gap} Simulate it again into the same folder with the same options: only the "
             "missing trials are played."
         )
-    if not data.trials:
+    if not data.trials and not data.drills:
         count = data.without_consent
         remedy = f" ({count} did not): note in 3D Slicer, Trainees, who consents." if count else "."
         raise InputError(
@@ -125,19 +129,23 @@ def _from_database(place: StudyPlace) -> StudyData:
         consenting = sorted(trainee.pseudonym for trainee in everyone if trainee.consent)
         played = {name: progress.played(name) for name in progress.enrolled() if name in consenting}
         trials, versions, beside, objections = [], defaultdict(set), 0, []
+        drills: list[DrillRecord] = []
         rateable: set[str] = set()
         for pseudonym in consenting:
             history = [t for t in study.history(pseudonym) if t.record.task != TRIAL_RUN]
             rateable |= {trial.record.trial_id for trial in history}
-            own = played.get(pseudonym)
+            own, done = played.get(pseudonym), study.drills(pseudonym)
             if own is not None:
+                beside += sum(drill.trial_id not in own.counted_trials for drill in done)
+                done = tuple(drill for drill in done if drill.trial_id in own.counted_trials)
                 others = [t for t in history if t.record.trial_id not in own.counted_trials]
                 history = [t for t in history if t.record.trial_id in own.counted_trials]
                 beside += len(others)
                 objections += [entry for t in others if (entry := _objected(t.record, own.steps))]
             trials += trial_rows(history)
-            for stored in history:
-                for name, version in stored.record.versions.items():
+            drills += done
+            for given in [t.record.versions for t in history] + [d.versions for d in done]:
+                for name, version in given.items():
                     versions[name].add(version)
         return StudyData(
             title=protocol.title if protocol else study.database.name,
@@ -162,6 +170,7 @@ def _from_database(place: StudyPlace) -> StudyData:
                 for name, each in CurriculumStore(study).standings().items()
                 if name in consenting
             },
+            drills=tuple(drills),
             ratings=tuple(r for r in RatingStore(study).ratings() if r.trial_id in rateable),
         )
 

@@ -7,6 +7,9 @@ import io
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from rastrainer.decision.case_table import COLUMNS, cells
+from rastrainer.decision.drill_record import DrillRecord
+from rastrainer.decision.drill_rows import drill_rows
 from rastrainer.errors import InputError
 from rastrainer.files.writing import write_text
 from rastrainer.procedure.errors import SplitError, TrajectoryErrors
@@ -48,6 +51,7 @@ PROCEDURE_COLUMNS = (
     *("plunge_mm", "nearest_no_go", "kept_mm", "alignments"),
     *("aligning_s", "drilling_s", "inserting_s", "procedure_score", "procedure_score_version"),
 )
+CASE_COLUMNS = ("trainee", "mode", "drill", "trial_id", "started_utc", "scenario", "case", *COLUMNS)
 RATING_COLUMNS = ("trial_id", "rater", "form", "domain", "mark")
 QUESTIONNAIRE_COLUMNS = ("trainee", "mode", "step", "questionnaire")
 
@@ -55,15 +59,18 @@ QUESTIONNAIRE_COLUMNS = ("trainee", "mode", "step", "questionnaire")
 def write_history(study: Study, pseudonyms: Iterable[str], path: Path | str) -> int:
     """Write all trials of trainees, including trial runs, as CSV; return their number.
 
-    Aborted trials go into a second file, `NAME-aborted.csv`.
+    Aborted trials go into a second file, `NAME-aborted.csv`, decided cases into `NAME-cases.csv`.
     """
     pseudonyms = tuple(pseudonyms)
+    path = Path(path)
     rows = [row for pseudonym in pseudonyms for row in trial_rows(study.history(pseudonym))]
     write_text(path, trials_csv(rows))
     aborted = [stored for name in pseudonyms for stored in study.aborted(name)]
+    drills = [drill for name in pseudonyms for drill in study.drills(name)]
     if aborted:
-        path = Path(path)
         write_text(path.with_name(f"{path.stem}-aborted{path.suffix}"), aborted_csv(aborted))
+    if drills:
+        write_text(path.with_name(f"{path.stem}-cases{path.suffix}"), cases_csv(drills))
     return len(rows)
 
 
@@ -183,6 +190,19 @@ def _procedure_cells(
         done.score.score,
         done.score.version,
     ]
+
+
+def cases_csv(drills: Sequence[DrillRecord]) -> str:
+    """Return the decided cases of drills as CSV, in order; both are numbered from 1."""
+    rows = [
+        [
+            *(drill.trainee, drill.mode, row.number, drill.trial_id, drill.started_utc),
+            *(drill.scenario, number, *cells(case)),
+        ]
+        for drill, row in zip(drills, drill_rows(drills), strict=True)
+        for number, case in enumerate(drill.cases, start=1)
+    ]
+    return csv_text(CASE_COLUMNS, rows)
 
 
 def scores_csv(data: StudyData) -> str:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rastrainer.files.writing import write_json
-from rastrainer.journal.folder import SUFFIX, erase_journals
+from rastrainer.journal.folder import TUTORIAL_SUFFIX, erase_journals
 from rastrainer.json_records import record_to_json
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.database.study import Study
@@ -37,6 +37,7 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
             }
             for record in aborted
         ],
+        "drills": [record_to_json(drill, with_defaults=True) for drill in study.drills(pseudonym)],
         "curricula": [
             {
                 "curriculum": None if curriculum is None else curriculum.to_json(),
@@ -72,7 +73,7 @@ class Erasure:
     def warnings(self) -> tuple[str, ...]:
         sentences = []
         if self.missing:
-            names = ", ".join(f"*_{trial_id}{SUFFIX}" for trial_id in self.missing)
+            names = ", ".join(f"*_{trial_id}.*" for trial_id in self.missing)
             sentences.append(
                 f"The journals of {len(self.missing)} trials were not found; where another "
                 f"computer has recorded them, delete them there: {names}."
@@ -92,8 +93,9 @@ def erase_trainee(study: Study, pseudonym: str, records: Path | None) -> Erasure
     """
     ids = [trial.record.trial_id for trial in study.history(pseudonym)]
     ids += [aborted.trial_id for aborted in study.aborted(pseudonym)]
+    ids += [drill.trial_id for drill in study.drills(pseudonym)]
     erased, unreadable = ((), ()) if records is None else erase_journals(records, pseudonym, ids)
-    names = [path.name for path in erased if path.suffix == SUFFIX]
-    missing = [one for one in ids if not any(name.endswith(f"_{one}{SUFFIX}") for name in names)]
+    stems = [path.stem for path in erased if path.suffix != TUTORIAL_SUFFIX]
+    missing = [one for one in ids if not any(stem.endswith(f"_{one}") for stem in stems)]
     trials = study.delete_trainee(pseudonym)
-    return Erasure(trials, len(names), tuple(missing), tuple(unreadable))
+    return Erasure(trials, len(stems), tuple(missing), tuple(unreadable))

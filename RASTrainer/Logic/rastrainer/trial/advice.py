@@ -20,9 +20,9 @@ OUTLIER_SHARE = 2.0
 """An outlier has at least twice the squared error of an average touch."""
 HURRY_SHARE = 0.6
 HURRY_DWELL_S = 0.15
-TREMOR_WINDOW_S = 0.5
-TREMOR_MM = 0.6
-TREMOR_RADIUS_MM = 5.0
+SHAKING_WINDOW_S = 0.5
+SHAKING_MM = 0.6
+SHAKING_RADIUS_MM = 5.0
 
 
 class Reason(str, Enum):
@@ -31,7 +31,7 @@ class Reason(str, Enum):
     DEPTH = "depth"
     ASIDE = "aside"
     HURRY = "hurry"
-    TREMOR = "tremor"
+    SHAKING = "shaking"
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class TouchFinding:
             residual=self.residual_mm,
             where=where,
             hurry=say("touch hurry") if Reason.HURRY in self.reasons else "",
-            tremor=say("touch tremor") if Reason.TREMOR in self.reasons else "",
+            shaking=say("touch shaking") if Reason.SHAKING in self.reasons else "",
         )
 
 
@@ -106,11 +106,11 @@ def _touched(trajectory: Trajectory, index: int) -> tuple[float, tuple[float, fl
     """Return the dwell of a touch (s), its start and end, and whether it was shaky or hurried."""
     touches = trajectory.touches
     touch, before = touches[index], touches[index - 1].time_s if index else 0.0
-    dwell, tremor = _last_moments(trajectory, touch)
+    dwell, shaking = _last_moments(trajectory, touch)
     usual = float(np.median(np.diff([each.time_s for each in touches]))) if touches[1:] else 0.0
     is_short = index > 0 and touch.time_s - before < HURRY_SHARE * usual
-    how = [Reason.TREMOR] if tremor > TREMOR_MM else []
-    if is_short or (dwell < HURRY_DWELL_S and tremor <= TREMOR_MM):
+    how = [Reason.SHAKING] if shaking > SHAKING_MM else []
+    if is_short or (dwell < HURRY_DWELL_S and shaking <= SHAKING_MM):
         how.append(Reason.HURRY)
     return dwell, (before, touch.time_s), how
 
@@ -124,14 +124,14 @@ def _last_moments(trajectory: Trajectory, touch: Touch) -> tuple[float, float]:
     away = np.linalg.norm(tip - touch.position_mm, axis=1)
     dwell = touch.time_s - _since(times, away > DWELL_RADIUS_MM)
     # A shaking hand leaves the dwell's radius again and again, but hardly this one.
-    near_since = _since(times, away > TREMOR_RADIUS_MM)
-    last = tip[times >= max(touch.time_s - TREMOR_WINDOW_S, near_since)]
+    near_since = _since(times, away > SHAKING_RADIUS_MM)
+    last = tip[times >= max(touch.time_s - SHAKING_WINDOW_S, near_since)]
     if len(last) < 4:
         return dwell, 0.0
-    # The hand also drifts toward its aim; only what goes to and fro is tremor.
+    # The tip also moves toward its aim; only what goes to and fro is shaking.
     steps = np.linspace(-1, 1, len(last))[:, None]
-    drift = last.mean(axis=0) + steps * (steps * last).sum(axis=0) / (steps**2).sum()
-    return dwell, float(np.sqrt(((last - drift) ** 2).sum(axis=1).mean()))
+    toward = last.mean(axis=0) + steps * (steps * last).sum(axis=0) / (steps**2).sum()
+    return dwell, float(np.sqrt(((last - toward) ** 2).sum(axis=1).mean()))
 
 
 def _since(times: np.ndarray, is_far: np.ndarray) -> float:

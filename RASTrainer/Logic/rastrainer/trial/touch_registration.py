@@ -37,7 +37,7 @@ from rastrainer.registration.registration import Registration, register, registe
 from rastrainer.registration.surface_checks import SurfaceMatch
 from rastrainer.registration.surface_error import TraceGuide, knowledge_of, surface_target_error
 from rastrainer.registration.surface_match import match_surface
-from rastrainer.registration.target_error import TargetError, target_error, true_errors
+from rastrainer.registration.target_error import TargetError, target_error, true_target_error_mm
 from rastrainer.scenario.scenario import Scenario, task_by_method
 from rastrainer.trial.record import PlayedMethod, TracePoint, TrialRecord, trace_points
 from rastrainer.trial.score_reference import head_of, point_normals
@@ -238,7 +238,7 @@ def unshifted_tre_mm(
         matrix = register_trial(unshifted, scenario).rigid.matrix
     except InputError:
         return None
-    return float(np.linalg.norm(true_errors(matrix, head_to_world, scenario.target.position_ras)))
+    return true_target_error_mm(matrix, head_to_world, scenario.target.position_ras)
 
 
 def skin_sentences(

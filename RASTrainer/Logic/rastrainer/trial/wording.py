@@ -13,12 +13,12 @@ ENGLISH: Mapping[str, str] = {
     "skin and error": "The skin had shifted by {shift:.1f} mm (RMS) and was indented by "
     "{indentation:.1f} mm: the true error at the target was {tre:.2f} mm, and would have been "
     "{without:.2f} mm without that.",
-    "touch": "Point {label} was {residual:.1f} mm off{where}{hurry}{tremor}.",
+    "touch": "Point {label} was {residual:.1f} mm off{where}{hurry}{shaking}.",
     "touch above": ", mostly in depth ({depth:.1f} mm above the skin)",
     "touch below": ", mostly in depth ({depth:.1f} mm below the skin)",
     "touch aside": ", mostly along the skin",
     "touch hurry": "; you hurried: hold still for a moment before you touch",
-    "touch tremor": "; the tip shook: use the fine speed for the last centimeter",
+    "touch shaking": "; the tip shook: use the fine speed for the last centimeter",
     "no touch": "No touch stands out: the errors are spread evenly.",
     "contact": "You bumped into the head once on the way. Lift off before you travel to the next "
     "point.",

@@ -27,6 +27,7 @@ ARGUMENTS = {
     "Hello": HELLO,
     "LoadScenario": {"folder": "scenarios/colin27"},
     "StartTutorial": {"trainee": "anna"},
+    "StartDrill": {"trainee": "anna"},
     "StartTask": {"task": "task-1", "trainee": "anna", "seed": None},
     "Jog": {"velocityMmS": [1, 2, 3]},
     "MoveTipTo": {"positionMm": [500, 0, 300], "direction": None},

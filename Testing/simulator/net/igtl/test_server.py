@@ -12,19 +12,12 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Client
-from rastrainer.igtl.content import Command, Point, Points, Status, String, Transform
+from rastrainer.igtl.content import String, Transform
 from rastrainer.igtl.message import Message, crc64, pack
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
 from Testing.simulator.net.igtl.servers import HOST, LinkServer, LoopThread, PlainServer
 
 PROBE = Message("Probe", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 4, 5, 6)), timestamp=1)
-EVERY_MESSAGE = [
-    PROBE,
-    Message("Note", String("hello"), timestamp=1),
-    Message("Points", Points((Point("1", (1, 2, 3)),)), timestamp=1),
-    Message("Device", Status(1, message="well"), timestamp=1),
-    Message("command", Command(1, "Hello", "{}"), timestamp=1),
-]
 LONG_TEXT = Outgoing(Message("Text", String("x" * 60_000)))
 
 

@@ -28,7 +28,7 @@ from rastrainer.python_environment import mapped_files
 
 SIZES = "rastrainer-sizes.json"
 SOURCES = ("rastrainer_simulator", "rastrainer")
-SLICERS_OWN = ("slicer", "panels")
+SLICERS_OWN = ("slicer", "sections", "widgets")
 """Below `rastrainer`: what only Slicer runs."""
 NEVER_OPENED = (
     "cmeel.prefix/include",

@@ -1,8 +1,7 @@
-"""The robot as its URDF describes it: its chain of joints, and the meshes of its links."""
+"""The robot as its URDF describes it: the poses of its tool, and the surfaces of its links."""
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 from typing import NamedTuple
 
@@ -11,91 +10,29 @@ import vtk
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.files.reading import plain_xml, read_bytes
+from rastrainer.files.urdf import MeshPart, read_urdf
 from rastrainer.protocol import DeviceName
 from rastrainer.slicer.polydata import vtkArray
 from rastrainer.transforms import MM_PER_M
 from rastrainer.work_progress import Progress, no_progress
 
-Element = ElementTree.Element
-MAX_BYTES = 4 << 20
-
-
-def readUrdf(path: Path) -> Element:
-    content = plain_xml(read_bytes(path, MAX_BYTES), f"The URDF {path}")
-    try:
-        return ElementTree.fromstring(content)
-    except ElementTree.ParseError as error:
-        raise InputError(f"The URDF {path} is not well-formed XML: {error}.") from None
-
-
-def attribute(element: Element, child: str, name: str) -> str:
-    """Return an attribute of an element's child; raise ValueError if there is none."""
-    found = element.find(child)
-    value = None if found is None else found.get(name)
-    if value is None:
-        raise ValueError(f"<{element.tag}> has no <{child}> with {name}")
-    return value
-
-
-def numbers(text: str) -> np.ndarray:
-    """Return numbers between blanks, (n,) float; raise ValueError for something else."""
-    return np.array([float(word) for word in text.split()])
-
-
-def originOf(element: Element) -> np.ndarray:
-    """Return the pose (4, 4) float, mm, of an origin: about x by roll, y by pitch, z by yaw."""
-    from scipy.spatial.transform import Rotation
-
-    origin = element.find("origin")
-    if origin is None:
-        return np.eye(4)
-    xyz = numbers(origin.get("xyz", "0 0 0"))
-    turn = Rotation.from_euler("xyz", numbers(origin.get("rpy", "0 0 0")))
-    return transforms.rigid(turn.as_matrix(), MM_PER_M * xyz)
-
-
+URDF = "iiwa7.urdf"
 OTHER_ROBOT = "The trial was recorded with another robot than the one that is here."
 
 
 def toolPoses(urdf: Path, q: np.ndarray) -> np.ndarray:
-    """Return the poses (m, 4, 4) float, mm, of the tool at joint angles q (m, n) float, rad.
-
-    The joints are a chain from the robot's base to the tip of its tool.
-    """
-    from scipy.spatial.transform import Rotation
-
-    joints = readUrdf(urdf).findall("joint")
-    types = [joint.get("type") for joint in joints]
-    isArm = {*types} <= {"revolute", "fixed"}
-    if isArm and types.count("revolute") != q.shape[1]:
+    """Return the poses (m, 4, 4) float, mm, of the tool at joint angles q (m, n) float, rad."""
+    robot = read_urdf(urdf)
+    if len(robot.joints) != q.shape[1]:
         raise InputError(OTHER_ROBOT)
-    poses, angles = np.broadcast_to(np.eye(4), (len(q), 4, 4)), iter(q.T)
-    try:
-        following = {attribute(joint, "parent", "link"): joint for joint in joints}
-        (link,) = following.keys() - {attribute(joint, "child", "link") for joint in joints}
-        if len(following) != len(joints) or not isArm:
-            raise ValueError
-        while link in following:
-            joint = following.pop(link)
-            poses = poses @ originOf(joint)
-            if joint.get("type") == "revolute":
-                axis = numbers(attribute(joint, "axis", "xyz"))
-                turns = next(angles)[:, None] * axis / np.linalg.norm(axis)
-                turn = np.broadcast_to(np.eye(4), poses.shape).copy()
-                turn[:, :3, :3] = Rotation.from_rotvec(turns).as_matrix()
-                poses = poses @ turn
-            link = attribute(joint, "child", "link")
-    except ValueError:
-        raise InputError(f"The URDF {urdf} is not a chain of revolute and fixed joints.") from None
+    poses = np.broadcast_to(np.eye(4), (len(q), 4, 4))
+    for joint, angles in zip(robot.joints, q.T, strict=True):
+        turns = np.tile(np.eye(4), (len(q), 1, 1))
+        turns[:, :3, :3] = transforms.rotations(angles[:, None] * joint.axis)
+        poses = poses @ joint.origin @ turns
+    poses = poses @ robot.links[-1].offset
+    poses[:, :3, 3] *= MM_PER_M
     return poses
-
-
-URDF = "iiwa7.urdf"
-
-
-Shell = tuple[Path, np.ndarray, np.ndarray]
-"""Mesh of a link, its color, and its pose (4, 4) float, mm, in the frame of the link."""
 
 
 class LinkMesh(NamedTuple):
@@ -124,11 +61,12 @@ def readLinkMeshes(folder: Path, progress: Progress = no_progress) -> tuple[Link
     """
     from vtk.util.numpy_support import vtk_to_numpy
 
-    root = readUrdf(folder / URDF)
-    try:
-        shells = _shells(root, folder)
-    except (KeyError, ValueError) as error:
-        raise InputError(f"The URDF {folder / URDF} cannot be used: {error}.") from None
+    robot = read_urdf(folder / URDF)
+    links = {link.name: link for link in robot.links}
+    shells: list[list[tuple[MeshPart, np.ndarray]]] = [[] for _ in DeviceName.LINK_TO_WORLD]
+    for part in robot.meshes:
+        link = links[part.link]
+        shells[link.joint].append((part, link.offset @ part.origin))
     meshes: list[LinkMesh] = []
     for ofLink in shells:
         progress("", len(meshes) / len(shells))
@@ -148,43 +86,18 @@ def readLinkMeshes(folder: Path, progress: Progress = no_progress) -> tuple[Link
     return tuple(meshes)
 
 
-def _shells(root: Element, folder: Path) -> list[list[Shell]]:
-    """Return the visual meshes of links 0 to 7, with all parts that are fixed to them."""
-    colors = {
-        material.get("name"): numbers(attribute(material, "color", "rgba"))[:3]
-        for material in root.findall("material")
-    }
-    fixed = {
-        attribute(joint, "child", "link"): (attribute(joint, "parent", "link"), originOf(joint))
-        for joint in root.findall("joint")
-        if joint.get("type") == "fixed"
-    }
-    shells: list[list[Shell]] = [[] for _ in DeviceName.LINK_TO_WORLD]
-    for link in root.findall("link"):
-        owner, pose = link.get("name", ""), np.eye(4)
-        while owner in fixed:
-            parent, toParent = fixed[owner]
-            owner, pose = parent, toParent @ pose
-        if not owner[-1:].isdecimal() or int(owner[-1]) >= len(shells):
-            continue
-        for visual in link.findall("visual"):
-            material = visual.find("material")
-            if material is not None and visual.find("geometry/mesh") is not None:
-                path = folder / attribute(visual, "geometry/mesh", "filename")
-                color = colors[material.get("name")]
-                shells[int(owner[-1])].append((path, color, pose @ originOf(visual)))
-    return shells
+def _surface(part: MeshPart, pose: np.ndarray) -> vtk.vtkPolyData:
+    """Return a mesh in its link's frame, mm, with its normals, and its color at each point.
 
-
-def _surface(path: Path, color: np.ndarray, pose: np.ndarray) -> vtk.vtkPolyData:
-    """Return a mesh in its link's frame, mm, with its normals, and its color at each point."""
-    if not path.is_file():
-        raise InputError(f"The robot's mesh {path} is missing.")
+    `pose` (4, 4) float, m, is that of the mesh.
+    """
+    if not part.path.is_file():
+        raise InputError(f"The robot's mesh {part.path} is missing.")
     reader = vtk.vtkSTLReader()
-    reader.SetFileName(str(path))
+    reader.SetFileName(str(part.path))
     transform = vtk.vtkTransform()
-    transform.Concatenate(pose.ravel())
     transform.Scale(MM_PER_M, MM_PER_M, MM_PER_M)
+    transform.Concatenate(pose.ravel())
     placed = vtk.vtkTransformPolyDataFilter()
     placed.SetInputConnection(reader.GetOutputPort())
     placed.SetTransform(transform)
@@ -193,6 +106,7 @@ def _surface(path: Path, color: np.ndarray, pose: np.ndarray) -> vtk.vtkPolyData
     normals.SetFeatureAngle(40.0)
     normals.Update()
     surface = normals.GetOutput()
-    colors = np.tile(np.round(255 * color).astype(np.uint8), (surface.GetNumberOfPoints(), 1))
+    color = np.round(255 * np.array(part.color[:3])).astype(np.uint8)
+    colors = np.tile(color, (surface.GetNumberOfPoints(), 1))
     surface.GetPointData().SetScalars(vtkArray(colors, "color"))
     return surface

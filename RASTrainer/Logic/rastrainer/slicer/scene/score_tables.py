@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from rastrainer.decision.drill_record import DrillRecord
+from rastrainer.decision.drill_score import DRILL_SCORE_VERSION, DrillEstimate, drill_score
 from rastrainer.number_text import fixed
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.target_error import INTERVAL_NOTE
@@ -133,6 +135,31 @@ def _parts(score: TrialScore) -> list[Row]:
         Row(_("… its path"), measures.contact_path_mm, "mm", _limit(CONTACT_PATH_LIMIT_MM, "mm")),
         Row(_("Pressing depth"), measures.pressing_depth_mm, "mm", _limit(DEPTH_LIMIT_MM, "mm")),
     ]
+
+
+def drillRows(drill: DrillRecord) -> list[Row]:
+    """Return the score of a drill of decisions, and what it follows from."""
+    score = drill_score(drill.cases)
+    version = _("passed; version {v}") if score.is_passed else _("not passed; version {v}")
+    beyond = sum(total for _missed, total in score.missed.values())
+    faults = [f"{each.value}: {missed} / {total}" for each, (missed, total) in score.missed.items()]
+    harm, vain = _("proceeded, of {n} beyond the limit"), _("refused, of {n} within it")
+    return [
+        Row(_("Score"), score.score, "/ 100", version.format(v=DRILL_SCORE_VERSION)),
+        _estimateRow(_("Sensitivity d′"), score.sensitivity, _("0 for guesses")),
+        _estimateRow(_("Criterion c"), score.criterion, _("above 0: proceeds too easily")),
+        Row(_("Harmful decisions"), score.harmful, "", harm.format(n=beyond), "\n".join(faults)),
+        Row(_("Vain decisions"), score.vain, "", vain.format(n=score.cases - beyond)),
+        Row(_("Mean cost of a case"), score.mean_cost, "", _("a registration costs 1")),
+        Row(_("Confidence (Brier score)"), score.brier, "", _("0 is best, 0.25 for always 50 %")),
+        Row(_("Checked places per case"), score.mean_checks),
+        Row(_("Time per case"), score.mean_time_s, "s"),
+    ]
+
+
+def _estimateRow(title: str, estimate: DrillEstimate, note: str) -> Row:
+    interval = _("95 %: {:.2f} to {:.2f}").format(*estimate.interval)
+    return Row(title, estimate.value, "", interval, note)
 
 
 def _limit(value: float, unit: str) -> str:

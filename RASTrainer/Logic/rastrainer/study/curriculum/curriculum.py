@@ -7,9 +7,9 @@ from typing import Annotated, ClassVar
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import identifier, list_of, text
-from rastrainer.protocol import MAX_ASSIGNMENTS
+from rastrainer.protocol import DECIDE, MAX_ASSIGNMENTS, GoalKind
 from rastrainer.study.protocol.plan_file import PlanFile
-from rastrainer.study_messages import Assignment
+from rastrainer.study_messages import FIDUCIALS, Assignment
 
 
 @dataclass(frozen=True)
@@ -31,5 +31,11 @@ class Curriculum(PlanFile):
             if not set(each.after) <= earlier:
                 raise InputError(
                     f"{what}: after must be a list of assignments that stand before this one."
+                )
+            is_marked = each.method != FIDUCIALS or each.procedure or each.mark is not None
+            if each.task == DECIDE and (is_marked or each.goal is GoalKind.COMPETENT):
+                raise InputError(
+                    f"{what}: method, procedure, mark and the goal competent must be left out of "
+                    "the task decide, whose drills are passed by their error rates alone."
                 )
             earlier.add(each.name)

@@ -1,4 +1,4 @@
-"""The curricula of a study's trainees, and the trials that count for their standing.
+"""The curricula of a study's trainees, and the trials and drills that count for their standing.
 
 Each choice is stored, the last one counts. Scored trials count, and as failures those that were
 aborted or can have no score.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from rastrainer.decision.drill_rows import drill_rows
 from rastrainer.errors import InputError
 from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.standing import CurriculumStanding, PassMarkOf, standing_in
@@ -21,6 +22,7 @@ from rastrainer.trial.trial_row import TrialRow
 _STAMPS = """
     SELECT pseudonym,
         (SELECT count(*) FROM aborted_trials WHERE aborted_trials.trainee_id = trainees.id),
+        (SELECT count(*) FROM drills WHERE drills.trainee_id = trainees.id),
         (SELECT max(results.id) FROM results JOIN trials ON trials.trial_id = results.trial_id
             WHERE trials.trainee_id = trainees.id),
         (SELECT max(curriculum_choices.id) FROM curriculum_choices
@@ -77,7 +79,8 @@ class CurriculumStore:
             if curriculum is None:
                 return None
             counted = map(_by_procedure, self._study.attempts(pseudonym))
-            return standing_in(curriculum, tuple(counted), _marks(self._study))
+            drills = drill_rows(self._study.drills(pseudonym))
+            return standing_in(curriculum, (*counted, *drills), _marks(self._study))
 
     def stamps(self) -> dict[str, tuple[int | None, ...]]:
         """Return for each active trainee numbers that change with where they may stand.

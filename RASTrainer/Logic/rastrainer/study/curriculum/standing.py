@@ -12,11 +12,17 @@ from dataclasses import dataclass
 from statistics import fmean
 
 from rastrainer.number_text import fixed
-from rastrainer.protocol import AssignmentState, GoalKind
+from rastrainer.protocol import DECIDE, AssignmentState, GoalKind
 from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.database.values import day_of, moment
 from rastrainer.study.protocol.steps import trial_title
-from rastrainer.study_messages import WHOLE_WAY, Assignment, AssignmentStanding, CurriculumMessage
+from rastrainer.study_messages import (
+    FIDUCIALS,
+    WHOLE_WAY,
+    Assignment,
+    AssignmentStanding,
+    CurriculumMessage,
+)
 from rastrainer.trial import wording
 from rastrainer.trial.scoring import passes
 from rastrainer.trial.trial_feedback import competence_of
@@ -79,10 +85,10 @@ def by_curriculum(
 def standing_in(
     curriculum: Curriculum, trials: Sequence[TrialRow], pass_mark_of: PassMarkOf
 ) -> CurriculumStanding:
-    """Return where a trainee stands by their trials, in order of starting.
+    """Return where a trainee stands by their trials and drills, each in order of starting.
 
     In a trial with a procedure, the procedure's score counts. Goals without a mark use the
-    study's pass mark.
+    study's pass mark. A drill is passed by its error rates alone.
     """
     reached: dict[str, str] = {}
     standings = []
@@ -104,7 +110,8 @@ def _counts_for(trial: TrialRow, assignment: Assignment) -> bool:
     procedure = assignment.procedure if trial.is_aborted else ""
     if trial.procedure is not None:
         procedure = trial.procedure.analysis.procedure
-    return assignment.is_played_as(trial.scenario, trial.task, trial.mode, trial.method, procedure)
+    method = trial.method or FIDUCIALS
+    return assignment.is_played_as(trial.scenario, trial.task, trial.mode, method, procedure)
 
 
 def _standing(
@@ -141,6 +148,7 @@ def _progress(
     assignment: Assignment, trials: Sequence[TrialRow], mark: float
 ) -> tuple[TrialRow | None, int]:
     """Return which of the trials reaches the goal, and how far they are now."""
+    mark = 0.0 if assignment.task == DECIDE else mark
     passed = [passes(trial.score, trial.acceptable, mark) for trial in trials]
     if assignment.goal is GoalKind.COMPETENT:
         chart = competence_of([not each for each in passed])
@@ -187,8 +195,9 @@ def goal_of(standing: AssignmentStanding) -> str:
     mark = f"{standing.mark:g} or more"
     if standing.goal is GoalKind.COMPETENT:
         return f"competence (LC-CUSUM), a trial passes at {mark}"
-    trials = "trial" if standing.needed == 1 else "trials in a row"
-    return f"{standing.needed} {trials} at {mark}"
+    kind, passed = ("drill", "passed") if standing.task == DECIDE else ("trial", f"at {mark}")
+    kinds = kind if standing.needed == 1 else f"{kind}s in a row"
+    return f"{standing.needed} {kinds} {passed}"
 
 
 def short_progress_of(standing: AssignmentStanding) -> str:

@@ -32,9 +32,10 @@ from rastrainer.study.database.postgres_connecting import (
 from rastrainer.study.database.schema import (
     APPLICATION_ID,
     SCHEMA_VERSION,
-    STATEMENTS,
     TABLES,
     check_schema_version,
+    lacking_sentence,
+    missing_from,
 )
 
 LOCKED = "UPDATE rastrainer_study SET changes = changes + 1"
@@ -175,10 +176,11 @@ class PostgresDatabase(StudyDatabase):
                 "it has acknowledged; switch it on."
             )
         with self.reading():
-            if self._holds_study():
+            is_study = self._holds_study()
+            if is_study and not missing_from(self._names()):
                 return
-        if not self._may_create:
-            raise InputError(f"The database {self._address} holds no study.")
+        if not (self._may_change if is_study else self._may_create):
+            raise InputError(lacking_sentence(self._address))
         with self._connection.transaction():
             self._execute(self._limited_wait())
             self._execute("SELECT pg_advisory_xact_lock(?)", APPLICATION_ID)
@@ -187,9 +189,13 @@ class PostgresDatabase(StudyDatabase):
                 self._execute(_HEADER)
                 header = (APPLICATION_ID, SCHEMA_VERSION)
                 self._execute("INSERT INTO rastrainer_study VALUES (?, ?, 0)", *header)
-                self._execute(LOCKED)
-                for statement in STATEMENTS:
-                    self._execute(in_postgres(statement))
+            self._execute(LOCKED)
+            for statement in missing_from(self._names()):
+                self._execute(in_postgres(statement))
+
+    def _names(self) -> set[str]:
+        query = "SELECT relname FROM pg_class WHERE relnamespace = 'public'::regnamespace"
+        return {name for (name,) in self._connection.execute(query)}
 
     def _holds_study(self) -> bool:
         """Return whether the database has a study; an empty one has none."""

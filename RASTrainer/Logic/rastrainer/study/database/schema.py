@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -36,6 +37,13 @@ def check_schema_version(version: int, place: object) -> None:
         )
 
 
+def lacking_sentence(place: object) -> str:
+    return (
+        f"The database {place} holds no study with all tables that this RASTrainer uses. A study "
+        "of an earlier one gets them once it is opened in 3D Slicer."
+    )
+
+
 def _table(statement: str) -> Table:
     columns = tuple(re.findall(r"[(,\n]\s*(\w+) (?:TEXT|INTEGER|DOUBLE)\b", statement))
     order = "id" if "id" in columns else ", ".join(columns[:2])
@@ -44,6 +52,13 @@ def _table(statement: str) -> Table:
 
 _SQL = re.sub("--.*", "", Path(__file__).with_name("schema.sql").read_text(encoding="utf-8"))
 STATEMENTS = tuple(text.strip() for text in _SQL.split(";") if text.strip())
+
+
+def missing_from(names: Collection[str]) -> list[str]:
+    """Return the statements of tables and indexes that are not among these names."""
+    return [text for text in STATEMENTS if text.split()[2] not in names]
+
+
 TABLES = {
     table.name: table for table in map(_table, filter(re.compile("CREATE TABLE").match, STATEMENTS))
 }

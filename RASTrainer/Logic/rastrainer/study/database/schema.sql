@@ -86,6 +86,16 @@ CREATE TABLE repeats (
     reason TEXT NOT NULL,
     stored_utc TEXT NOT NULL
 ) WITHOUT ROWID;
+-- Drills of decisions: everything about one follows from its record.
+CREATE TABLE drills (
+    id INTEGER PRIMARY KEY,
+    trial_id TEXT NOT NULL UNIQUE,
+    trainee_id INTEGER NOT NULL REFERENCES trainees (id) ON DELETE CASCADE,
+    started_utc TEXT NOT NULL,
+    record_json TEXT NOT NULL,
+    stored_utc TEXT NOT NULL
+);
+CREATE INDEX drills_of_trainee ON drills (trainee_id);
 -- Which replays each rater marks, by the number that is shown instead of the trial; and the
 -- marks. The latest mark of a domain counts, NULL is one that was taken back.
 CREATE TABLE rated_replays (

@@ -19,8 +19,9 @@ from rastrainer.study.database.database import LockWait, StudyBusyError, StudyDa
 from rastrainer.study.database.schema import (
     APPLICATION_ID,
     SCHEMA_VERSION,
-    STATEMENTS,
     check_schema_version,
+    lacking_sentence,
+    missing_from,
 )
 
 _COMMANDS = "SELECT count(*) FROM sqlite_master WHERE type NOT IN ('table', 'index')"
@@ -118,19 +119,18 @@ class SqliteDatabase(StudyDatabase):
             self._connection.execute(f"PRAGMA {pragma}")
         # In one transaction: another process may be creating the tables.
         with self.reading():
-            tables = self._connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
+            names = self._names()
             # Triggers and views in a foreign file could run as ours.
             if self._connection.execute(_COMMANDS).fetchone()[0]:
                 raise InputError(
                     f"The study {self.path} contains triggers or views, which no study of "
                     "RASTrainer has."
                 )
-            if self._number("application_id") != (APPLICATION_ID if tables else 0):
+            if self._number("application_id") != (APPLICATION_ID if names else 0):
                 raise InputError(f"{self.path} is the database of another program.")
-            if tables:
+            if names:
                 check_schema_version(self._number("user_version"), self.path)
-            is_new = self._number("user_version") == 0
-        if is_new:
+        if missing_from(names):
             self._create_tables()
         is_whole = self._connection.execute("PRAGMA integrity_check(1)").fetchone() == ("ok",)
         if not is_whole or self._connection.execute("PRAGMA foreign_key_check").fetchone():
@@ -140,13 +140,16 @@ class SqliteDatabase(StudyDatabase):
 
     def _create_tables(self) -> None:
         if not self._may_change:
-            raise InputError(f"{self.path} holds no study.")
+            raise InputError(lacking_sentence(self.path))
         with self.writing():
-            if self._number("user_version") == 0:  # Another process may have been faster.
-                for statement in STATEMENTS:
-                    self._execute(statement)
-                self._execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
-                self._execute(f"PRAGMA application_id = {APPLICATION_ID}")
+            # Another process may have been faster.
+            for statement in missing_from(self._names()):
+                self._execute(statement)
+            self._execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
+            self._execute(f"PRAGMA application_id = {APPLICATION_ID}")
+
+    def _names(self) -> set[str]:
+        return {name for (name,) in self._connection.execute("SELECT name FROM sqlite_master")}
 
     def _number(self, pragma: str) -> int:
         return self._connection.execute(f"PRAGMA {pragma}").fetchone()[0]

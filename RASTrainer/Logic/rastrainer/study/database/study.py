@@ -17,6 +17,7 @@ from dataclasses import replace
 from typing import Any
 
 from rastrainer import json_checks
+from rastrainer.decision.drill_record import DrillRecord
 from rastrainer.errors import InputError
 from rastrainer.files import writing
 from rastrainer.head.trial_head import UNMOVED
@@ -52,6 +53,8 @@ STUDY_FILE = "study.db"
 """The usual name."""
 RECORD_LIMIT_BYTES = 2**20
 
+_RECORDS = "trials", "aborted_trials", "drills"
+"""The tables of what the simulator delivers."""
 _TRAINEES = "SELECT pseudonym, consent, archived, created_utc FROM trainees"
 _STAMPED_TRIALS = f"""
     SELECT trial_id, id, stored_utc,
@@ -197,11 +200,11 @@ class Study(AbstractContextManager["Study"]):
         with self.database.writing():
             self.trainee(pseudonym)
             own = f"WHERE trainee_id = ({TRAINEE_ID})"
-            finished, aborted = (
+            finished, aborted, drills = (
                 self.database.rows(f"SELECT trial_id FROM {table} {own}", pseudonym)
-                for table in ("trials", "aborted_trials")
+                for table in _RECORDS
             )
-            for (trial_id,) in (*finished, *aborted):
+            for (trial_id,) in (*finished, *aborted, *drills):
                 self.database.insert("deleted_trials", is_once=True, trial_sha256=_sha256(trial_id))
             self.database.change("DELETE FROM trainees WHERE pseudonym = ?", pseudonym)
         return len(finished)
@@ -262,19 +265,32 @@ class Study(AbstractContextManager["Study"]):
             delivered = record
             record = record_from_json(AbortedTrial, delivered)
         with self.database.writing():
-            self._check_not_deleted(record.trial_id)
-            query = "SELECT record_json FROM aborted_trials WHERE trial_id = ?"
-            row = self.database.row(query, record.trial_id)
-            is_other = row is not None and decoded_record(AbortedTrial, row[0]) != record
-            if is_other or self.has("trials", record.trial_id):
-                raise _other_trial(record.trial_id)
-            if row is not None:
+            if not self._is_new_in("aborted_trials", record):
                 return False
             if record.is_kept:
                 self._store("aborted_trials", record, delivered)
             else:
                 self._note_delivery(record)
         return record.is_kept
+
+    def add_drill(self, record: DrillRecord, delivered: Mapping[str, Any] | None = None) -> bool:
+        """Store a drill of decisions, as `add_trial`."""
+        with self.database.writing():
+            is_new = self._is_new_in("drills", record)
+            if is_new:
+                self._store("drills", record, delivered, started_utc=record.started_utc)
+        return is_new
+
+    def _is_new_in(self, table: str, record: AbortedTrial | DrillRecord) -> bool:
+        """Return whether a record would be new in its table; otherwise as `is_new`."""
+        self._check_not_deleted(record.trial_id)
+        query = f"SELECT record_json FROM {table} WHERE trial_id = ?"
+        row = self.database.row(query, record.trial_id)
+        is_other = row is not None and decoded_record(type(record), row[0]) != record
+        others = [other for other in _RECORDS if other != table]
+        if is_other or any(self.has(other, record.trial_id) for other in others):
+            raise _other_trial(record.trial_id)
+        return row is None
 
     def has(self, table: str, trial_id: str) -> bool:
         query = f"SELECT 1 FROM {table} WHERE trial_id = ?"
@@ -304,14 +320,15 @@ class Study(AbstractContextManager["Study"]):
     def _store(
         self,
         table: str,
-        record: AbortedTrial | TrialRecord,
+        record: AbortedTrial | TrialRecord | DrillRecord,
         delivered: Mapping[str, Any] | None,
         **columns: Any,
     ) -> None:
         text = json_text(delivered or record_to_json(record))
         if len(text) > RECORD_LIMIT_BYTES:
             raise InputError("The trial record is larger than 1 MiB, the most that is stored.")
-        self._note_delivery(record)
+        if not isinstance(record, DrillRecord):
+            self._note_delivery(record)
         if not self.has_trainee(record.trainee):
             self.create_trainee(record.trainee)
         self.database.insert(
@@ -407,6 +424,15 @@ class Study(AbstractContextManager["Study"]):
             replace(decoded_record(AbortedTrial, text), step=step, repeat_reason=reason)
             for text, step, reason in rows
         ]
+        return tuple(sorted(found, key=lambda record: moment(record.started_utc)))
+
+    def drills(self, pseudonym: str) -> tuple[DrillRecord, ...]:
+        """Return a trainee's drills in order of starting; raise `InputError` if unknown."""
+        with self.database.reading():
+            self.trainee(pseudonym)
+            query = f"SELECT record_json FROM drills WHERE trainee_id = ({TRAINEE_ID}) ORDER BY id"
+            rows = self.database.rows(query, pseudonym)
+        found = [decoded_record(DrillRecord, text) for (text,) in rows]
         return tuple(sorted(found, key=lambda record: moment(record.started_utc)))
 
     def attempts(self, pseudonym: str) -> tuple[TrialRow, ...]:

@@ -24,8 +24,8 @@ class StepEntry:
     """The outcome of a step, `done` or `skipped`.
 
     Attributes:
-        details: `trialId` of a trial, `answers` of a questionnaire, `minutes` of a trial run or a
-            break, `reason` of a skipped step.
+        details: `trialId` of a trial or a drill, `answers` of a questionnaire, `minutes` of a trial
+            run or a break, `reason` of a skipped step.
     """
 
     step: str
@@ -148,8 +148,9 @@ def checked_details(step: StudyStep, details: Mapping[str, Any]) -> dict[str, An
             raise InputError("A questionnaire is complete only with its answers.")
         questionnaire = find_questionnaire(step.questionnaire)
         return {"answers": list(questionnaire.checked(details["answers"]))}
-    if step.kind == StepKind.TRIAL:
-        raise InputError("A step with a trial is done by a stored trial that counts for it.")
+    if step.kind in (StepKind.TRIAL, StepKind.DECIDE):
+        what = "drill" if step.kind == StepKind.DECIDE else "trial"
+        raise InputError(f"A step with a {what} is done by a stored {what} that counts for it.")
     minutes = details.get("minutes")
     if not is_number(minutes) or not step.minutes <= minutes < float("inf"):
         what = "The trial run" if step.kind == StepKind.TRIAL_RUN else "The break"

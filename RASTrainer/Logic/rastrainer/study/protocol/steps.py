@@ -35,8 +35,10 @@ def instruction(step: StudyStep) -> str:
         return f"Answer the questionnaire {QUESTIONNAIRES[step.questionnaire].title}."
     if step.kind == StepKind.BREAK:
         return f"Take a break of at least {step.minutes:g} minutes."
+    where = f" {wording.IN_MODE[step.mode]}" if step.mode else ""
+    if step.kind == StepKind.DECIDE:
+        return f"Do the drill of decisions{where}."
     if step.kind == StepKind.TRIAL_RUN:
-        where = f" {wording.IN_MODE[step.mode]}" if step.mode else ""
         return f"Get to know the trial run{where} for {step.minutes:g} minutes."
     return f"Play {trial_title(step.task, step.mode, step.method, step.procedure)}."
 

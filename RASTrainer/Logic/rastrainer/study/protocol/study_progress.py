@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Any
 
+from rastrainer.decision.drill_record import DrillRecord
 from rastrainer.errors import InputError
 from rastrainer.protocol import StepKind
 from rastrainer.study.database.schema import TRAINEE_ID
@@ -235,6 +236,8 @@ class StudyProgress:
         self, pseudonym: str, progress: StepProgress, step: StudyStep
     ) -> StepEntry | None:
         """Return the entry of the next step's trial, or None; a repeat needs a reason to count."""
+        if step.kind == StepKind.DECIDE:
+            return self._decided_for(pseudonym, progress, step)
         if step.kind != StepKind.TRIAL:
             return None
         rows = self._database.rows(
@@ -260,12 +263,34 @@ class StudyProgress:
                 return StepEntry(step.name, DONE, {"trialId": record.trial_id}, stored_utc)
         return None
 
+    def _decided_for(
+        self, pseudonym: str, progress: StepProgress, step: StudyStep
+    ) -> StepEntry | None:
+        since, counted = self._since(pseudonym, progress), progress.counted_trials
+        query = f"SELECT record_json, stored_utc FROM drills WHERE trainee_id = ({TRAINEE_ID})"
+        found = [
+            (moment(record.started_utc), record.trial_id, stored_utc)
+            for text, stored_utc in self._database.rows(query, pseudonym)
+            if (record := decoded_record(DrillRecord, text)).mode == step.mode
+            and record.trial_id not in counted
+            and moment(record.started_utc) >= since
+        ]
+        if not found:
+            return None
+        _started, trial_id, stored_utc = min(found)
+        return StepEntry(step.name, DONE, {"trialId": trial_id}, stored_utc)
+
     def _since(self, pseudonym: str, progress: StepProgress) -> datetime:
-        rows = self._database.rows(
-            f"SELECT trial_id, started_utc FROM trials WHERE trainee_id = ({TRAINEE_ID})", pseudonym
-        )
         counted = progress.counted_trials
-        after = [moment(started_utc) for trial_id, started_utc in rows if trial_id in counted]
+        after = [
+            moment(started_utc)
+            for table in ("trials", "drills")
+            for trial_id, started_utc in self._database.rows(
+                f"SELECT trial_id, started_utc FROM {table} WHERE trainee_id = ({TRAINEE_ID})",
+                pseudonym,
+            )
+            if trial_id in counted
+        ]
         return max([*after, moment(progress.enrolled_utc)])
 
     def _aborted_before(self, pseudonym: str, progress: StepProgress) -> tuple[AbortedTrial, ...]:

@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import is_identifier, number, one_of, text, texts, whole_number
-from rastrainer.protocol import SKIN_KEYS, TRIAL_RUN, Mode, RegistrationMethod, StepKind
+from rastrainer.protocol import DECIDE, SKIN_KEYS, TRIAL_RUN, Mode, RegistrationMethod, StepKind
 from rastrainer.study.protocol.plan_file import PlanFile
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study_messages import (
@@ -70,6 +70,8 @@ class StudyProtocol(PlanFile):
     """What every trainee of a study does.
 
     Attributes:
+        drills: Occasions of a drill of decisions, each after its questionnaires. Before and after
+            all, it is done in the first of the `modes`, so that it can be compared.
         trial_run_min: Length of the trial run at the start of each mode; 0 for none.
         references: Of the score, by task; by default, the scenario's.
         guidance, tutorial: "" leaves it to the simulator's setting.
@@ -96,6 +98,7 @@ class StudyProtocol(PlanFile):
     break_between_modes_min: Annotated[float, number(0, 30 * 24 * 60, "min")] = 0.0
     break_between_tasks_min: Annotated[float, number(0, 24 * 60, "min")] = 0.0
     questionnaires: tuple[ScheduledQuestionnaire, ...] = ()
+    drills: Annotated[tuple[str, ...], texts(0, len(OCCASIONS), OCCASIONS)] = ()
     references: Mapping[str, ScoreReference] = field(default_factory=dict)
     pass_mark: Annotated[float | None, number(1, 100)] = None
     guidance: GuidanceRule = ""
@@ -110,10 +113,10 @@ class StudyProtocol(PlanFile):
     def __post_init__(self) -> None:
         tasks = ", ".join(self.tasks)
         for task in self.tasks:
-            if task == TRIAL_RUN or not is_identifier(task):
+            if task in (TRIAL_RUN, DECIDE) or not is_identifier(task):
                 raise InputError(
-                    "The protocol: tasks must be names of tasks, such as task-1; the trial run is "
-                    "not one."
+                    "The protocol: tasks must be names of tasks, such as task-1; the trial run and "
+                    "the drill of decisions are none."
                 )
         for key in ("references", "procedures", "methods", "skin"):
             for task in getattr(self, key):
@@ -172,17 +175,17 @@ def _ordered(names: tuple[str, ...], order: str, row: int) -> tuple[str, ...]:
 
 
 def _steps(protocol: StudyProtocol, place: int) -> Iterator[StudyStep]:
-    yield from _questions(protocol, BEFORE_ALL, "", "before-all")
+    yield from _occasion(protocol, BEFORE_ALL, "", "before-all")
     for index, mode in enumerate(mode_order(protocol, place)):
         if index and protocol.break_between_modes_min:
             minutes = protocol.break_between_modes_min
             yield StudyStep("", StepKind.BREAK, name=f"{mode}/break", minutes=minutes)
         yield from _in_mode(protocol, place, index, mode)
-    yield from _questions(protocol, AFTER_ALL, "", "after-all")
+    yield from _occasion(protocol, AFTER_ALL, "", "after-all")
 
 
 def _in_mode(protocol: StudyProtocol, place: int, index: int, mode: str) -> Iterator[StudyStep]:
-    yield from _questions(protocol, BEFORE_MODE, mode, f"{mode}/before")
+    yield from _occasion(protocol, BEFORE_MODE, mode, f"{mode}/before")
     if protocol.trial_run_min:
         yield StudyStep(
             "",
@@ -218,18 +221,22 @@ def _in_mode(protocol: StudyProtocol, place: int, index: int, mode: str) -> Iter
                 skin=protocol.skin.get(task, {}),
                 allows=protocol.allows,
             )
-            yield from _questions(protocol, AFTER_TASK, mode, name)
-    yield from _questions(protocol, AFTER_MODE, mode, f"{mode}/after")
+            yield from _occasion(protocol, AFTER_TASK, mode, name)
+    yield from _occasion(protocol, AFTER_MODE, mode, f"{mode}/after")
 
 
-def _questions(
+def _occasion(
     protocol: StudyProtocol, occasion: str, mode: str, prefix: str
 ) -> Iterator[StudyStep]:
+    """Yield the questionnaires of an occasion, then its drill."""
     for asked in protocol.questionnaires:
         if asked.when == occasion and (not asked.modes or mode in asked.modes):
             name = f"{prefix}/{asked.name}"
             kind = StepKind.QUESTIONNAIRE
             yield StudyStep("", kind, name=name, mode=mode, questionnaire=asked.name)
+    if occasion in protocol.drills:
+        mode, name = mode or protocol.modes[0], f"{prefix}/{DECIDE}"
+        yield StudyStep("", StepKind.DECIDE, name=name, mode=mode, task=DECIDE)
 
 
 def williams_design(count: int) -> tuple[tuple[int, ...], ...]:

@@ -1,0 +1,68 @@
+"""The simulator with a trainee at a drill, who does what lines of its standard input say.
+
+Each line is one of `DEEDS`. What is then seen of the drill is printed.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import threading
+from collections import deque
+from functools import partial
+from unittest import mock
+
+from rastrainer.decision.drill_record import Decision, Fault
+from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.decision.drill import TIP
+from rastrainer_simulator.flow.session.session import TrainingSession
+
+SAYS = "drill: "
+DEEDS = {
+    "check": lambda drill: drill.check(TIP),
+    "read": lambda drill: drill.read_images(),
+    "decide": lambda drill: drill.decide(Decision.STOP, 80, Fault.MOVED_HEAD),
+    "next": lambda drill: drill.next_case(),
+    "see": lambda _drill: None,
+}
+
+
+def seen_of(session):
+    drill = session.drill
+    return {
+        "trialId": drill.trial_id,
+        "number": drill.number,
+        "timeS": drill.time_s,
+        "checks": drill.checks,
+        "hasReadImages": drill.has_read_images,
+        "isDecided": drill.decided is not None,
+        "seed": drill.case.seed,
+        "isFinished": drill.is_finished,
+    }
+
+
+def play(asked):
+    """Run the simulator, which does the next of what is asked whenever a case is there."""
+    advance = TrainingSession.advance
+
+    def advanced(session, dt, state):
+        advance(session, dt, state)
+        if not asked:
+            return
+        if session.drill is None:
+            session.trainee = asked.popleft()
+            session.begin_drill()
+        elif session.drill.is_ready:
+            DEEDS[asked.popleft()](session.drill)
+            if session.drill.is_ready:
+                print(SAYS + json.dumps(seen_of(session)), flush=True)
+
+    with mock.patch.object(TrainingSession, "advance", advanced):
+        return main(["simulator", *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    lines = deque()
+    read = partial(lines.extend, map(str.strip, sys.stdin))
+    threading.Thread(target=read, daemon=True).start()
+    sys.exit(play(lines))
