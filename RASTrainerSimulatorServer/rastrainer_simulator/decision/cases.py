@@ -155,7 +155,7 @@ class DecisionCase:
         return transforms.apply(self.registration @ self.head_to_world, there)
 
     def truly(self, place_mm: np.ndarray) -> np.ndarray:
-        """Return where the anatomy at a point (3,) of the images is, (3,) World, mm."""
+        """Return where the anatomy at points (n, 3) or (3,) of the images is, World, mm."""
         return transforms.apply(self.head_to_world @ transforms.inverse(self.images), place_mm)
 
     def contours(self, point_mm: np.ndarray) -> tuple[list[np.ndarray], ...]:

@@ -35,15 +35,13 @@ def _form(scenario: Scenario, seed: int, seen: Collection[int]) -> _Form:
     from rastrainer_simulator.decision.forms import draw_form
 
     maker = CaseMaker(scenario)
-    keys = draw_form(maker, default_rng(seed), seen)
-    # The first cut imports packages for seconds, which would stop the page.
-    maker.case(*keys[0]).contours(maker.target)
-    return maker, keys
+    return maker, draw_form(maker, default_rng(seed), seen)
 
 
 def _case(form: Future[_Form], row: int) -> DecisionCase:
     maker, keys = form.result()
     case = maker.case(*keys[row])
-    # Here, since the first cut imports a library, which takes seconds.
-    case.contours(case.target_mm)
+    if row == 0:
+        # The first cut imports packages for seconds, which would stop the page.
+        case.contours(case.target_mm)
     return case

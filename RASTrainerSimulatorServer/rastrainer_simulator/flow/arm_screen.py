@@ -102,7 +102,7 @@ class ArmScreen:
         self._move = ArmMove(session.move_tip, way)
 
     def _advance_move(self, dt: float) -> None:
-        if self._move is not None and not self._move.is_over:
+        if self._move is not None and self._is_moving:
             self._move.advance(dt, self._session.state.tip, self._session.controls.held)
 
     @property

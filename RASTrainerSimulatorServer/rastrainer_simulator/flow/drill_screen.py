@@ -35,14 +35,13 @@ BLOCKED_MM = 1.0
 LEFT_M = 0.001
 """A tip that is farther from where it was stopped has been steered away."""
 
+_IN_DRILL = TrainingState(phase=Phase.RUNNING, method=RegistrationMethod.LANDMARKS)
+"""As in a trial, an arm that hides the tip is translucent."""
+
 
 def shown_in_drill(state: SimulationState) -> SimulationState:
-    """Return a state as views show it in a drill: without points to touch, and without alarms.
-
-    As in a trial, an arm that hides the tip is translucent.
-    """
-    training = TrainingState(phase=Phase.RUNNING, method=RegistrationMethod.LANDMARKS)
-    return replace(state, training=training, touch=TouchStage.FAR)
+    """Return a state as views show it in a drill: without points to touch, and without alarms."""
+    return replace(state, training=_IN_DRILL, touch=TouchStage.FAR)
 
 
 @dataclass(eq=False)
@@ -71,7 +70,7 @@ class DrillScreen(ArmScreen):
         session, drill = self._session, self._drill
         case = session.placed_case
         is_marked = case.method is RegistrationMethod.FIDUCIALS
-        places = map(in_meters, map(case.truly, case.fixed_mm)) if is_marked else ()
+        places = map(in_meters, case.truly(case.fixed_mm)) if is_marked else ()
         balls = [
             ErrorArrow(place, place, Tone.PLAIN, name)
             for name, place in zip(case.labels, places, strict=False)

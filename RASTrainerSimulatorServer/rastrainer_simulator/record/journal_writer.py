@@ -19,11 +19,10 @@ from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.files.writing import keep_others_out, make_private_folder, open_private
 from rastrainer.journal.entries import Entry, Line, Stamp
 from rastrainer.journal.folder import (
-    DRILL_SUFFIX,
     LOCK_NAME,
     STARTED_BY,
-    SUFFIX,
     FolderHolder,
+    journal_names,
     lock,
     open_lock_file,
     read_open_holder,
@@ -209,7 +208,7 @@ class RecordsFolder:
         try:
             self._lock(elsewhere)
             self.announce("", 0, "")
-            for journal in (*folder.glob(f"*{SUFFIX}"), *folder.glob(f"*{DRILL_SUFFIX}")):
+            for journal in journal_names(folder):
                 keep_others_out(journal)
         except BaseException:
             os.close(self._descriptor)

@@ -27,7 +27,7 @@ from rastrainer.journal.entries import (
     Stamp,
     read_line,
 )
-from rastrainer.journal.folder import DRILL_SUFFIX, SUFFIX, journals_of
+from rastrainer.journal.folder import DRILL_SUFFIX, SUFFIX, journal_names, journals_of
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
 from rastrainer.journal.recording import WholeRecording
 from rastrainer.json_records import record_from_json, record_to_json
@@ -329,7 +329,7 @@ def find_unacknowledged(folder: Path) -> list[Path]:
     Only the end of each file is read: a lab's folder holds thousands.
     """
     found = []
-    for path in sorted((*folder.glob(f"*{SUFFIX}"), *folder.glob(f"*{DRILL_SUFFIX}"))):
+    for path in journal_names(folder):
         kinds = set(_KIND.findall(_end(path)))
         if kinds & _DELIVERED and b"acknowledged" not in kinds:
             found.append(path)

@@ -18,8 +18,9 @@ import numpy as np
 from markupsafe import Markup
 
 from rastrainer.number_text import fixed, significant
+from rastrainer.registration.distributions import Proportion
 from rastrainer.study.outcomes import mode_title, short_mode_title
-from rastrainer.study.tre_calibration import CalibrationPoint, Proportion
+from rastrainer.study.tre_calibration import CalibrationPoint
 from rastrainer_simulator.report.comparisons import ModeComparison
 
 if TYPE_CHECKING:

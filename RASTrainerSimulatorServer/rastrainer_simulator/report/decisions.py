@@ -13,10 +13,11 @@ from markupsafe import Markup
 from rastrainer.decision import drill_score
 from rastrainer.decision.drill_record import DecidedCase, Decision, Fault
 from rastrainer.decision.drill_rows import drill_rows
+from rastrainer.registration.distributions import Proportion, proportion
 from rastrainer.study.database.values import moment
 from rastrainer.study.outcomes import Outcome
 from rastrainer.study.study_data import StudyData
-from rastrainer.study.tre_calibration import MIN_SHARE_TRIALS, Proportion, proportion
+from rastrainer.study.tre_calibration import MIN_SHARE_TRIALS
 from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.report import charts
 from rastrainer_simulator.report.comparisons import ModeComparison, compare_modes

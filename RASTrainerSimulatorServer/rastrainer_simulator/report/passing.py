@@ -9,11 +9,11 @@ import numpy as np
 from markupsafe import Markup
 
 from rastrainer.protocol import TRIAL_RUN, RegistrationMethod
+from rastrainer.registration.distributions import Proportion, proportion
 from rastrainer.study.database.values import moment
 from rastrainer.study.outcomes import mode_title, short_mode_title, task_title
 from rastrainer.study.protocol.study_protocol import pass_mark_of
 from rastrainer.study.study_data import StudyData
-from rastrainer.study.tre_calibration import Proportion, proportion
 from rastrainer.trial import lc_cusum, scoring, trial_feedback
 from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.report import charts

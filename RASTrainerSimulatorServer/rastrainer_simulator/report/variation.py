@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from markupsafe import Markup
 
+from rastrainer.registration.distributions import Proportion, proportion
 from rastrainer.study.study_data import StudyData
-from rastrainer.study.tre_calibration import Proportion, proportion
 from rastrainer.trial.ctps import RMSE, TIME
 from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.report.page import interval_text, render

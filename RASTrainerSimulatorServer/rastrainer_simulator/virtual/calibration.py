@@ -23,7 +23,14 @@ from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.state import NEUTRAL_STICKS, OperatorCommand, OperatorInput
 from rastrainer_simulator.statistics.intervals import rms
-from rastrainer_simulator.virtual.hand import DECISION_PERIOD_S, DEVICES, Hand, Skill, Tremor
+from rastrainer_simulator.virtual.hand import (
+    DECISION_PERIOD_S,
+    DEVICES,
+    TREMOR_BAND_HZ,
+    Hand,
+    Skill,
+    Tremor,
+)
 from rastrainer_simulator.virtual.play import play_virtual_trial
 
 
@@ -47,16 +54,15 @@ class Quantity:
         return self.least <= self.simulated <= self.most
 
 
-BAND_HZ = (6.0, 12.0)
 TREMOR_SOURCE = "Wells et al. 2013 (PMC3989364)"
 TREMOR_SIZES = f"tremor 0.05 to 0.2, positioning error 0.14 to 0.29 mm: {TREMOR_SOURCE}"
 POINTING = "Soukoreff and MacKenzie 2004 (10.1016/j.ijhcs.2004.09.001)"
 RMSE_PER_FLE = math.sqrt(1.0 - 2.0 / FIDUCIAL_COUNT)
 LEAST_FLE_MM, MOST_FLE_MM = (round(rmse / RMSE_PER_FLE, 2) for rmse in (1.01, 1.84))
 PUBLISHED = (
-    Quantity("peak of the hand's tremor", "Hz", *BAND_HZ, TREMOR_SOURCE, "TREMOR_HZ"),
+    Quantity("peak of the hand's tremor", "Hz", *TREMOR_BAND_HZ, TREMOR_SOURCE, "TREMOR_HZ"),
     Quantity("hand's tremor, RMS", "mm", 0.05, 0.3, TREMOR_SIZES, "tremor_mm"),
-    Quantity("peak of the moving tip's acceleration", "Hz", *BAND_HZ, TREMOR_SOURCE),
+    Quantity("peak of the moving tip's acceleration", "Hz", *TREMOR_BAND_HZ, TREMOR_SOURCE),
     Quantity("tremor of the moving tip, RMS", "mm", 0.05, 0.3, TREMOR_SIZES),
     Quantity(
         *("tip's power below 2 Hz, share", "", 0.98, 1.0),
@@ -195,5 +201,5 @@ def _peak_hz(tips: Sequence[np.ndarray]) -> float:
 
 def _in_band(tip: np.ndarray) -> np.ndarray:
     """Return the length of positions (n, 3) between 6 and 12 Hz, (n,) float, mm."""
-    band = scipy.signal.butter(4, BAND_HZ, "bandpass", fs=RATE_HZ, output="sos")
+    band = scipy.signal.butter(4, TREMOR_BAND_HZ, "bandpass", fs=RATE_HZ, output="sos")
     return np.linalg.norm(scipy.signal.sosfiltfilt(band, tip, axis=0), axis=1)

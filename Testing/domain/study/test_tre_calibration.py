@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from rastrainer.registration.distributions import proportion
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.study.study_data import StudyData
-from rastrainer.study.tre_calibration import calibration_of, proportion
+from rastrainer.study.tre_calibration import calibration_of
 from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.report.target_errors import calibration
 

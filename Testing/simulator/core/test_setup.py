@@ -17,6 +17,7 @@ def test_a_simulator_starts_without_the_packages_that_read_meshes_draw_and_repor
     script = (
         "import sys, rastrainer_simulator.cli.simulator, rastrainer_simulator.server.server\n"
         "import rastrainer_simulator.net.views.view_server\n"
+        "import rastrainer_simulator.flow.flow_presenter\n"
         "from rastrainer_simulator.core.setup import load_setup; load_setup()\n"
         "names = {name.partition('.')[0] for name in sys.modules}\n"
         "unwanted = {'trimesh', 'yourdfpy', 'scipy', 'matplotlib', 'jinja2', 'vtk', 'vtkmodules'}\n"

@@ -11,7 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import NormalDist
 
-from rastrainer.decision.drill_record import DecidedCase, Decision, Fault
+from rastrainer.decision.drill_record import CASES, DecidedCase, Decision, Fault
+from rastrainer.registration.distributions import proportion
 
 DRILL_SCORE_VERSION = "1"
 HARM_COST, AGAIN_COST, STOP_COST, VAIN_COST, CHECK_COST = 10.0, 1.0, 2.0, 4.0, 0.1
@@ -89,7 +90,7 @@ class DrillScore:
 
     @property
     def is_passed(self) -> bool:
-        share = self.cases / 20.0
+        share = self.cases / CASES
         return self.harmful <= MOST_HARMFUL * share and self.vain <= MOST_VAIN * share
 
 
@@ -139,10 +140,8 @@ def difference(one: DrillEstimate, other: DrillEstimate) -> DrillEstimate:
 
 def _probit(count: int, total: int) -> DrillEstimate:
     """Return z of a corrected rate, and of the ends of its interval (Wilson 1927)."""
-    squared, rate = _Z95**2, count / total if total else 0.5
-    middle = (count + squared / 2.0) / (total + squared)
-    half = _Z95 * math.sqrt(total * rate * (1.0 - rate) + squared / 4.0) / (total + squared)
-    rates = ((count + 0.5) / (total + 1.0), middle - half, middle + half)
+    interval = proportion(count, total).interval if total else (0.0, 1.0)
+    rates = (count + 0.5) / (total + 1.0), *interval
     return DrillEstimate(
         *(_NORMAL.inv_cdf(min(max(p, LEAST_RATE), 1.0 - LEAST_RATE)) for p in rates)
     )

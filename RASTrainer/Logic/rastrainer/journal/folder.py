@@ -128,6 +128,11 @@ def journals(folder: Path) -> list[Path]:
     return found
 
 
+def journal_names(folder: Path) -> list[Path]:
+    """Return the files of a folder that are journals of trials or drills by name."""
+    return sorted((*folder.glob(f"*{SUFFIX}"), *folder.glob(f"*{DRILL_SUFFIX}")))
+
+
 def journals_of(folder: Path, trial_id: str, suffix: str = SUFFIX) -> list[Path]:
     """Return the files named as the journal of a trial, or of a drill: one or none."""
     return sorted(folder.glob(f"*_{trial_id}{suffix}"))

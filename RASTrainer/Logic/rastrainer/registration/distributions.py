@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import lru_cache
+from statistics import NormalDist
 
 import numpy as np
 
@@ -132,3 +134,28 @@ def _octant() -> tuple[np.ndarray, np.ndarray]:
     squares.append(np.broadcast_to(height[:, None] ** 2, squares[0].shape))
     areas = np.repeat(root_weights / (2 * DIRECTIONS), DIRECTIONS)
     return np.stack(squares, axis=-1).reshape(-1, 3), areas
+
+
+@dataclass(frozen=True)
+class Proportion:
+    """How many of how many, with the 95 % interval of the share."""
+
+    count: int
+    total: int
+    interval: tuple[float, float]
+
+    @property
+    def share(self) -> float:
+        return self.count / self.total
+
+
+def proportion(count: int, total: int) -> Proportion:
+    """Return a share with the interval by Wilson (1927).
+
+    It stays within 0 and 1 and keeps its 95 % for shares near them, as `count ± 2 SE` does not. It
+    takes the trials as independent.
+    """
+    z, share = NormalDist().inv_cdf(0.975), count / total
+    middle = (share + z**2 / (2 * total)) / (1 + z**2 / total)
+    reach = math.sqrt(share * (1 - share) / total + (z / (2 * total)) ** 2) * z / (1 + z**2 / total)
+    return Proportion(count, total, (max(0.0, middle - reach), min(1.0, middle + reach)))

@@ -246,8 +246,7 @@ class TraineesPanel(Panel):
         ui = self._ui
         try:
             trainees = self._logic.trainees(archived=ui.archivedCheckBox.checked)
-            trainee, history = self._logic.chosenTrainee(), self._logic.history()
-            results = self._logic.results()
+            trainee, results = self._logic.chosenTrainee(), self._logic.results()
             aborted = () if trainee is None else self._logic.study.aborted(trainee.pseudonym)
         except InputError as error:
             self._showMessage(str(error), isState=True)
@@ -269,10 +268,11 @@ class TraineesPanel(Panel):
         for button in (ui.archiveButton, ui.exportTraineeButton):
             setEnabled(button, trainee is not None, nobody)
         nothing = nobody if trainee is None else _("The trainee has no trials yet.")
+        count = sum(isinstance(result, StoredTrial) for _number, result in results)
         for button in (ui.learningCurveButton, ui.exportHistoryButton):
-            setEnabled(button, bool(history), nothing)
+            setEnabled(button, bool(count), nothing)
         if trainee is not None:
-            name, day, count = trainee.pseudonym, day_of(trainee.created_utc), len(history)
+            name, day = trainee.pseudonym, day_of(trainee.created_utc)
             text = _("{name}, since {day}. Trials: {count}, drills: {drills}. {aborted}")
             drills = len(results) - count
             text = text.format(

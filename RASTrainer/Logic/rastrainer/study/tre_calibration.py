@@ -6,44 +6,18 @@ before the truth was revealed.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from statistics import NormalDist
 
 import numpy as np
 
 from rastrainer.number_text import fixed, percent
 from rastrainer.protocol import TRIAL_RUN
+from rastrainer.registration.distributions import Proportion, proportion
 from rastrainer.trial.trial_row import TrialRow
 
 MIN_SHARE_TRIALS = 5
 """Fewer trials have no meaningful share."""
-
-
-@dataclass(frozen=True)
-class Proportion:
-    """How many of how many, with the 95 % interval of the share."""
-
-    count: int
-    total: int
-    interval: tuple[float, float]
-
-    @property
-    def share(self) -> float:
-        return self.count / self.total
-
-
-def proportion(count: int, total: int) -> Proportion:
-    """Return a share with the interval by Wilson (1927).
-
-    It stays within 0 and 1 and keeps its 95 % for shares near them, as `count ± 2 SE` does not. It
-    takes the trials as independent.
-    """
-    z, share = NormalDist().inv_cdf(0.975), count / total
-    middle = (share + z**2 / (2 * total)) / (1 + z**2 / total)
-    reach = math.sqrt(share * (1 - share) / total + (z / (2 * total)) ** 2) * z / (1 + z**2 / total)
-    return Proportion(count, total, (max(0.0, middle - reach), min(1.0, middle + reach)))
 
 
 @dataclass(frozen=True)

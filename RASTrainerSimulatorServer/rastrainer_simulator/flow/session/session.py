@@ -29,7 +29,6 @@ from rastrainer.protocol import (
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
 from rastrainer.study_messages import CurriculumMessage, StudyStep
-from rastrainer_simulator.decision.cases import DecisionCase
 from rastrainer_simulator.decision.drill import Drill, begin_drill, continue_drill
 from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
 from rastrainer_simulator.flow.session.open_pages import OpenPages, Page
