@@ -71,7 +71,7 @@ lint: .venv/test-installed
 format: .venv/test-installed
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
-	$(BIN)/python tools/command_table.py
+	$(BIN)/python tools/reference_pages.py
 
 # The documentation as a website, in build/docs; warnings are errors.
 docs: .venv/docs-installed

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from Testing.pictures import MOST_BYTES
-from tools import command_table
+from tools import reference_pages
 
 ROOT = Path(__file__).parents[1]
 TRACKED = [
@@ -157,8 +157,9 @@ def test_the_architecture_page_describes_every_folder():
     assert {name for name in folders if name not in described} <= {"slicer"}
 
 
-def test_the_table_of_commands_is_made_of_their_entries():
-    assert command_table.page() == command_table.PAGE.read_text(encoding="utf-8")
+def test_the_reference_pages_list_the_records():
+    for name, page in reference_pages.pages().items():
+        assert (reference_pages.FOLDER / name).read_text(encoding="utf-8") == page
 
 
 MOST_FILM_BYTES = 5_000_000

@@ -1,7 +1,7 @@
 """The commands that clients may send: arguments, effect, answer, and when they are refused.
 
 All that both sides know of a command stands in its entry; what carries it out is a handler of the
-simulator. The table in docs/openigtlink.md is made of the entries by `tools/command_table.py`.
+simulator. docs/commands.md is made of the entries by `tools/reference_pages.py`.
 """
 
 from __future__ import annotations
@@ -238,7 +238,7 @@ class GetJournalArguments:
 class CommandEntry(str):
     """A command that clients may send: its name, and all that both sides have to know about it.
 
-    Effect, answer and texts in the annotations of the arguments are for docs/openigtlink.md.
+    Effect, answer and texts in the annotations of the arguments are for docs/commands.md.
     """
 
     effect: str
