@@ -7,7 +7,6 @@ import itertools
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from scipy import stats
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import fixed
@@ -17,7 +16,6 @@ from rastrainer_simulator.statistics.agreement import (
     kappa_of_table,
     quadratic_kappa,
 )
-from rastrainer_simulator.statistics.intervals import TAIL
 from Testing.error_rates.measured import Measured, holds, share_of, share_text
 
 HEADER = (
@@ -26,7 +24,6 @@ HEADER = (
     "truth",
     "mean width of the interval",
     "no interval",
-    "limits of McGraw and Wong (previous method)",
 )
 REPLAYS = (10, 20, 40)
 RATERS, RATED = (2, 3, 5), (10, 40)
@@ -50,7 +47,7 @@ def intervals(sets: int) -> Sequence[Measured]:
         case = f"{case}, {replays} replays"
         draw = functools.partial(_totals, replays, raters, between, rest)
         truth = 1.0 / (1.0 + between**2 + rest**2)
-        found.append(_measured(case, draw, _single, truth, sets, ASKED, _by_satterthwaite))
+        found.append(_measured(case, draw, _single, truth, sets, ASKED))
     for milder, rest in MARKS:
         truth = _true_kappa(milder, rest)
         for replays in REPLAYS:
@@ -68,25 +65,21 @@ def _measured(
     truth: float,
     sets: int,
     asked: float,
-    rate_before: Callable[[np.ndarray], Agreement] | None = None,
 ) -> Measured:
     random = np.random.default_rng([SEED, *case.encode()])
-    agreements, before, missing = [], [], 0
+    agreements, missing = [], 0
     for _ in range(sets):
-        ratings = draw(random)
         try:
-            agreement = rate(ratings)
+            agreement = rate(draw(random))
         except InputError:
             missing += 1
             continue
         missing += agreement.interval is None
         agreements += [agreement] if agreement.interval is not None else []
-        before += [holds(rate_before(ratings).interval, truth)] if rate_before else []
     widths = [each.interval[1] - each.interval[0] for each in agreements]
     share = share_of([holds(each.interval, truth) for each in agreements])
-    previous = share_text(share_of(before)) if before else "–"
     further = (fixed(truth, 2), fixed(float(np.mean(widths)), 2), share_text(missing / sets))
-    return Measured(case, share, len(agreements), at_least=asked, further=(*further, previous))
+    return Measured(case, share, len(agreements), at_least=asked, further=further)
 
 
 def _totals(
@@ -99,24 +92,6 @@ def _totals(
 
 def _single(totals: np.ndarray) -> Agreement:
     return intraclass_correlations(totals).single
-
-
-def _by_satterthwaite(totals: np.ndarray) -> Agreement:
-    """Return ICC(2,1) with the limits of McGraw and Wong (1996, table 7)."""
-    value, (n, k) = _single(totals).value, totals.shape
-    objects, raters = totals.mean(axis=1, keepdims=True), totals.mean(axis=0, keepdims=True)
-    rows, columns = k * np.var(objects, ddof=1), n * np.var(raters, ddof=1)
-    rest = totals - objects - raters + totals.mean()
-    error = np.sum(rest**2) / ((n - 1) * (k - 1))
-    ratio, share = columns / error, n * (1 + (k - 1) * value) - k * value
-    above = (k - 1) * (n - 1) * (k * value * ratio + share) ** 2
-    dof = above / ((n - 1) * k**2 * value**2 * ratio**2 + share**2)
-    quantile = stats.f.isf
-    first, second = float(quantile(TAIL, n - 1, dof)), float(quantile(TAIL, dof, n - 1))
-    others = k * columns + (k * n - k - n) * error
-    low = n * (rows - first * error) / (first * others + n * rows)
-    high = n * (second * rows - error) / (others + n * second * rows)
-    return Agreement(value, (float(low), float(high)))
 
 
 def _marks(replays: int, milder: float, rest: float, random: np.random.Generator) -> np.ndarray:

@@ -12,7 +12,7 @@ from rastrainer.number_text import fixed
 from rastrainer.trial.scoring import PASS_MARK, passes
 from rastrainer.trial.trial_feedback import TRAINING_TRIALS, competence_of
 from Testing.error_rates.hands import TASKS
-from Testing.error_rates.measured import Measured, share_of, share_text
+from Testing.error_rates.measured import Measured, share_of
 from Testing.error_rates.played import OBLIQUE_WAYS, stored
 
 MOST = 40.0
@@ -63,8 +63,6 @@ def _scored(case: str, ways: Sequence[str], at_most: float | None) -> Measured:
 ABORTED_HEADER = (
     "trainee, 30 trials started",
     "called competent",
-    "aborted trials not counted (previous method)",
-    "not counted, until 30 are finished (previous method)",
     "trials finished of 30, mean",
 )
 TRIALS = 30
@@ -95,22 +93,14 @@ def _trainees(
     at_least: float | None = None,
 ) -> Measured:
     """Simulate trainees; `aborting` is the share of the bad trials that they abort."""
-    counted, uncounted, until_finished, finished = [], [], [], []
+    competent, finished = [], []
     for _ in range(sets):
-        # Enough for 30 finished trials, however many are aborted.
         failed = random.random(20 * TRIALS) >= passing
         aborted = failed & (random.random(len(failed)) < aborting)
-        counted.append(_is_competent(failed[:TRIALS]))
-        uncounted.append(_is_competent(failed[:TRIALS][~aborted[:TRIALS]]))
-        until_finished.append(_is_competent(failed[~aborted][:TRIALS]))
+        competent.append(competence_of(failed[:TRIALS].tolist()).competent_at is not None)
         finished.append(np.sum(~aborted[:TRIALS]))
-    others = (share_text(share_of(each)) for each in (uncounted, until_finished))
-    further = (*others, fixed(float(np.mean(finished)), 1))
-    return Measured(case, share_of(counted), sets, at_most, at_least, further)
-
-
-def _is_competent(failed: np.ndarray) -> bool:
-    return competence_of(failed.tolist()).competent_at is not None
+    further = (fixed(float(np.mean(finished)), 1),)
+    return Measured(case, share_of(competent), sets, at_most, at_least, further)
 
 
 THROUGHPUT_HEADER = (

@@ -20,12 +20,8 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, outward_normals
 from rastrainer.head.trial_head import SkinShift
 from rastrainer.number_text import fixed
+from rastrainer.registration import surface_error
 from rastrainer.registration.surface_checks import SLIDE_LIMIT_MM, places_around
-from rastrainer.registration.surface_error import (
-    TraceGuide,
-    knowledge_of,
-    surface_target_error,
-)
 from rastrainer.registration.surface_match import match_surface
 from rastrainer.registration.target_error import COMMON_BIAS_SD_MM
 from rastrainer_simulator.statistics.intervals import rms
@@ -102,7 +98,7 @@ def play(name: str, how: str, points: int, shift_mm: float, seed: int) -> Drawn:
         return Drawn(name, how, points, shift_mm, seed, 0.0, 0.0, 0, 0.0, 0.0, REFUSED)
     targets = places_around(head.middle)
     off = np.linalg.norm(transforms.apply(match.matrix @ pose, targets) - targets, axis=1)
-    error = surface_target_error(knowledge_of(match), targets[0])
+    error = surface_error.surface_target_error(surface_error.knowledge_of(match), targets[0])
     return Drawn(
         *(name, how, points, shift_mm, seed),
         *(
@@ -120,7 +116,7 @@ def _drawn(
 ) -> np.ndarray:
     if how == STROKES:
         return draw_in_strokes(head, rows_of(name, "face"), random, points)
-    guide = TraceGuide(head, head.middle, EYE)
+    guide = surface_error.TraceGuide(head, head.middle, EYE)
     return draw_by_guidance(head, guide, int(random.integers(2**31)), points)
 
 

@@ -37,6 +37,8 @@ def test_a_kept_trace_is_drawn_and_matched_again():
     key = ("colin27", drawn_traces.STROKES, 100, 0.0, 0)
     again = drawn_traces.play(*key)
     assert again.error_mm == pytest.approx(known[key].error_mm, abs=0.05)
+    assert again.expected_mm == pytest.approx(known[key].expected_mm, rel=0.05)
+    assert again.holds == known[key].holds
     assert again.slide_mm == pytest.approx(known[key].slide_mm, rel=0.05)
 
 

@@ -6,13 +6,7 @@ import numpy as np
 import pytest
 
 from rastrainer.registration.surface_match import match_surface
-from Testing.domain.registration.traces import (
-    coarse_start,
-    error_at_center,
-    head_pose,
-    places,
-    traced,
-)
+from Testing.domain.registration import traces
 from Testing.icp_peers.compare import HEADS, NOISE_MM, WRONG_MM, compare, stored, table
 
 PAGE = Path(__file__).with_name("comparison.md")
@@ -41,15 +35,15 @@ def test_no_peer_finds_a_clearly_lower_minimum_than_a_match_on_any_head(head):
 def named_wrong_minima(name, start_sd, seeds):
     """Whether each match that is more than 3 mm off has a warning; mm and degrees on each axis."""
     head, named = HEADS[name](), []
-    rows = places(head, "face")
+    rows = traces.places(head, "face")
     for seed in seeds:
         random = np.random.default_rng([seed, 9])
-        pose = head_pose(random)
-        trace = traced(head, rows, random, pose, NOISE_MM)
+        pose = traces.head_pose(random)
+        trace = traces.traced(head, rows, random, pose, NOISE_MM)
         match = match_surface(
-            trace, head, coarse_start(random, pose, start_sd, start_sd), seed=seed
+            trace, head, traces.coarse_start(random, pose, start_sd, start_sd), seed=seed
         )
-        if error_at_center(match.matrix, pose, head) > WRONG_MM:
+        if traces.error_at_center(match.matrix, pose, head) > WRONG_MM:
             named.append(bool(match.warnings))
     return named
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,9 @@ import numpy as np
 
 import rastrainer
 from rastrainer import transforms
+from rastrainer.decision.case_table import COLUMNS, cells
+from rastrainer.decision.drill_record import DrillRecord
+from rastrainer.decision.drill_rows import drill_rows
 from rastrainer.errors import InputError
 from rastrainer.files.ply import write_point_cloud
 from rastrainer.files.point_files import write_markups
@@ -25,12 +28,12 @@ from rastrainer.files.writing import make_empty_folder, make_folder, write_json,
 from rastrainer.motion.trajectory import Trajectory, resample
 from rastrainer.motion.trial_motion import RATE_HZ
 from rastrainer.procedure.errors import true_lines
+from rastrainer.protocol import DECIDE
 from rastrainer.registration.fits import RIGID
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.study_data import StudyData
 from rastrainer.study.tidy_csv import csv_text
 from rastrainer.trial.trial_row import TrialRow
-from rastrainer_simulator.export.drill_files import tsv, write_drills
 
 BIDS_VERSION = "1.10.0"
 TRACKING = "tooltip"
@@ -61,7 +64,7 @@ def write_motion_bids(data: StudyData, folder: Path, find_trajectory: FindTrajec
         written += 1
     if not written and not data.drills:
         raise InputError("No trial of the study has a journal with a trajectory to export.")
-    write_drills(data.drills, labels, folder)
+    _write_drills(data.drills, labels, folder)
     present = {trainee for trainee, _, _ in runs} | {drill.trainee for drill in data.drills}
     _write_dataset(folder, data, {name: labels[name] for name in labels if name in present})
     return written
@@ -139,6 +142,35 @@ _EVENTS_JSON = {
         },
     },
     "fiducial": {"Description": "Label of the fiducial that was due, 1 to 15."},
+}
+
+
+def _write_drills(drills: Sequence[DrillRecord], labels: Mapping[str, str], folder: Path) -> None:
+    """Write a table for each drill, and the description of their columns at the top."""
+    for drill, row in zip(drills, drill_rows(drills), strict=True):
+        subject = f"sub-{labels[drill.trainee]}"
+        name = f"{subject}_task-{DECIDE}_acq-{drill.mode}_run-{row.number:02d}_beh.tsv"
+        make_folder(folder / subject / "beh")
+        found = [["n/a" if cell is None else str(cell) for cell in cells(c)] for c in drill.cases]
+        write_text(folder / subject / "beh" / name, tsv([list(COLUMNS), *found]))
+    if drills:
+        write_json(folder / f"task-{DECIDE}_beh.json", _DRILL_JSON)
+
+
+def tsv(rows: Sequence[Sequence[str]]) -> str:
+    """Return rows as text; a cell has no white space but spaces, and is never empty."""
+    return "".join("\t".join(" ".join(c.split()) or "n/a" for c in row) + "\n" for row in rows)
+
+
+_DRILL_JSON: dict[str, Any] = {
+    "TaskName": DECIDE,
+    "TaskDescription": "In each case, a virtual operator has registered a head to its images, with "
+    "a fault or without. The trainee checks places on the head, and proceeds, registers again or "
+    "stops.",
+    **{
+        name: {"Description": description} | ({"Units": units} if units else {})
+        for name, (description, units) in COLUMNS.items()
+    },
 }
 
 

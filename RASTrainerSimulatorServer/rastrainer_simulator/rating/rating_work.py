@@ -11,10 +11,8 @@ from rastrainer.study.ratings import RatingDomain, RatingForm, RatingStore
 class RatingWork:
     """The replays of one rater, and the marks on the forms that are filled in for each.
 
-    Every mark is stored when it is given, so that a rater can stop and resume at any time.
-
-    Attributes:
-        place: Of the present replay, from 0, in the rater's order: all that the rater learns.
+    Every mark is stored when it is given, so that a rater can stop and resume at any time. `place`
+    of the present replay, from 0, in the rater's order is all that the rater learns.
     """
 
     def __init__(

@@ -132,11 +132,9 @@ def drawn(
     title: str,
     description: str = "",
 ) -> Iterator[Chart]:
-    """Make a chart in the report's style.
+    """Make a chart in the report's style; its description, by default the title, is for the blind.
 
-    Args:
-        box: Left, right, top and bottom of the axes, from the upper left corner.
-        description: Read to the blind; by default the title.
+    The box is left, right, top and bottom of the axes, from the upper left corner.
     """
     from matplotlib import rc_context
     from matplotlib.figure import Figure
@@ -234,12 +232,10 @@ def learning_curves(
     curve: Sequence[tuple[float, float]] = (),
     span: Sequence[float] = (),
 ) -> Markup:
-    """Return the chart of every trainee's values over the trials, with the curve of all.
+    """Return the chart of every trainee's points (trial number, value), with a curve of all.
 
-    Args:
-        trainees: Pseudonym → points (trial number, value).
-        curve: A fitted curve; by default the means are connected.
-        span: Further values that the axis must include, to make charts comparable.
+    Without a fitted curve, the means are connected. The axis includes the values of `span`, which
+    makes charts comparable.
     """
     points = [point for own in trainees.values() for point in own]
     numbers = sorted({x for x, _ in points})

@@ -56,8 +56,7 @@ def started_trials(data: StudyData) -> Markup:
 class ModePassing:
     """The trials of a mode that passed, of all that count, with trials aborted after a touch.
 
-    Attributes:
-        competent: Number of the trial that showed a trainee's competence.
+    `competent` has the number of the trial that showed a trainee's competence.
     """
 
     mode: str

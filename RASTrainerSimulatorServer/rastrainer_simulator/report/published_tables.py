@@ -11,16 +11,7 @@ from markupsafe import Markup
 from rastrainer.errors import InputError
 from rastrainer.number_text import counted, fixed, significant
 from rastrainer.study.study_data import StudyData
-from rastrainer.trial.ctps import (
-    CTPS_WARNING,
-    RMSE,
-    TIME,
-    CohortScores,
-    Printed,
-    published_ctps,
-    score_cohort,
-    task_number,
-)
+from rastrainer.trial import ctps
 from rastrainer_simulator.report.mode_comparison import mean_and_sd
 from rastrainer_simulator.report.page import render
 from rastrainer_simulator.statistics.intervals import Correlation, correlation
@@ -34,17 +25,17 @@ def with_ctps(data: StudyData) -> StudyData:
     trials = []
     for trial in data.trials:
         scores, values = references[trial.mode], trial.values
-        if scores is not None and RMSE in values:
-            ctps = published_ctps(values[TIME], values[RMSE], scores.reference)
-            trial = replace(trial, values={**values, "ctps": ctps})
+        if scores is not None and ctps.RMSE in values:
+            score = ctps.published_ctps(values[ctps.TIME], values[ctps.RMSE], scores.reference)
+            trial = replace(trial, values={**values, "ctps": score})
         trials.append(trial)
     return replace(data, trials=tuple(trials))
 
 
-def cohort_scores(data: StudyData, mode: str) -> CohortScores | None:
+def cohort_scores(data: StudyData, mode: str) -> ctps.CohortScores | None:
     """Return the CTPS table of a mode, or None without a reference."""
     try:
-        return score_cohort(data.ctps_trials(mode), data.mean_ct_s.get(mode))
+        return ctps.score_cohort(data.ctps_trials(mode), data.mean_ct_s.get(mode))
     except InputError:
         return None
 
@@ -80,7 +71,7 @@ def published_tables(data: StudyData) -> Markup:
         most_columns=MAX_COLUMNS,
         color=performance_color,
         mean_and_sd=mean_and_sd,
-        warning=CTPS_WARNING,
+        warning=ctps.CTPS_WARNING,
     )
 
 
@@ -94,18 +85,20 @@ def performance_color(value: float, values: Iterable[float]) -> str:
     return "#" + "".join(f"{part:02x}" for part in mixed)
 
 
-def complexity(data: StudyData, mode: str, scores: CohortScores) -> dict[str, Correlation] | None:
+def complexity(
+    data: StudyData, mode: str, scores: ctps.CohortScores
+) -> dict[str, Correlation] | None:
     trials = data.ctps_trials(mode)
-    times = {task: [t.values[TIME] for t in trials if t.task == task] for task in scores.tasks}
+    times = {task: [t.values[ctps.TIME] for t in trials if t.task == task] for task in scores.tasks}
     values = {
-        "times": [(trial.task, trial.values[TIME]) for trial in trials],
+        "times": [(trial.task, trial.values[ctps.TIME]) for trial in trials],
         "scores": [(t.task, score) for t, score in zip(trials, scores.trials, strict=True)],
         "task_times": [(task, float(np.mean(own))) for task, own in times.items()],
         "task_scores": list(scores.tasks.items()),
     }
     found = {}
     for name, pairs in values.items():
-        numbered = [(task_number(task), value) for task, value in pairs]
+        numbered = [(ctps.task_number(task), value) for task, value in pairs]
         known = np.array([pair for pair in numbered if pair[0] is not None], dtype=float)
         try:
             found[name] = correlation(*known.reshape(-1, 2).T)
@@ -128,15 +121,15 @@ def paper_notes(data: StudyData) -> Markup:
     return render("paper_notes", notes=data.notes, rows=rows)
 
 
-def _ours(data: StudyData, printed: Printed) -> str:
+def _ours(data: StudyData, printed: ctps.Printed) -> str:
     trials = data.ctps_trials(printed.mode)
     scores = cohort_scores(data, printed.mode)
     if scores is None:
         return "–"
     if printed.quantity == "mean_ct":
-        value = float(np.mean([trial.values[TIME] for trial in trials]))
+        value = float(np.mean([trial.values[ctps.TIME] for trial in trials]))
     elif printed.quantity == "mean_rmse":
-        value = float(np.mean([trial.values[RMSE] for trial in trials]))
+        value = float(np.mean([trial.values[ctps.RMSE] for trial in trials]))
     else:
         value = getattr(scores, printed.quantity)
     if value is None:

@@ -16,6 +16,7 @@ from rastrainer.study.outcomes import MAIN_OUTCOMES, MOTION_OUTCOMES
 from rastrainer.study.study_data import StudyData
 from rastrainer.study.tidy_csv import cases_csv, trials_csv
 from rastrainer.work_progress import Progress, no_progress
+from rastrainer_simulator.report import target_errors
 from rastrainer_simulator.report.comparisons import compare_modes, compared_method
 from rastrainer_simulator.report.conclusions import answers, left_out_methods, limits, methods
 from rastrainer_simulator.report.decisions import decisions, decisions_of
@@ -25,13 +26,6 @@ from rastrainer_simulator.report.passing import passing, passing_of, started_tri
 from rastrainer_simulator.report.procedures import procedures
 from rastrainer_simulator.report.published_tables import paper_notes, published_tables, with_ctps
 from rastrainer_simulator.report.raters import raters
-from rastrainer_simulator.report.target_errors import (
-    as_conditions,
-    calibration,
-    compare_methods,
-    method_comparison,
-    shifted_skin,
-)
 from rastrainer_simulator.report.trainees import curricula, groups, learning, questionnaires
 from rastrainer_simulator.report.variation import variation
 
@@ -53,7 +47,7 @@ def report_html(
 ) -> str:
     """Return the page, in the order of its readers: answers, the paper's tables, and the rest."""
     left_out, everything = left_out_methods(data), data
-    of_methods = compare_methods(as_conditions(data))
+    of_methods = target_errors.compare_methods(target_errors.as_conditions(data))
     decided = decisions_of(data)
     data = with_ctps(with_one_method(data))
     pairs = list(itertools.combinations(sorted(data.modes), 2))
@@ -70,9 +64,9 @@ def report_html(
         ("Sources of variation", lambda: variation(data)),
         ("Passed trials", lambda: started_trials(data) + passing(data, passed) + curricula(data)),
         ("Decisions", lambda: decisions(decided)),
-        ("Target errors", lambda: calibration(data)),
-        ("Methods of registration", lambda: method_comparison(everything)),
-        ("Shifted skin", lambda: shifted_skin(everything)),
+        ("Target errors", lambda: target_errors.calibration(data)),
+        ("Methods of registration", lambda: target_errors.method_comparison(everything)),
+        ("Shifted skin", lambda: target_errors.shifted_skin(everything)),
         ("Procedures", lambda: procedures(data)),
         ("Motion", lambda: motion(data, described)),
         ("Raters and questionnaires", lambda: raters(data) + questionnaires(data)),

@@ -31,9 +31,7 @@ class Agreement:
 class IntraclassCorrelations:
     """Absolute agreement of raters who stand for others like them (two-way random effects).
 
-    Attributes:
-        single: ICC(2,1), how far a single rater can be relied on.
-        average: ICC(2,k), the same of the mean of these raters.
+    How far a single rater can be relied on is ICC(2,1); the mean of these raters, ICC(2,k).
     """
 
     objects: int

@@ -20,13 +20,7 @@ import numpy as np
 import scipy
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.statistics.intervals import (
-    CONFIDENCE,
-    Estimate,
-    coefficient,
-    noncentrality_interval,
-    small_sample_factor,
-)
+from rastrainer_simulator.statistics import intervals
 
 Name = TypeVar("Name")
 MIN_SUBJECTS = 4
@@ -51,9 +45,8 @@ class DifferenceFit:
 def is_separable(order: np.ndarray | None) -> bool:
     """Return whether the effects of the period and of the conditions can be separated.
 
-    Args:
-        order: (n,) float, by how many periods each subject did the second condition later than the
-            first: 1 for AB, -1 for BA; None if that is unknown.
+    `order`, (n,) float, is by how many periods each subject did the second condition later than the
+    first: 1 for AB, -1 for BA; None if that is unknown.
     """
     if order is None or len(order) < MIN_SUBJECTS:
         return False
@@ -89,8 +82,8 @@ class Sequences:
 
     first_first: int
     second_first: int
-    later: Estimate
-    between: Estimate | None
+    later: intervals.Estimate
+    between: intervals.Estimate | None
 
 
 def compare_sequences(
@@ -106,9 +99,9 @@ def compare_sequences(
     one, other = means[order > 0], means[order < 0]
     # One subject does not say how much they scatter.
     if min(len(one), len(other)) > 1 and np.ptp(means) > 0:
-        low, high = scipy.stats.ttest_ind(other, one).confidence_interval(CONFIDENCE)
-        between = Estimate(float(other.mean() - one.mean()), (float(low), float(high)))
-    later = coefficient(float(fit.later), float(fit.later_error), fit.dof)
+        low, high = scipy.stats.ttest_ind(other, one).confidence_interval(intervals.CONFIDENCE)
+        between = intervals.Estimate(float(other.mean() - one.mean()), (float(low), float(high)))
+    later = intervals.coefficient(float(fit.later), float(fit.later_error), fit.dof)
     return Sequences(len(one), len(other), later, between)
 
 
@@ -128,12 +121,12 @@ class PairedComparison:
     """
 
     n: int
-    difference: Estimate
+    difference: intervals.Estimate
     standard_error: float
     dof: int
     t: float
     p: float
-    effect: Estimate | None
+    effect: intervals.Estimate | None
     ranks: RankTest | None
     sequences: Sequences | None = None
 
@@ -158,13 +151,13 @@ def compare_paired(
     if sd <= 1e-12 * max(1.0, float(np.abs(differences).max())):
         raise InputError("All subjects differ by the same amount: no test can be computed.")
     t = mean / error
-    effect, factor = None, small_sample_factor(dof)
+    effect, factor = None, intervals.small_sample_factor(dof)
     if factor is not None:
-        low, high = noncentrality_interval(t, dof)
-        effect = Estimate(factor * mean / sd, (low * error / sd, high * error / sd))
+        low, high = intervals.noncentrality_interval(t, dof)
+        effect = intervals.Estimate(factor * mean / sd, (low * error / sd, high * error / sd))
     return PairedComparison(
         n=n,
-        difference=coefficient(mean, error, dof),
+        difference=intervals.coefficient(mean, error, dof),
         standard_error=error,
         dof=dof,
         t=t,
@@ -181,7 +174,7 @@ def equivalence_margin(comparison: PairedComparison) -> float:
     For every margin above it two one-sided tests at 5 % both reject (Schuirmann 1987). Whether so
     small a difference may be neglected must be decided before the study.
     """
-    quantile = float(scipy.stats.t.ppf(CONFIDENCE, comparison.dof))
+    quantile = float(scipy.stats.t.ppf(intervals.CONFIDENCE, comparison.dof))
     return abs(comparison.difference.value) + quantile * comparison.standard_error
 
 
@@ -212,11 +205,9 @@ def rank_test(differences: np.ndarray, order: np.ndarray | None) -> RankTest | N
 
 @dataclass(frozen=True)
 class RankTest:
-    """A test on ranks.
+    """A two-sided test on ranks, and the smallest p that they allow; 0 if p is approximate.
 
-    Attributes:
-        p: Two-sided; exact, or by the normal approximation for more than 100 values of two groups.
-        smallest_p: Smallest possible p for these ranks; 0 if p is approximate.
+    p is exact, but for more than 100 values of two groups by the normal approximation.
     """
 
     p: float

@@ -28,12 +28,10 @@ class NoClustersError(RASTrainerError):
 
 @dataclass(frozen=True)
 class TraineeClusters:
-    """Groups of trainees.
+    """Groups of trainees: pseudonyms and means of each cluster, the largest cluster first.
 
-    Attributes:
-        members, centers: Pseudonyms and means of each cluster, the largest cluster first.
-        dip_p: How often a population with a single peak looks at least as parted as this.
-        stability: Mean Jaccard similarity of each cluster under resampling, 0 to 1.
+    `dip_p` is how often a population with a single peak looks at least as parted as this, and the
+    stability of a cluster its mean Jaccard similarity under resampling, 0 to 1.
     """
 
     metrics: tuple[str, ...]

@@ -112,13 +112,10 @@ def cohort_trend_p(rows: np.ndarray) -> float:
 
 @dataclass(frozen=True)
 class CohortTrend:
-    """How one outcome of several trainees changes.
+    """How one outcome of several trainees, those with four trials or more, changes.
 
-    Attributes:
-        trainees: Those with four trials or more.
-        means: Of them at each trial, as far as all have come.
-        change: Mean over the trainees of the change from the first of these trials to the last;
-            None of a single one.
+    The means are at each trial, as far as all have come, and `change` is the trainees' mean change
+    from the first of these trials to the last; None of a single one.
     """
 
     trainees: int

@@ -31,9 +31,7 @@ MIN_TRAINEES = 4
 class Trials:
     """The trials of a study in which every trainee did every mode; all arrays are (n,).
 
-    Attributes:
-        numbers: Which trial of the trainee's it was, over all modes, from 1.
-        lapses: 1.0 if a touch was undone, else 0.0.
+    They are numbered over all modes, from 1; a lapse is 1.0 if a touch was undone, else 0.0.
     """
 
     trainees: np.ndarray
@@ -47,10 +45,8 @@ class Trials:
 class Variation:
     """The sources of variation of the logarithm of one outcome, with 95 % intervals.
 
-    Attributes:
-        learning: b; the n-th trial has n^−b of the first one's value.
-        lapse: What an undone touch adds to the logarithm; None if there was none.
-        modes: What each mode adds to the logarithm against the first mode, from the second on.
+    The learning exponent is b: the n-th trial has n^−b of the first trial's value. An undone touch
+    adds `lapse` to the logarithm (None without any), and each mode after the first adds its own.
     """
 
     learning: Estimate

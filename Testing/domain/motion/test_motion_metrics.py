@@ -5,12 +5,7 @@ import pytest
 import scipy.signal
 
 from rastrainer.errors import InputError
-from rastrainer.motion.trajectory import (
-    log_dimensionless_jerk,
-    low_pass,
-    path_length,
-    sparc,
-)
+from rastrainer.motion import trajectory
 from rastrainer.motion.trial_motion import effective_throughput
 
 RATE_HZ = 100.0
@@ -28,23 +23,25 @@ from x = 540.2 to 227.8 and back."""
 
 def test_sparc_matches_its_authors_own_example():
     """Balasubramanian et al. 2015, their program's example: fc 10 Hz, threshold 0.05, padding 4."""
-    assert sparc(BELL, RATE_HZ) == pytest.approx(-1.41403, abs=5e-6)
+    assert trajectory.sparc(BELL, RATE_HZ) == pytest.approx(-1.41403, abs=5e-6)
 
 
 def test_log_dimensionless_jerk_matches_its_authors_own_example():
     """Balasubramanian et al. 2015, their program's examples, with and without the logarithm."""
-    assert log_dimensionless_jerk(BELL, RATE_HZ) == pytest.approx(-5.81636, abs=5e-6)
-    assert np.exp(-log_dimensionless_jerk(BELL, RATE_HZ)) == pytest.approx(335.74684, abs=5e-6)
+    assert trajectory.log_dimensionless_jerk(BELL, RATE_HZ) == pytest.approx(-5.81636, abs=5e-6)
+    assert np.exp(-trajectory.log_dimensionless_jerk(BELL, RATE_HZ)) == pytest.approx(
+        335.74684, abs=5e-6
+    )
 
 
 def test_log_dimensionless_jerk_of_a_minimum_jerk_reach_is_the_analytical_one():
     """From Flash and Hogan 1985: 720 over the square of the peak speed 15/8 gives −ln 204.8."""
     t = np.linspace(0, 1, 20_001)
     speed = 30 * t**2 - 60 * t**3 + 30 * t**4
-    assert log_dimensionless_jerk(speed, 20_000) == pytest.approx(-5.322, abs=1e-3)
+    assert trajectory.log_dimensionless_jerk(speed, 20_000) == pytest.approx(-5.322, abs=1e-3)
 
 
-@pytest.mark.parametrize("smoothness", [sparc, log_dimensionless_jerk])
+@pytest.mark.parametrize("smoothness", [trajectory.sparc, trajectory.log_dimensionless_jerk])
 def test_smoothness_does_not_depend_on_size_and_falls_with_submovements(smoothness):
     halting = BELL * (1 + 0.5 * np.sin(np.linspace(0, 40, len(BELL))))
     assert smoothness(BELL * 7, RATE_HZ) == pytest.approx(smoothness(BELL, RATE_HZ))
@@ -53,7 +50,7 @@ def test_smoothness_does_not_depend_on_size_and_falls_with_submovements(smoothne
 
 @pytest.mark.parametrize("speed", [np.zeros(50), np.ones(3), np.full(50, np.nan)])
 def test_smoothness_without_movement_is_refused(speed):
-    for smoothness in (sparc, log_dimensionless_jerk):
+    for smoothness in (trajectory.sparc, trajectory.log_dimensionless_jerk):
         with pytest.raises(InputError, match="at least four samples"):
             smoothness(speed, RATE_HZ)
 
@@ -65,7 +62,7 @@ def test_low_pass_agrees_with_scipys_zero_phase_butterworth():
     expected = scipy.signal.sosfiltfilt(
         scipy.signal.butter(2, 6.0, fs=RATE_HZ, output="sos"), values, axis=0
     )
-    difference = low_pass(values, RATE_HZ, 6.0) - expected
+    difference = trajectory.low_pass(values, RATE_HZ, 6.0) - expected
     assert np.abs(difference[50:-50]).max() < 0.05
 
 
@@ -73,9 +70,9 @@ def test_path_length_and_efficiency():
     # A helix of radius r and pitch p is 2π√(r² + (p/2π)²) long a turn (do Carmo 1976, § 1-3).
     turn = np.linspace(0.0, 2.0 * np.pi, 20_001)
     helix = np.column_stack([40.0 * np.cos(turn), 40.0 * np.sin(turn), 30.0 * turn])
-    assert path_length(helix) == pytest.approx(2.0 * np.pi * 50.0, rel=1e-7)
+    assert trajectory.path_length(helix) == pytest.approx(2.0 * np.pi * 50.0, rel=1e-7)
     square = np.array([[0, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0]], dtype=float)
-    assert path_length(square) == 30.0
+    assert trajectory.path_length(square) == 30.0
 
 
 def test_throughput_follows_iso_9241_411_along_the_task_axis_about_the_targets():

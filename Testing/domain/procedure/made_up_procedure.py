@@ -6,14 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.procedure.plan import (
-    Checkpoint,
-    NoGoStructure,
-    Procedure,
-    ProcedureKind,
-    ProcedureMeshes,
-    ProcedureTrajectory,
-)
+from rastrainer.procedure import plan
 from rastrainer.scenario.writer import new_folder, write_scenario
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
 
@@ -40,7 +33,7 @@ def vessel(center=VESSEL_CENTER, radius=VESSEL_MM):
 def trajectory(
     name="Left", entry=(0.0, 0.0, 90.0), target=(0.0, 0.0, 20.0), diameter=2.0, safety=3.0
 ):
-    return ProcedureTrajectory(name, np.array(entry), np.array(target), diameter, safety)
+    return plan.ProcedureTrajectory(name, np.array(entry), np.array(target), diameter, safety)
 
 
 def made_up_procedure(*trajectories, **changes):
@@ -48,20 +41,20 @@ def made_up_procedure(*trajectories, **changes):
         trajectory(),
         trajectory("Right", (-60.0, 0.0, 67.08), (-15.0, 10.0, 0.0)),
     )
-    procedure = Procedure(
+    procedure = plan.Procedure(
         name="dbs-1",
         title="Two leads",
-        kind=ProcedureKind.DBS,
+        kind=plan.ProcedureKind.DBS,
         source="made up",
         trajectories=both,
-        no_go=(NoGoStructure("Vessel", Path("no-go/vessel.ply")),),
-        checkpoints=(Checkpoint("Vertex", np.array([0.0, 0.0, 90.0])),),
+        no_go=(plan.NoGoStructure("Vessel", Path("no-go/vessel.ply")),),
+        checkpoints=(plan.Checkpoint("Vertex", np.array([0.0, 0.0, 90.0])),),
     )
     return replace(procedure, **changes)
 
 
 def made_up_meshes(**no_go):
-    return ProcedureMeshes(shell(), no_go or {"Vessel": vessel()})
+    return plan.ProcedureMeshes(shell(), no_go or {"Vessel": vessel()})
 
 
 def write_planned(folder, *procedures):

@@ -4,12 +4,7 @@ import numpy as np
 import pytest
 
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.procedure.checks import (
-    check_procedure,
-    distances_to_no_go,
-    measure_lines,
-    planned_bone,
-)
+from rastrainer.procedure import checks
 from rastrainer.procedure.plan import Checkpoint, ProcedureMeshes
 from Testing.domain.procedure.made_up_procedure import (
     VESSEL_MM,
@@ -25,7 +20,7 @@ HEAD = ball_head()
 
 def wrong(*trajectories, meshes=None, **changes):
     procedure = made_up_procedure(*trajectories, **changes)
-    return check_procedure(procedure, HEAD, meshes or made_up_meshes())[1]
+    return checks.check_procedure(procedure, HEAD, meshes or made_up_meshes())[1]
 
 
 def test_a_good_plan_has_no_errors():
@@ -69,7 +64,7 @@ def test_a_line_that_leaves_the_head_is_reported_with_the_distance_before_its_ta
         np.concatenate([left, right]), np.concatenate([triangles, triangles + len(left)])
     )
     procedure = made_up_procedure(trajectory(entry=(-90, 0, 0), target=(30, 0, 0)))
-    assert check_procedure(procedure, two, made_up_meshes())[1] == [
+    assert checks.check_procedure(procedure, two, made_up_meshes())[1] == [
         "Two leads: Left leaves the head 40 mm before its target; it must stay within it."
     ]
 
@@ -109,13 +104,13 @@ def test_a_checkpoint_off_the_skin_is_named():
 
 def test_the_distance_to_a_structure_is_measured_between_the_surfaces():
     line = trajectory(entry=(10, 0, 89.4), target=(10, 0, -20), diameter=3.0)
-    distances = distances_to_no_go(line, made_up_meshes())
+    distances = checks.distances_to_no_go(line, made_up_meshes())
     assert distances == pytest.approx({"Vessel": 20.0 - VESSEL_MM - 1.5}, abs=0.05)
 
 
 @pytest.mark.parametrize("height", [97.0, 90.0, 80.0])
 def test_planned_bone_is_measured_from_the_entry_wherever_it_lies(height):
-    bone = planned_bone(trajectory(entry=(0, 0, height)), shell())
+    bone = checks.planned_bone(trajectory(entry=(0, 0, height)), shell())
     assert bone == pytest.approx((height - 83.0, height - 76.0))
 
 
@@ -124,12 +119,12 @@ def test_a_line_is_measured_by_length_angle_and_its_nearest_structure_and_line()
     other = trajectory("Other", (40, 0, 80.6), (2.5, 0, 20), diameter=3.0)
     outside = trajectory("Outside", (0, 0, 200), (0, 0, 150))
     procedure = made_up_procedure(one, other, outside)
-    measured = {each.name: each for each in measure_lines(procedure, made_up_meshes())}
+    measured = {each.name: each for each in checks.measure_lines(procedure, made_up_meshes())}
     assert measured["One"].length_mm == pytest.approx(70.0)
     assert measured["One"].skull_angle_deg == pytest.approx(0.0, abs=3.0)
     assert measured["One"].nearest_no_go == "Vessel"
     assert measured["One"].nearest_line == "Other"
     assert measured["One"].nearest_line_mm == pytest.approx(2.5 - 2.5, abs=0.1)
     assert measured["Outside"].skull_angle_deg is None
-    (alone,) = measure_lines(made_up_procedure(one), made_up_meshes())
+    (alone,) = checks.measure_lines(made_up_procedure(one), made_up_meshes())
     assert (alone.nearest_line, alone.nearest_line_mm) == ("", None)

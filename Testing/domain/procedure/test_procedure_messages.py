@@ -4,13 +4,7 @@ import json
 
 import numpy as np
 
-from rastrainer import transforms
-from rastrainer.commands import (
-    CommandName,
-    check_arguments,
-    decode_answer_object,
-    decode_json_object,
-)
+from rastrainer import commands, transforms
 from rastrainer.json_checks import MAX_MESSAGE_VALUES, MAX_RECORD_VALUES
 from rastrainer.json_records import record_from_json
 from rastrainer.procedure.errors import analyze_procedure
@@ -85,7 +79,7 @@ def test_slicer_accepts_the_record_of_the_longest_procedure_and_a_study_stores_i
     record = largest_record()
     text = json.dumps(record)
     assert MAX_MESSAGE_VALUES < text.count(",") < MAX_RECORD_VALUES
-    read = record_from_json(TrialRecord, decode_answer_object(text)).procedure
+    read = record_from_json(TrialRecord, commands.decode_answer_object(text)).procedure
     assert len(read.attempts) == MAX_ATTEMPTS
     assert sum(len(attempt.checkpoints) for attempt in read.attempts) == MAX_TOUCHED_CHECKPOINTS
     assert len(read.instruments) == MAX_TRAJECTORIES
@@ -106,5 +100,7 @@ def test_the_simulator_accepts_the_score_of_the_longest_procedure():
         "residualsMm": [DIGITS] * 15,
     }
     text = json.dumps({"trialId": make_record()["trialId"], "score": 50.0, "details": details})
-    checked = check_arguments(CommandName.TRIAL_SCORED, decode_json_object(text))
+    checked = commands.check_arguments(
+        commands.CommandName.TRIAL_SCORED, commands.decode_json_object(text)
+    )
     assert len(checked["details"]["procedure"]["trajectories"]) == MAX_TRAJECTORIES

@@ -8,12 +8,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import write_head_mesh
-from rastrainer.procedure.plan import (
-    MAX_NO_GO_TRIANGLES,
-    ProcedureKind,
-    procedure_json,
-    read_procedure_meshes,
-)
+from rastrainer.procedure import plan
 from rastrainer.scenario.library import pack, unpack
 from rastrainer.scenario.scenario import load_scenario
 from Testing.domain.procedure.made_up_procedure import (
@@ -41,13 +36,13 @@ def test_a_written_procedure_is_read_again(folder):
     scenario = load_scenario(folder)
     (procedure,) = scenario.procedures
     assert scenario.procedure("dbs-1") is procedure
-    assert procedure.kind is ProcedureKind.DBS
-    assert procedure_json(procedure) == procedure_json(made_up_procedure())
+    assert procedure.kind is plan.ProcedureKind.DBS
+    assert plan.procedure_json(procedure) == plan.procedure_json(made_up_procedure())
     left = procedure.trajectories[0]
     assert left.length_mm == 70.0
     assert left.direction.tolist() == [0.0, 0.0, -1.0]
     assert not left.entry_ras.flags.writeable
-    meshes = read_procedure_meshes(procedure, scenario.skull.file)
+    meshes = plan.read_procedure_meshes(procedure, scenario.skull.file)
     assert len(meshes.skull.triangles) == len(shell().triangles)
     assert np.allclose(meshes.no_go["Vessel"].vertices, vessel().vertices, atol=1e-4)
 
@@ -56,7 +51,7 @@ def test_a_package_keeps_the_procedures(folder, tmp_path):
     package = pack(folder, tmp_path / "planned.zip")
     unpacked = unpack(package, tmp_path / "library")
     before, after = load_scenario(folder), load_scenario(unpacked)
-    assert procedure_json(after.procedures[0]) == procedure_json(before.procedures[0])
+    assert plan.procedure_json(after.procedures[0]) == plan.procedure_json(before.procedures[0])
     assert (unpacked / "no-go/vessel.ply").read_bytes() == (
         folder / "no-go/vessel.ply"
     ).read_bytes()
@@ -140,7 +135,7 @@ def test_the_hash_of_a_procedure_covers_what_a_trial_depends_on(folder):
 
 
 def tiled(mesh):
-    copies = MAX_NO_GO_TRIANGLES // len(mesh.triangles) + 1
+    copies = plan.MAX_NO_GO_TRIANGLES // len(mesh.triangles) + 1
     return replace(mesh, triangles=np.tile(mesh.triangles, (copies, 1)))
 
 
@@ -153,7 +148,7 @@ def opened(mesh):
     [
         ("no-go/vessel.ply", None, r"The mesh .*vessel.ply does not exist"),
         ("no-go/vessel.ply", opened(vessel()), r"no-go structure .*vessel.ply is not closed"),
-        ("no-go/vessel.ply", tiled(vessel()), f"triangles; it may have {MAX_NO_GO_TRIANGLES}"),
+        ("no-go/vessel.ply", tiled(vessel()), f"triangles; it may have {plan.MAX_NO_GO_TRIANGLES}"),
         ("skull.ply", opened(shell()), r"The skull .*skull.ply is not closed"),
     ],
     ids=["missing", "open", "huge", "open skull"],
@@ -164,4 +159,4 @@ def test_an_unusable_mesh_is_named(folder, name, mesh, sentence):
         write_head_mesh(folder / name, mesh)
     scenario = load_scenario(folder)
     with pytest.raises(InputError, match=sentence):
-        read_procedure_meshes(scenario.procedures[0], scenario.skull.file)
+        plan.read_procedure_meshes(scenario.procedures[0], scenario.skull.file)

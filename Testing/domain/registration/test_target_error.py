@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.registration.fits import KINDS, fit
+from rastrainer.registration.fits import fit
 from rastrainer.registration.localization_error import error_along_surface, isotropic_error
 from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import expected_tre, target_error, true_errors
@@ -61,7 +61,7 @@ def test_rigid_expectation_is_fitzpatricks_equation_46():
     np.testing.assert_allclose(without_offset, expected, rtol=1e-10)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", ["similarity", "affine"])
 def test_expectation_agrees_with_simulation_off_the_origin_and_tilted(kind):
     fixed = fiducials(8)
     target = np.array([70, -50, 40]) + fixed.mean(axis=0)
@@ -77,9 +77,7 @@ def test_expectation_agrees_with_simulation_off_the_origin_and_tilted(kind):
 @pytest.mark.parametrize(
     ("kind", "count", "offset"),
     [
-        ("rigid", 15, [120, -80, 60]),
         ("rigid", 3, [40, 20, 10]),
-        ("similarity", 8, [90, 0, 60]),
         ("affine", 8, [40, -60, 20]),
     ],
 )
@@ -111,7 +109,9 @@ def slipping(normals, along, across, rng):
 
 
 @pytest.mark.parametrize("sets", [40, pytest.param(100, marks=pytest.mark.soak)])
-@pytest.mark.parametrize(("along", "across"), [(0.8, 0.2), (0.2, 0.9)])
+@pytest.mark.parametrize(
+    ("along", "across"), [(0.8, 0.2), pytest.param(0.2, 0.9, marks=pytest.mark.soak)]
+)
 def test_the_parts_of_the_localization_error_along_and_across_the_skin_are_recovered(
     along, across, sets
 ):
@@ -128,8 +128,8 @@ def test_the_parts_of_the_localization_error_along_and_across_the_skin_are_recov
     np.testing.assert_allclose(np.sqrt(variances), [across, along], rtol=0.1)
 
 
-@pytest.mark.parametrize("sets", [40, pytest.param(120, marks=pytest.mark.soak)])
-@pytest.mark.parametrize("kind", ["rigid", "affine"])
+@pytest.mark.parametrize("sets", [20, pytest.param(120, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("kind", ["rigid", pytest.param("affine", marks=pytest.mark.soak)])
 def test_the_interval_holds_the_true_error_of_touches_that_slip_along_the_skin(kind, sets):
     rng = np.random.default_rng(6)
     target = np.zeros(3)

@@ -106,7 +106,7 @@ def test_equal_errors_expect_the_fre_of_sibsons_formula():
     assert found == pytest.approx(1.5 * np.sqrt(1 - 2 / 12), rel=1e-9)
 
 
-@pytest.mark.parametrize("sets", [100, pytest.param(400, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("sets", [50, pytest.param(400, marks=pytest.mark.soak)])
 def test_misfit_to_the_stated_errors_is_seldom_a_false_alarm(sets):
     stated = [misfit_probability(*weighted_registration(seed)) for seed in range(sets)]
     # Give or take three standard errors of so many sets.

@@ -76,23 +76,18 @@ def test_a_failure_leaves_no_folder_behind(tmp_path):
     ("field", "value", "sentence"),
     [
         ("targets", [{"name": "x", "positionRas": [1, 2]}], r"targets\[0\].positionRas must be"),
-        ("targets", {}, "targets must be a list"),
-        ("trajectory", [], "trajectory must be a JSON object"),
         (
             "trajectory",
             {"name": "x", "entryRas": [1, 2, 3], "targetRas": [1, 2, 3]},
             "entryRas must be at least 1 mm from",
         ),
         ("skull", {"file": "../x.ply", "kind": "bone"}, "skull.file must be the path"),
-        ("skull", {"file": "skull.ply", "kind": "gum"}, "skull.kind must be one of bone"),
-        ("volume", "volume.nrrd", "volume must be a JSON object"),
         (
             "volume",
             {"file": "../volume.nrrd", "window": 100, "level": 50},
             "volume.file must be the path of a file inside the scenario's folder",
         ),
         ("volume", {"file": "v.nrrd", "window": 0, "level": 5}, "volume.window must be a number"),
-        ("volume", {"file": "v.nrrd", "window": 9, "level": "x"}, "volume.level must be a number"),
     ],
 )
 def test_an_invalid_plan_or_skull_is_named(tmp_path, field, value, sentence):
@@ -155,10 +150,8 @@ def test_moving_the_robot_base_moves_everything_else_the_opposite_way():
     ("content", "sentence"),
     [
         ({"chair": {}}, 'there is no "chair"; use head, perturbation'),
-        ({"head": {"centerMm": [1, 2]}}, "head.centerMm must be a list of 3"),
         ({"head": {"yawDeg": 999}}, "head.yawDeg must be a number"),
         ({"perturbation": {"tiltDeg": 90}}, "perturbation.tiltDeg must be a number"),
-        ({"robotBaseMm": [0, 0, 0]}, "robotBaseMm must be a list of 2"),
     ],
 )
 def test_an_invalid_setup_is_refused_with_a_message(tmp_path, content, sentence):

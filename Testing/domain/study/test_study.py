@@ -3,6 +3,7 @@
 import csv
 import json
 import uuid
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,8 @@ from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.record import TrialRecord
 from Testing.domain.trial.trial_records import gentle_score, make_record
 
+TRUTH = RevealedTruth(tuple(np.eye(4).ravel().tolist()), 0.5)
+
 
 @pytest.fixture
 def results(touched_head):
@@ -42,9 +45,7 @@ def test_outcomes_are_those_of_one_task_and_mode_with_the_latest_score(study, re
     study.add_trial(record(2, trainee="b", completionTimeS=90.0))
     study.add_trial(record(3, mode="hmd"))
     study.add_trial(record(4, task="task-2"))
-    study.add_results(
-        record(1)["trialId"], truth=RevealedTruth(tuple(np.eye(4).ravel().tolist()), 0.5)
-    )
+    study.add_results(record(1)["trialId"], truth=TRUTH)
     better = gentle_score(50.0, 0.2)
     study.add_results(record(1)["trialId"], score=better)
     # Of others, nothing is read but the numbers: there may be thousands.
@@ -99,11 +100,11 @@ def test_only_changed_trials_are_read_again(study, study_place, monkeypatch):
     study.history("T-001")
     assert read == []
     with Study.open(study_place) as other:
-        other.add_results(trials[1], truth=RevealedTruth(tuple([float(n) for n in range(16)]), 1.5))
+        other.add_results(trials[1], truth=TRUTH)
         other.add_results(trials[0], score=gentle_score(50.0, 0.2))
     stored = {trial.record.trial_id: trial for trial in study.history("T-001")}
     assert sorted(read) == trials
-    assert stored[trials[1]].true_tre_mm == 1.5
+    assert stored[trials[1]].true_tre_mm == 0.5
     assert stored[trials[0]].score == gentle_score(50.0, 0.2)
     study.delete_trainee("T-001")
     study.create_trainee("T-001")
@@ -194,21 +195,18 @@ def test_the_truth_is_stored_once(study):
     first, second = record(1), record(2)
     study.add_trial(first)
     study.add_trial(second)
-    matrix = tuple(map(float, np.eye(4).ravel()))
-    study.add_results(first["trialId"], truth=RevealedTruth(matrix, 0.75))
-    study.add_results(first["trialId"], truth=RevealedTruth(matrix, 9.0))
+    study.add_results(first["trialId"], truth=TRUTH)
+    study.add_results(first["trialId"], truth=replace(TRUTH, true_tre_mm=9.0))
     stored = study.trial(first["trialId"])
-    assert (stored.true_tre_mm, stored.truth.head_to_world) == (0.75, matrix)
+    assert stored.truth == TRUTH
     assert [r.trial_id for r in study.unrevealed()] == [second["trialId"]]
     with pytest.raises(InputError, match="finite"):
-        study.add_results(second["trialId"], truth=RevealedTruth(matrix, float("nan")))
+        study.add_results(second["trialId"], truth=replace(TRUTH, true_tre_mm=float("nan")))
 
 
 def test_deleting_a_trainee_leaves_no_row_and_no_byte_of_theirs(study, study_place, results):
     study.add_trial(record(1, trainee="Vanishing Heron"), *results)
-    study.add_results(
-        record(1)["trialId"], truth=RevealedTruth(tuple(np.eye(4).ravel().tolist()), 0.5)
-    )
+    study.add_results(record(1)["trialId"], truth=TRUTH)
     study.add_trial(record(2, trainee="staying"), *results)
     assert study.delete_trainee("Vanishing Heron") == 1
     if isinstance(study_place, Path):
@@ -256,9 +254,7 @@ def test_everything_about_one_trainee_is_exported_and_nothing_about_others(
 ):
     first = record(1, trainee="a", motion={"path_mm": 2500.5})
     study.add_trial(first, *results)
-    study.add_results(
-        record(1)["trialId"], truth=RevealedTruth(tuple(np.eye(4).ravel().tolist()), 0.5)
-    )
+    study.add_results(record(1)["trialId"], truth=TRUTH)
     study.add_trial(record(2, trainee="b"))
     assert export_trainee(study, "a", tmp_path / "a.json") == 1
     text = (tmp_path / "a.json").read_text()

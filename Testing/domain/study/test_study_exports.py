@@ -1,7 +1,5 @@
 """Exports of answers, scores and versions as tables, as xAPI and in the report."""
 
-import csv
-import io
 import json
 import uuid
 from dataclasses import replace
@@ -14,6 +12,7 @@ from rastrainer.study.tidy_csv import answers_csv, scores_csv, trials_csv
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.export.xapi import HOME_PAGE, statements
 from Testing.domain.study.played_study import study_with_trials
+from Testing.domain.study.study_content import table_of
 
 
 @pytest.fixture(scope="module")
@@ -23,12 +22,8 @@ def data(tmp_path_factory):
     return read_study_data(path)
 
 
-def rows_of(text):
-    return list(csv.DictReader(io.StringIO(text)))
-
-
 def test_every_answer_and_every_score_is_a_row(data):
-    items, scores = rows_of(answers_csv(data)), rows_of(scores_csv(data))
+    items, scores = table_of(answers_csv(data)), table_of(scores_csv(data))
     before = [row for row in items if row["step"] == "hmd/before/ssq"]
     assert [row["item"] for row in before] == [item.name for item in SSQ.items]
     assert {(row["trainee"], row["mode"], row["answer"]) for row in before} == {("A", "hmd", "1")}
@@ -55,7 +50,7 @@ def test_every_answered_questionnaire_is_a_statement_with_its_scores(data):
 
 def test_a_score_is_exported_with_its_parts(data):
     with_score = [trial for trial in data.trials if trial.score_version]
-    rows = [row for row in rows_of(trials_csv(data.trials)) if row["score_version"]]
+    rows = [row for row in table_of(trials_csv(data.trials)) if row["score_version"]]
     assert len(rows) == len(with_score) > 0
     for trial, row in zip(with_score, rows, strict=True):
         assert float(row["score_tre_mm"]) == trial.values["score_tre_mm"]
@@ -110,7 +105,7 @@ def test_trainees_without_consent_are_left_out_of_exports_and_counted(tmp_path, 
     assert main([str(word) for word in words]) == 0
     assert "did not consent to research: 1 trainees" in capsys.readouterr().out
     for name in ("trials", "touches", "scores", "answers"):
-        rows = rows_of((tmp_path / "out" / "csv" / f"{name}.csv").read_text())
+        rows = table_of((tmp_path / "out" / "csv" / f"{name}.csv").read_text())
         assert {row["trainee"] for row in rows} <= {"B"}
     content = json.loads((tmp_path / "out" / "xapi" / "statements.json").read_text())
     assert {statement["actor"]["account"]["name"] for statement in content} == {"B"}

@@ -297,17 +297,9 @@ def test_a_database_that_is_no_study_or_was_changed_is_refused_and_left_as_it_is
     assert postgres_server.execute(dump, place.database) == before
 
 
-@pytest.mark.parametrize(
-    "sql",
-    [
-        "UPDATE trials SET record_json = '[1]'",
-        """UPDATE trials SET record_json = replace(record_json, '{', '{"a": NaN, ')""",
-        "UPDATE results SET result_json = '{}'",
-    ],
-)
-def test_a_foreign_value_is_reported(sql, place, postgres_server):
+def test_a_foreign_value_is_reported(place, postgres_server):
     study_with_trials(place)
-    postgres_server.execute(sql, place.database)
+    postgres_server.execute("UPDATE results SET result_json = '{}'", place.database)
     with Study.open(place) as study, pytest.raises(InputError, match="did not write"):
         study.history("A")
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rastrainer.errors import InputError
@@ -145,6 +145,7 @@ def test_the_score_sentences_state_the_common_bias_and_its_limit():
     assert "common" not in accuracy(traced)
 
 
+@settings(max_examples=40)
 @given(
     st.floats(20, 1000),
     st.floats(0.05, 5),

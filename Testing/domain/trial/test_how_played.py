@@ -5,15 +5,7 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.journal.entries import (
-    CommandDone,
-    Continued,
-    DisplayReport,
-    Line,
-    PlayingSession,
-    Reach,
-    Stamp,
-)
+from rastrainer.journal import entries
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import Phase
 from rastrainer.trial.how_played import HowPlayed, PlayRecording
@@ -21,25 +13,25 @@ from Testing.journal_lines import UTC, at, header, phase, sample
 
 
 def timed(entry, sim_time_s, monotonic_s):
-    return Line(Stamp(1, sim_time_s, monotonic_s, UTC), entry)
+    return entries.Line(entries.Stamp(1, sim_time_s, monotonic_s, UTC), entry)
 
 
-def played(*entries) -> HowPlayed:
+def played(*given) -> HowPlayed:
     """Return how a trial was played whose entries follow each other by a second."""
     recording = PlayRecording()
-    for number, entry in enumerate(entries):
-        recording.add(entry if isinstance(entry, Line) else at(float(number), entry))
+    for number, entry in enumerate(given):
+        recording.add(entry if isinstance(entry, entries.Line) else at(float(number), entry))
     return recording.played()
 
 
 def session(speed=1.0, is_seeded=False):
-    return header(session=PlayingSession(speed, is_seeded))
+    return header(session=entries.PlayingSession(speed, is_seeded))
 
 
 def continued(speed=1.0, phase=Phase.PAUSED):
-    return Continued(
+    return entries.Continued(
         since_s=0.0,
-        session=PlayingSession(speed, False),
+        session=entries.PlayingSession(speed, False),
         camera="far",
         phase=phase,
         kept=0,
@@ -53,10 +45,10 @@ def moved(x_mm, moved_by):
 
 
 def start(seed=None):
-    return CommandDone("StartTask", {"seed": seed}, "anna")
+    return entries.CommandDone("StartTask", {"seed": seed}, "anna")
 
 
-REACH = Reach(False, "")
+REACH = entries.Reach(False, "")
 
 
 def test_the_way_is_shared_among_what_moved_the_tip():
@@ -102,7 +94,9 @@ def test_a_long_wait_does_not_hide_that_the_simulator_was_held_up(waits, then, p
 
 
 def test_pauses_and_views_are_counted():
-    views = [DisplayReport(name, "", 60.0, 1, 0) for name in ("desktop", "headset", "headset")]
+    views = [
+        entries.DisplayReport(name, "", 60.0, 1, 0) for name in ("desktop", "headset", "headset")
+    ]
     pause = phase(Phase.PAUSED)
     found = played(session(), pause, phase(Phase.RUNNING), pause, *views)
     assert (found.pauses, found.view_s) == (2, {"desktop": 1, "headset": 2})

@@ -6,7 +6,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rastrainer import transforms
@@ -15,25 +15,15 @@ from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.procedure.plan import MAX_SAFETY_MM
 from rastrainer.trial import procedure_outcome as scoring
-from rastrainer.trial.procedure_outcome import (
-    ANGLE_LIMIT_DEG,
-    ENTRY_LIMIT_MM,
-    PLUNGE_LIMIT_MM,
-    TARGET_LIMIT_MM,
-    ProcedureMeasures,
-    ProcedureScore,
-    reference_duration_s,
-    score_procedure,
-)
 from Testing.domain.procedure.made_up_procedure import made_up_meshes, made_up_procedure, trajectory
 from Testing.domain.procedure.procedure_records import recorded
 
 references = st.sampled_from([120.0, 300.0, 900.0])
 LIMITS = {
-    "worst_target_mm": TARGET_LIMIT_MM,
-    "worst_entry_mm": ENTRY_LIMIT_MM,
-    "worst_angle_deg": ANGLE_LIMIT_DEG,
-    "plunge_mm": PLUNGE_LIMIT_MM,
+    "worst_target_mm": scoring.TARGET_LIMIT_MM,
+    "worst_entry_mm": scoring.ENTRY_LIMIT_MM,
+    "worst_angle_deg": scoring.ANGLE_LIMIT_DEG,
+    "plunge_mm": scoring.PLUNGE_LIMIT_MM,
     "hits": 0,
     "missed_bone": 0,
 }
@@ -46,7 +36,7 @@ def procedures(draw, target=1000.0, entry=1000.0, angle=180.0, plunge=200.0, cou
     """Any procedure within limits; a root mean square is at most the largest value."""
     worst = [draw(st.floats(0.0, limit)) for limit in (target, entry, angle)]
     target_mm, entry_mm, angle_deg = (draw(st.floats(0.0, value)) for value in worst)
-    return ProcedureMeasures(
+    return scoring.ProcedureMeasures(
         duration_s=draw(st.floats(1.0, 86_400.0)),
         target_mm=target_mm,
         worst_target_mm=worst[0],
@@ -61,13 +51,20 @@ def procedures(draw, target=1000.0, entry=1000.0, angle=180.0, plunge=200.0, cou
     )
 
 
-acceptable = procedures(TARGET_LIMIT_MM, ENTRY_LIMIT_MM, ANGLE_LIMIT_DEG, PLUNGE_LIMIT_MM, counts=0)
+acceptable = procedures(
+    scoring.TARGET_LIMIT_MM,
+    scoring.ENTRY_LIMIT_MM,
+    scoring.ANGLE_LIMIT_DEG,
+    scoring.PLUNGE_LIMIT_MM,
+    counts=0,
+)
 
 
 def score(measures, reference):
-    return score_procedure(measures, reference).score
+    return scoring.score_procedure(measures, reference).score
 
 
+@settings(max_examples=40)
 @given(st.sampled_from(SCORED), procedures(), st.floats(1e-3, 1e3), references)
 def test_faster_more_accurate_and_gentler_are_each_strictly_better(
     measure, measures, step, reference
@@ -76,28 +73,30 @@ def test_faster_more_accurate_and_gentler_are_each_strictly_better(
     assert score(measures, reference) > score(worse, reference)
 
 
+@settings(max_examples=40)
 @given(st.sampled_from([*LIMITS]), procedures(), acceptable, st.floats(0.0, 100.0), references)
 def test_exceeding_a_limit_cannot_be_compensated(measure, measures, other, excess, reference):
     limit = LIMITS[measure]
     beyond = 1 + int(excess) if limit == 0 else math.nextafter(limit, math.inf) + excess
-    worse = score_procedure(replace(measures, **{measure: beyond}), reference)
+    worse = scoring.score_procedure(replace(measures, **{measure: beyond}), reference)
     assert not worse.acceptable
-    best = score_procedure(other, reference)
+    best = scoring.score_procedure(other, reference)
     assert best.acceptable
     assert worse.score < best.score
 
 
+@settings(max_examples=40)
 @given(procedures(), references)
 def test_a_score_survives_json_with_its_version(measures, reference):
-    first = score_procedure(measures, reference)
+    first = scoring.score_procedure(measures, reference)
     assert 0.0 < first.score <= 100.0
-    again = record_from_json(ProcedureScore, json.loads(json.dumps(record_to_json(first))))
+    again = record_from_json(scoring.ProcedureScore, json.loads(json.dumps(record_to_json(first))))
     assert again == first
     assert again.version == scoring.PROCEDURE_SCORE_VERSION
     assert score(again.measures, again.reference_s) == first.score
 
 
-PERFECT = ProcedureMeasures(100.0, *([0.0] * 8), 0, 0)
+PERFECT = scoring.ProcedureMeasures(100.0, *([0.0] * 8), 0, 0)
 
 
 def test_scores_of_version_1_do_not_change():
@@ -122,14 +121,14 @@ def test_scores_of_version_1_do_not_change():
 
 @pytest.mark.parametrize("value", [-1.0, math.nan, math.inf])
 def test_a_measure_that_is_not_a_valid_number_is_refused(value):
-    for field in fields(ProcedureMeasures):
+    for field in fields(scoring.ProcedureMeasures):
         with pytest.raises(InputError, match=f"{field.name} must be a number from 0"):
-            score_procedure(replace(PERFECT, **{field.name: value}), 100.0)
+            scoring.score_procedure(replace(PERFECT, **{field.name: value}), 100.0)
 
 
 def measured(record, procedure):
     analysis = analyze_procedure(record, procedure, MESHES, np.eye(4))
-    return ProcedureMeasures.of(analysis, procedure)
+    return scoring.ProcedureMeasures.of(analysis, procedure)
 
 
 def carried_out(off, lines=(DOWN,), **changes):
@@ -139,7 +138,9 @@ def carried_out(off, lines=(DOWN,), **changes):
         procedure, transforms.rigid(np.eye(3), np.array(off, dtype=float)), drill=14.5
     )
     record = replace(record, **changes)
-    return score_procedure(measured(record, procedure), reference_duration_s(130.0, procedure))
+    return scoring.score_procedure(
+        measured(record, procedure), scoring.reference_duration_s(130.0, procedure)
+    )
 
 
 def test_a_good_procedure_is_acceptable():
@@ -167,8 +168,8 @@ def test_the_worst_of_several_instruments_decides_whether_it_is_acceptable():
     deeper = replace(first, instrument_depth_mm=first.instrument_depth_mm + 3.5)
     record = replace(record, instruments=(deeper, *others))
     measures = measured(record, procedure)
-    assert measures.target_mm < TARGET_LIMIT_MM < measures.worst_target_mm
-    assert not score_procedure(measures, 600.0).acceptable
+    assert measures.target_mm < scoring.TARGET_LIMIT_MM < measures.worst_target_mm
+    assert not scoring.score_procedure(measures, 600.0).acceptable
 
 
 def test_what_a_trainee_sees_plays_no_part_in_the_score():

@@ -1,7 +1,5 @@
 """Aborted trials in reports and exports; aborting bad trials does not show competence."""
 
-import csv
-import io
 import uuid
 from dataclasses import replace
 
@@ -19,6 +17,7 @@ from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.export.xapi import statements
 from rastrainer_simulator.report.report import report_html
 from Testing.domain.study.played_study import study_with_trials
+from Testing.domain.study.study_content import table_of
 from Testing.domain.trial.trial_records import make_aborted
 from Testing.drawn_drills import draw_drill
 from Testing.simulator.report.test_report import words_of
@@ -124,7 +123,7 @@ def test_the_report_names_the_trials_that_never_arrived(path):
 
 def test_aborted_trials_and_their_touches_are_exported(path):
     data = read_study_data(path)
-    rows = list(csv.DictReader(io.StringIO(aborted_csv(data.aborted))))
+    rows = table_of(aborted_csv(data.aborted))
     assert [(row["trainee"], row["touches"], row["phase"], row["trial_run"]) for row in rows] == [
         ("A", "1", "running", "1"),
         ("A", "2", "running", "0"),
@@ -132,7 +131,7 @@ def test_aborted_trials_and_their_touches_are_exported(path):
     ]
     assert [row["repeat_reason"] for row in rows] == ["", "", REASON]
     assert [row["counts_as_not_passed"] for row in rows] == ["0", "1", "1"]
-    touches = list(csv.DictReader(io.StringIO(aborted_touches_csv(data.aborted))))
+    touches = table_of(aborted_touches_csv(data.aborted))
     assert len(touches) == 18
 
 

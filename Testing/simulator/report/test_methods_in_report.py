@@ -9,13 +9,8 @@ import pytest
 
 from rastrainer.study.study_data import StudyData
 from rastrainer.trial.trial_row import TrialRow
+from rastrainer_simulator.report import target_errors
 from rastrainer_simulator.report.report import report_html
-from rastrainer_simulator.report.target_errors import (
-    TITLES,
-    as_conditions,
-    compare_methods,
-    method_comparison,
-)
 from rastrainer_simulator.statistics.intervals import mean
 from rastrainer_simulator.statistics.paired import compare_paired
 from Testing.simulator.report.test_report import cohort, words_of
@@ -50,19 +45,19 @@ def played(trainees=12, methods=tuple(TRUE_MM), modes=("desktop",), seed=3):
 
 def pair_of(data, first, second, outcome):
     """Return one comparison."""
-    found = compare_methods(as_conditions(data))
+    found = target_errors.compare_methods(target_errors.as_conditions(data))
     key = (first, second, outcome)
     return next(one for one in found if (one.first, one.second, one.outcome.name) == key)
 
 
 def test_a_study_with_one_method_has_no_such_section():
-    assert method_comparison(cohort(5)) == ""
+    assert target_errors.method_comparison(cohort(5)) == ""
 
 
 def test_each_method_has_n_residual_expected_and_true_error_with_intervals():
     data = played()
-    words = words_of(method_comparison(data))
-    for method, title in TITLES.items():
+    words = words_of(target_errors.method_comparison(data))
+    for method, title in target_errors.TITLES.items():
         if method not in TRUE_MM:
             assert f"{title} 12 12" not in words
             continue
@@ -73,7 +68,7 @@ def test_each_method_has_n_residual_expected_and_true_error_with_intervals():
         assert f"{title} 12 12 {residual:.2f} [{residual:.2f}, {residual:.2f}]" in words
         assert f"{text} 12 of 12" in words
     assert "a small residual does not mean a small error" in words
-    assert method_comparison(data).count("<svg") == 1
+    assert target_errors.method_comparison(data).count("<svg") == 1
 
 
 def test_the_differences_are_those_of_the_shared_analysis_corrected_over_the_pairs():
@@ -95,7 +90,7 @@ def test_the_differences_are_those_of_the_shared_analysis_corrected_over_the_pai
     assert expected.p < pair.adjusted_p < 0.001
     assert pair_of(data, "fiducials", "surface", "true_tre_mm").adjusted_p > 0.05
     assert pair_of(data, "fiducials", "surface", "rmse_mm").adjusted_p is None
-    words = words_of(method_comparison(data))
+    words = words_of(target_errors.method_comparison(data))
     assert f"(fiducials and landmarks) was {expected.difference.value:.2f} mm higher" in words
     assert "higher with landmarks than with fiducials" in words
     assert "correction for testing several pairs of methods" in words

@@ -60,7 +60,7 @@ def drawn_pages():
     studies = (
         read_study_data(PUBLISHED),
         with_intervals(drawn()),
-        in_two_groups(cohort(16, tasks=2)),
+        in_two_groups(cohort(12, tasks=2)),
         with_procedures(cohort(4)),
         played(4),
         rated(),

@@ -54,7 +54,7 @@ def test_few_trainees_and_constant_metrics_are_refused_with_a_message():
 
 
 def test_the_same_trainees_give_the_same_groups():
-    trainees = cohort([(90, 1.0, -2.0), (150, 2.0, -4.0)], 15, (8, 0.1, 0.2))
+    trainees = cohort([(90, 1.0, -2.0), (150, 2.0, -4.0)], 6, (8, 0.1, 0.2))
     assert cluster_trainees(trainees, METRICS) == cluster_trainees(trainees, METRICS)
 
 
@@ -68,7 +68,7 @@ def test_the_dip_is_hartigans():
     assert dip(np.array([-1.5, -0.5, 0.1, 0.1, 0.1, 0.3])) == pytest.approx(1 / 12)
 
 
-@pytest.mark.parametrize("samples", [800, pytest.param(3000, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("samples", [400, pytest.param(3000, marks=pytest.mark.soak)])
 def test_the_dip_of_a_uniform_distribution_is_as_tabulated(samples):
     """The table of the package diptest 0.12, made of a million samples of each size."""
     rng = np.random.default_rng(0)

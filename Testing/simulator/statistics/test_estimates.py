@@ -37,8 +37,8 @@ def test_the_interval_of_a_difference_has_a_bound_at_0_at_the_limit_of_the_f_tes
     assert high == pytest.approx(0.0, abs=1e-9)
 
 
-@pytest.mark.parametrize("ratio", [1.0, 1.5, 4.0, 20.0])
-@pytest.mark.parametrize(("dof", "other_dof"), [(3, 3), (11, 11), (11, 90)])
+@pytest.mark.parametrize("ratio", [1.0, 4.0])
+@pytest.mark.parametrize(("dof", "other_dof"), [(3, 3), (11, 90)])
 def test_the_interval_of_a_difference_contains_it_in_95_of_100_cases(dof, other_dof, ratio):
     random = np.random.default_rng([dof, other_dof, int(10 * ratio)])
     squares = zip(

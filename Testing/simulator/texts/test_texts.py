@@ -28,7 +28,7 @@ from rastrainer_simulator.texts.texts import (
 SERVER = Path(__file__).parents[3] / "RASTrainerSimulatorServer"
 FOLDER = SERVER / "rastrainer_simulator" / "texts"
 WEB = SERVER / "web" / "src" / "texts"
-FEEDBACK = "What 3D Slicer says too (in English in rastrainer/trial/wording.py)"
+FEEDBACK = "What 3D Slicer says too (in English in rastrainer/trial/wording.json)"
 
 
 def sections(language):

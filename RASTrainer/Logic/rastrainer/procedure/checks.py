@@ -14,14 +14,7 @@ import numpy as np
 
 from rastrainer.head.mesh import HeadMesh, mesh_crossings, nearest_on_mesh
 from rastrainer.json_checks import number, text
-from rastrainer.procedure.geometry import (
-    BoneAhead,
-    axis_distance_mm,
-    bone_ahead,
-    is_inside,
-    segment_distances_mm,
-    skull_angle_deg,
-)
+from rastrainer.procedure import geometry
 from rastrainer.procedure.plan import Procedure, ProcedureMeshes, ProcedureTrajectory
 
 OUTSIDE_MM = 60.0
@@ -66,18 +59,18 @@ class MeasuredProcedure:
     wrong: tuple[Annotated[str, text(2000)], ...]
 
 
-def planned_bone(trajectory: ProcedureTrajectory, skull: HeadMesh) -> BoneAhead | None:
+def planned_bone(trajectory: ProcedureTrajectory, skull: HeadMesh) -> geometry.BoneAhead | None:
     """Return where the planned line goes through bone, as distances from the entry in mm.
 
     They are below 0 if the entry is planned below the bone's surface.
     """
     direction = trajectory.direction
     start = trajectory.entry_ras - OUTSIDE_MM * direction
-    bone = bone_ahead(skull, start, direction, OUTSIDE_MM + trajectory.length_mm)
+    bone = geometry.bone_ahead(skull, start, direction, OUTSIDE_MM + trajectory.length_mm)
     if bone is None:
         return None
     inner = None if bone.inner_mm is None else bone.inner_mm - OUTSIDE_MM
-    return BoneAhead(bone.outer_mm - OUTSIDE_MM, inner)
+    return geometry.BoneAhead(bone.outer_mm - OUTSIDE_MM, inner)
 
 
 def distances_to_no_go(
@@ -86,14 +79,14 @@ def distances_to_no_go(
     """Return how far the instrument's surface stays from each no-go structure, mm, by name."""
     radius = trajectory.diameter_mm / 2
     return {
-        name: axis_distance_mm(mesh, trajectory.entry_ras, trajectory.target_ras) - radius
+        name: geometry.axis_distance_mm(mesh, trajectory.entry_ras, trajectory.target_ras) - radius
         for name, mesh in meshes.no_go.items()
     }
 
 
 def line_distance_mm(one: ProcedureTrajectory, other: ProcedureTrajectory) -> float:
     """Return the distance between the surfaces of two instruments, mm; below 0 they overlap."""
-    axes = segment_distances_mm(
+    axes = geometry.segment_distances_mm(
         one.entry_ras, one.target_ras, np.array([other.entry_ras]), np.array([other.target_ras])
     )
     return float(axes[0]) - (one.diameter_mm + other.diameter_mm) / 2
@@ -111,7 +104,7 @@ def measure_lines(procedure: Procedure, meshes: ProcedureMeshes) -> list[LineMea
         bone, direction, angle = planned_bone(trajectory, meshes.skull), trajectory.direction, None
         if bone is not None:
             point = trajectory.entry_ras + bone.outer_mm * direction
-            angle = skull_angle_deg(meshes.skull, point, direction)
+            angle = geometry.skull_angle_deg(meshes.skull, point, direction)
         measured.append(
             LineMeasures(
                 name=trajectory.name,
@@ -190,11 +183,11 @@ def entry_fault(off_skin_mm: float) -> str | None:
 
 def _unusable(trajectory: ProcedureTrajectory, head: HeadMesh, skull: HeadMesh) -> str | None:
     entry, target, direction = trajectory.entry_ras, trajectory.target_ras, trajectory.direction
-    if not is_inside(head, target):
+    if not geometry.is_inside(head, target):
         outside = nearest_on_mesh(head, target).distance
         return f"has its target {outside:.0f} mm outside of the head."
     off_skin = nearest_on_mesh(head, entry).distance
-    if off_skin > ENTRY_OFF_SKIN_MM and is_inside(head, entry):
+    if off_skin > ENTRY_OFF_SKIN_MM and geometry.is_inside(head, entry):
         off_skin = -off_skin
     if fault := entry_fault(off_skin):
         return fault

@@ -15,8 +15,8 @@ Terms, as in reviews of the accuracy of stereotactic placement (Vakharia et al. 
 10.1111/epi.13713): the entry point error is the distance of the planned entry from the axis of the
 instrument; the target point error is the distance of the planned target from the instrument's tip,
 which has a part along the planned line (depth error, positive where the tip is too deep) and one
-across it
-(radial error); the angular deviation is the angle between the planned and the actual direction.
+across it (radial error); the angular deviation is the angle between the planned and the actual
+direction.
 """
 
 from __future__ import annotations
@@ -52,8 +52,7 @@ REGISTERED_COLOR = (1.0, 0xE0 / 255, 0.0)
 PLACED_COLOR = (0x3F / 255, 0x8F / 255, 0xE0 / 255)
 """Colors (sRGB) of the planned lines, the lines shown by the registration and the placed
 instruments, and of the errors by registration and hand: the same in every picture. People who are
-blind to red
-or green can distinguish green, yellow and blue, too."""
+blind to red or green can distinguish green, yellow and blue, too."""
 
 
 _LIMIT = 1e6

@@ -31,12 +31,8 @@ def ratio_quantile(probability: float, weights: np.ndarray, dof: float) -> float
     of a vector of anisotropic variance whose size was estimated from `dof` residuals.
 
     P(Σ wₖ zₖ² − value·χ²/dof ≤ 0) follows from Imhof's inversion formula (1961). The integral runs
-    over u = exp(s), where the trapezoidal rule converges exponentially.
-
-    Args:
-        probability: Between 0 and 1.
-        weights: (k,) float, above 0.
-        dof: Degrees of freedom of the χ² variable.
+    over u = exp(s), where the trapezoidal rule converges exponentially. The weights, (k,) float,
+    are above 0; `dof` are the degrees of freedom of the χ² variable.
     """
     scale, step = float(np.sum(weights)), 0.025
     u = np.exp(np.arange(-30.0, 30.0, step))
@@ -59,13 +55,8 @@ def widened_quantile(probability: float, weights: np.ndarray, dof: float, added:
     It is the squared length of a vector in space of two parts: one whose size was estimated from
     `dof` residuals, and one of known variance that is the same in all directions. Given χ² and the
     direction n of z, |z|² is χ² with 3 degrees of freedom; the mean over both is taken by
-    quadrature.
-
-    Args:
-        probability: Between 0 and 1.
-        weights: (3,) float, not below 0.
-        dof: Degrees of freedom of the χ² variable; infinite where the size is known.
-        added: The known variance of each coordinate, above 0 if the weights are 0.
+    quadrature. The weights, (3,) float, are not below 0; `dof` is infinite where the size is known;
+    `added`, the known variance of each coordinate, is above 0 if the weights are 0.
     """
     probability_up_to = widened_distribution(weights, dof, added)
     return _quantile(probability_up_to, probability, float(np.sum(weights)) + 3.0 * added, 1e-7)

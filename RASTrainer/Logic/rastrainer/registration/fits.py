@@ -69,16 +69,9 @@ def rigid_sums_of_squares(
     """Return the residual Σ|T(m) − f|² of the best rigid fit, for many fits at once.
 
     It is Σ|a|² + Σ|b|² − 2(s₁ + s₂ + sign(det H)·s₃), with the singular values s₁ ≥ s₂ ≥ s₃ of the
-    cross-covariance H; no transform need be built.
-
-    Args:
-        moving: (..., n, 3) float.
-        fixed: (..., n, 3) float.
-        weights: (..., n) float, 1 for points that count, 0 for all others.
-        handedness: 1 for rotations, −1 for rotations with a reflection.
-
-    Returns:
-        (...) float, in mm².
+    cross-covariance H; no transform need be built. The points are (..., n, 3) float, the weights
+    (..., n) float, 1 for points that count, 0 for all others, and the squares (...) float, in mm².
+    `handedness` is 1 for rotations, −1 for rotations with a reflection.
     """
     weights = weights[..., None]
     count = weights.sum(axis=-2, keepdims=True)

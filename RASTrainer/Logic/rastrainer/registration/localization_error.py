@@ -21,9 +21,8 @@ from rastrainer.registration.registration import Registration
 class LocalizationError:
     """How the fiducials of a registration are localized: independently, with mean zero.
 
-    Attributes:
-        covariances: (n, 3, 3) float, of each fiducial's error in the fixed space, mm².
-        degrees_of_freedom: how well their common size is known; it need not be a whole number.
+    The covariances of their errors, (n, 3, 3) float, mm², are in the fixed space. The degrees of
+    freedom, which need not be a whole number, say how well their common size is known.
     """
 
     covariances: np.ndarray

@@ -16,15 +16,7 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, points_of
-from rastrainer.registration.fits import (
-    AFFINE,
-    KINDS,
-    MINIMUM_POINTS,
-    RIGID,
-    SIMILARITY,
-    extents,
-    fit,
-)
+from rastrainer.registration import fits
 from rastrainer.registration.warnings import RegistrationWarning, find_warnings
 
 
@@ -88,7 +80,7 @@ class Registration:
                 self.moving_mm[others], self.fixed_mm[others], self.kind, labels
             )
             weights = None if self.weights is None else self.weights[others]
-            matrix = fit(moving, fixed, self.kind, weights)
+            matrix = fits.fit(moving, fixed, self.kind, weights)
             there = transforms.apply(matrix, self.moving_mm[left_out])
             distances[left_out] = np.linalg.norm(there - self.fixed_mm[left_out])
         return distances
@@ -97,7 +89,7 @@ class Registration:
 def register(
     moving: np.ndarray,
     fixed: np.ndarray,
-    kind: str = RIGID,
+    kind: str = fits.RIGID,
     labels: Sequence[str] | None = None,
     weights: np.ndarray | None = None,
 ) -> Registration:
@@ -117,7 +109,7 @@ def register(
     """
     moving, fixed, labels = check_points(moving, fixed, kind, labels)
     weights = check_weights(weights, kind, labels)
-    matrix = fit(moving, fixed, kind, weights)
+    matrix = fits.fit(moving, fixed, kind, weights)
     residual_vectors = transforms.apply(matrix, moving) - fixed
     residuals = np.linalg.norm(residual_vectors, axis=1)
     for values in (matrix, residual_vectors, residuals):
@@ -146,12 +138,12 @@ def register_all_kinds(
 
     Only the rigid fit has weights.
     """
-    fits = {RIGID: register(moving, fixed, RIGID, labels, weights)}
-    for kind in (SIMILARITY, AFFINE):
+    found = {fits.RIGID: register(moving, fixed, fits.RIGID, labels, weights)}
+    for kind in (fits.SIMILARITY, fits.AFFINE):
         # Points in one plane, for example, allow no affine fit.
         with contextlib.suppress(InputError):
-            fits[kind] = register(moving, fixed, kind, labels)
-    return fits
+            found[kind] = register(moving, fixed, kind, labels)
+    return found
 
 
 POINT_LIMIT = 1000
@@ -165,10 +157,10 @@ def check_points(
     moving: np.ndarray, fixed: np.ndarray, kind: str, labels: Sequence[str] | None = None
 ) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
     """Return copies of both point sets, (n, 3) float in mm, and their labels."""
-    if kind not in KINDS:
+    if kind not in fits.KINDS:
         raise InputError(
             f"The registration type {json.dumps(str(kind)[:40])} is unknown; "
-            f"it must be one of {', '.join(KINDS)}."
+            f"it must be one of {', '.join(fits.KINDS)}."
         )
     sets = {
         which: points_of(points, f"The {which} points cannot be used")
@@ -180,9 +172,9 @@ def check_points(
             f"There are {count} moving points and {len(sets['fixed'])} fixed points; "
             "each must have its partner in the other list."
         )
-    if count < MINIMUM_POINTS[kind]:
+    if count < fits.MINIMUM_POINTS[kind]:
         raise InputError(
-            f"{kind.capitalize()} registration needs at least {MINIMUM_POINTS[kind]} pairs of "
+            f"{kind.capitalize()} registration needs at least {fits.MINIMUM_POINTS[kind]} pairs of "
             f"points; there {'is' if count == 1 else 'are'} only {count}."
         )
     if count > POINT_LIMIT:
@@ -200,7 +192,7 @@ def check_weights(
     """Return a copy of the weights, (n,) float that cannot be written to, or None for none."""
     if weights is None:
         return None
-    if kind != RIGID:
+    if kind != fits.RIGID:
         raise InputError(f"Weights are for rigid registrations; {kind} has none.")
     try:
         array = np.array(weights, dtype=float)
@@ -221,7 +213,7 @@ def check_weights(
 
 
 def _check_extent(points: np.ndarray, which: str, kind: str, labels: tuple[str, ...]) -> None:
-    along, across, out_of_plane = extents(points)
+    along, across, out_of_plane = fits.extents(points)
     names = ", ".join(labels)
     # Doubles hold about 16 digits of the coordinates; a smaller extent is none.
     if along <= 1e-12 * max(1.0, np.abs(points).max()):
@@ -231,7 +223,7 @@ def _check_extent(points: np.ndarray, which: str, kind: str, labels: tuple[str, 
             f"The {which} points ({names}) lie on one line, so the rotation about it is "
             "undetermined; add a point well away from it."
         )
-    if kind == AFFINE and out_of_plane < FLAT * along:
+    if kind == fits.AFFINE and out_of_plane < FLAT * along:
         raise InputError(
             f"The {which} points ({names}) lie in one plane, so an affine registration is "
             "undetermined; add a point well away from it, or choose rigid."

@@ -103,12 +103,7 @@ def surface_target_error(
 
 @dataclass(frozen=True)
 class NextPlace:
-    """Where on the skin more points would help most.
-
-    Attributes:
-        position: (3,) float, RAS mm.
-        normal: (3,) float, outward unit normal of the skin there.
-    """
+    """Where on the skin more points would help most, RAS mm, with its outward unit normal there."""
 
     vertex: int
     position: np.ndarray

@@ -7,22 +7,7 @@ from numpy.random import default_rng
 
 from rastrainer import transforms
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.registration.surface_checks import (
-    SurfaceMatch,
-    check_start,
-    check_surface,
-    check_trace,
-    slide_of,
-    thinned,
-)
-from rastrainer.registration.surface_fit import (
-    SurfaceFit,
-    costs,
-    fit_to_surface,
-    gates,
-    lowest_nearby,
-    plane_normals,
-)
+from rastrainer.registration import surface_checks, surface_fit
 
 STARTS = 8
 START_SD_MM, START_SD_DEG = 5.0, 5.0
@@ -50,7 +35,7 @@ def match_surface(
     seed: int = 0,
     starts: int = STARTS,
     trimmed: bool = True,
-) -> SurfaceMatch:
+) -> surface_checks.SurfaceMatch:
     """Fit a trace over the skin to the surface of a head.
 
     The first match with a mesh takes about half a second more, for its search tree.
@@ -65,11 +50,11 @@ def match_surface(
             minima nearby.
         trimmed: Whether points far off are left out of the fit.
     """
-    trace = check_trace(trace_mm)
-    check_surface(mesh)
+    trace = surface_checks.check_trace(trace_mm)
+    surface_checks.check_surface(mesh)
     skin = mesh.skin
-    start = check_start(start, trace, skin)
-    used = thinned(trace)
+    start = surface_checks.check_start(start, trace, skin)
+    used = surface_checks.thinned(trace)
     fit, hopeless, ended, gate = _fit(used, skin, start, starts, trimmed, seed)
     return _match(trace, skin, fit, hopeless, ended, gate)
 
@@ -98,12 +83,12 @@ def _starts_about(
 
 def _coarse(
     points: np.ndarray, mesh: HeadMesh, start: np.ndarray, count: int, gate: float | None, seed: int
-) -> SurfaceFit:
+) -> surface_fit.SurfaceFit:
     """Return fits of some of the points from all starts, and from wider starts if none fits."""
-    few = thinned(points, COARSE_POINTS)
+    few = surface_checks.thinned(points, COARSE_POINTS)
 
-    def fitted(starts: np.ndarray) -> SurfaceFit:
-        return fit_to_surface(
+    def fitted(starts: np.ndarray) -> surface_fit.SurfaceFit:
+        return surface_fit.fit_to_surface(
             few, mesh, starts, COARSE_TOLERANCE_MM, gate_mm=gate, max_iterations=COARSE_ITERATIONS
         )
 
@@ -115,7 +100,7 @@ def _coarse(
 
 def _fit(
     points: np.ndarray, mesh: HeadMesh, start: np.ndarray, starts: int, trimmed: bool, seed: int
-) -> tuple[SurfaceFit, np.ndarray, np.ndarray, float]:
+) -> tuple[surface_fit.SurfaceFit, np.ndarray, np.ndarray, float]:
     """Return the fits, best first; the matrices of hopeless fits; how many starts ended in each.
 
     The last is up to which distance points count. All starts are first followed with some of the
@@ -124,9 +109,9 @@ def _fit(
     every = None if trimmed else np.inf
     coarse = _coarse(points, mesh, start, starts, every, seed)
     first, which = _minima(coarse, mesh, points, _common_gate(coarse, trimmed))
-    score = costs(coarse.distances_mm, _common_gate(coarse, trimmed))[first]
+    score = surface_fit.costs(coarse.distances_mm, _common_gate(coarse, trimmed))[first]
     hopeful = first[score <= HOPELESS * score[0] + 1e-6]
-    middle = fit_to_surface(
+    middle = surface_fit.fit_to_surface(
         points,
         mesh,
         coarse.matrices[hopeful],
@@ -145,22 +130,22 @@ def _fit(
 
 
 def _refined(
-    points: np.ndarray, mesh: HeadMesh, fit: SurfaceFit, gate: float, seed: int | None
-) -> SurfaceFit:
+    points: np.ndarray, mesh: HeadMesh, fit: surface_fit.SurfaceFit, gate: float, seed: int | None
+) -> surface_fit.SurfaceFit:
     """Return fits, best first, that one followed to its end; with a seed, to the lowest near."""
     best = fit.taken(np.array([0]))
     if seed is None:
-        fine = fit_to_surface(points, mesh, best.matrices, TOLERANCE_MM, gate_mm=gate)
+        fine = surface_fit.fit_to_surface(points, mesh, best.matrices, TOLERANCE_MM, gate_mm=gate)
     else:
-        fine = lowest_nearby(points, mesh, best, TOLERANCE_MM, gate, seed)
+        fine = surface_fit.lowest_nearby(points, mesh, best, TOLERANCE_MM, gate, seed)
     return fine.joined(fit.taken(np.arange(1, len(fit.matrices))))
 
 
 def _minima(
-    fit: SurfaceFit, mesh: HeadMesh, points: np.ndarray, gate: float
+    fit: surface_fit.SurfaceFit, mesh: HeadMesh, points: np.ndarray, gate: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the best row of each minimum, and in which minimum each row is, (s,) int."""
-    order = costs(fit.distances_mm, gate).argsort(kind="stable")
+    order = surface_fit.costs(fit.distances_mm, gate).argsort(kind="stable")
     first: list[int] = []
     which = np.zeros(len(order), dtype=int)
     for row in order:
@@ -174,33 +159,33 @@ def _minima(
     return np.array(first), which
 
 
-def _common_gate(fit: SurfaceFit, trimmed: bool) -> float:
+def _common_gate(fit: surface_fit.SurfaceFit, trimmed: bool) -> float:
     """Return one gate for all fits, so that their costs can be compared."""
-    return float(gates(fit.distances_mm).min()) if trimmed else np.inf
+    return float(surface_fit.gates(fit.distances_mm).min()) if trimmed else np.inf
 
 
 def _match(
     trace: np.ndarray,
     mesh: HeadMesh,
-    fit: SurfaceFit,
+    fit: surface_fit.SurfaceFit,
     hopeless: np.ndarray,
     ended: np.ndarray,
     gate: float,
-) -> SurfaceMatch:
+) -> surface_checks.SurfaceMatch:
     matrix = fit.matrices[0]
     places = transforms.apply(matrix, trace)
     nearest = mesh.tree.nearest(places)
     offsets = places - nearest.positions
-    normals = plane_normals(mesh, offsets, nearest.distances, nearest.triangles)
+    normals = surface_fit.plane_normals(mesh, offsets, nearest.distances, nearest.triangles)
     is_inlier = nearest.distances <= gate
     rms = float(np.sqrt(np.mean(nearest.distances[is_inlier] ** 2)))
     # Rivals lie elsewhere and fit hardly worse than the best one.
-    score = costs(fit.distances_mm, gate)
+    score = surface_fit.costs(fit.distances_mm, gate)
     is_near = score <= RIVAL_COST * score[0] + 1e-9
     elsewhere = _apart(fit.matrices[0], fit.matrices, mesh) > OTHER_MINIMUM_MM
     for values in (matrix, places, nearest.distances, normals, is_inlier):
         values.flags.writeable = False
-    return SurfaceMatch(
+    return surface_checks.SurfaceMatch(
         matrix=matrix,
         places_mm=places,
         residuals_mm=nearest.distances,
@@ -213,7 +198,7 @@ def _match(
         best_starts=int(ended[0]),
         spread_mm=float(_apart(matrix, np.vstack([fit.matrices, hopeless]), mesh).max()),
         rivals=int(np.count_nonzero(is_near & elsewhere)),
-        slide=slide_of(places[is_inlier], normals[is_inlier], rms, mesh),
+        slide=surface_checks.slide_of(places[is_inlier], normals[is_inlier], rms, mesh),
     )
 
 

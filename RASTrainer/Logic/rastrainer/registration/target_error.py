@@ -23,18 +23,8 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.registration.distributions import (
-    f_tail,
-    ratio_quantile,
-    widened_distribution,
-    widened_quantile,
-)
+from rastrainer.registration import distributions, localization_error
 from rastrainer.registration.fits import motions
-from rastrainer.registration.localization_error import (
-    LocalizationError,
-    fit_of_errors,
-    isotropic_error,
-)
 from rastrainer.registration.registration import Registration
 
 CONFIDENCE = 0.95
@@ -78,7 +68,7 @@ class TargetError:
 def expected_tre(
     registration: Registration,
     targets: np.ndarray,
-    localization: LocalizationError | None = None,
+    localization: localization_error.LocalizationError | None = None,
     common_bias_sd_mm: float = COMMON_BIAS_SD_MM,
 ) -> np.ndarray:
     """Return √E[TRE²] at targets (m, 3) of the fixed space, (m,) float, in mm.
@@ -88,7 +78,7 @@ def expected_tre(
     standard deviation σ on each axis adds 3σ². The default FLE is isotropic and explains the
     residuals.
     """
-    localization = localization or isotropic_error(registration)
+    localization = localization or localization_error.isotropic_error(registration)
     covariances = _propagated(registration, targets, localization.covariances)
     return np.sqrt(np.trace(covariances, axis1=1, axis2=2) + 3.0 * common_bias_sd_mm**2)
 
@@ -96,7 +86,7 @@ def expected_tre(
 def target_error(
     registration: Registration,
     target: np.ndarray,
-    localization: LocalizationError | None = None,
+    localization: localization_error.LocalizationError | None = None,
     common_bias_sd_mm: float = COMMON_BIAS_SD_MM,
 ) -> TargetError:
     """Return the error to expect at a target, with an interval for it.
@@ -114,7 +104,7 @@ def target_error(
         common_bias_sd_mm: Standard deviation on each axis of an offset that all points share; 0
             for none, and both sides outside of the interval are equally likely then.
     """
-    localization = localization or isotropic_error(registration)
+    localization = localization or localization_error.isotropic_error(registration)
     targets = np.reshape(target, (1, -1))
     covariance = _propagated(registration, targets, localization.covariances)[0]
     return error_of_covariance(
@@ -136,10 +126,8 @@ def error_of_covariance(
 ) -> TargetError:
     """Return the error at a target whose independent part has a covariance, as `target_error`.
 
-    Args:
-        target: (3,) float, in the fixed space, in mm.
-        covariance: (3, 3) float, mm², without the common offset.
-        fle_mm: The error of a point that it was computed from.
+    The covariance, (3, 3) float, mm², is without the common offset, and was computed from errors of
+    points of `fle_mm`.
     """
     variances = np.linalg.eigvalsh(covariance).clip(min=0.0)
     independent = float(variances.sum())
@@ -147,7 +135,7 @@ def error_of_covariance(
     below = (1 - CONFIDENCE) / 2
     lowest = _quantile(below, variances, dof, 0.0)
     if added > 0.0:
-        below = widened_distribution(variances, dof, added)(lowest)
+        below = distributions.widened_distribution(variances, dof, added)(lowest)
     x, y, z = (float(value) for value in target)
     return TargetError(
         target_mm=(x, y, z),
@@ -184,8 +172,8 @@ def _quantile(probability: float, variances: np.ndarray, dof: float, added: floa
     if added == 0.0 and not variances.any():
         return 0.0
     if added == 0.0 and math.isfinite(dof):
-        return ratio_quantile(probability, variances, dof)
-    return widened_quantile(probability, variances, dof, added)
+        return distributions.ratio_quantile(probability, variances, dof)
+    return distributions.widened_quantile(probability, variances, dof, added)
 
 
 def _propagated(
@@ -195,7 +183,7 @@ def _propagated(
 
     The errors change the fit's parameters, and these move the target, to first order.
     """
-    fit = fit_of_errors(registration)
+    fit = localization_error.fit_of_errors(registration)
     of_parameters = np.einsum("pni,nij,qnj->pq", fit, covariances, fit)
     center = registration.fixed_mm.mean(axis=0)
     array = np.asarray(targets, dtype=float)
@@ -214,12 +202,10 @@ COMMON_BIAS_LEVEL = 0.05
 
 @dataclass(frozen=True)
 class CommonBias:
-    """The common bias of a trial's touches.
+    """The common bias of a trial's touches: in RAS, from where they should be to where they are.
 
-    Attributes:
-        vector_mm: in RAS, from where the trainee should have touched to where the touches are.
-        p: probability of one at least as large if the errors are independent, unbiased and equal
-            along the skin (F test).
+    p is the probability of one at least as large if the errors are independent, unbiased and equal
+    along the skin (F test).
     """
 
     vector_mm: tuple[float, float, float]
@@ -263,7 +249,7 @@ def common_bias(errors_mm: np.ndarray, normals: np.ndarray) -> CommonBias:
     dof = 2 * len(normals) - known
     ratio = explained / known * dof / left if left > 0 else np.inf if explained > 0 else 0.0
     x, y, z = (float(value) for value in bias)
-    return CommonBias((x, y, z), f_tail(ratio, known, dof))
+    return CommonBias((x, y, z), distributions.f_tail(ratio, known, dof))
 
 
 def bias_of_errors(normals: np.ndarray) -> np.ndarray:

@@ -16,15 +16,8 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.json_checks import text
+from rastrainer.registration import fits
 from rastrainer.registration.distributions import f_tail
-from rastrainer.registration.fits import (
-    AFFINE,
-    RIGID,
-    extents,
-    fit,
-    rigid_sums_of_squares,
-    symmetric_scale,
-)
 from rastrainer.transforms import MM_PER_M
 
 SAME_PLACE = 1e-3
@@ -86,7 +79,7 @@ def find_warnings(
     good = np.delete(np.arange(len(moving)), bad)
     if bad:
         before, after = rigid_fre(moving, fixed), rigid_fre(moving[good], fixed[good])
-        matrix = fit(moving[good], fixed[good], RIGID)
+        matrix = fits.fit(moving[good], fixed[good], fits.RIGID)
     for i in bad:
         distance = np.linalg.norm(transforms.apply(matrix, moving[i]) - fixed[i])
         message = (
@@ -109,14 +102,14 @@ def _faults_of_one(
     points: np.ndarray, which: str, kind: str, labels: tuple[str, ...]
 ) -> Iterator[RegistrationWarning]:
     these = f"The {which} points ({', '.join(labels)}) lie nearly"
-    along, across, out_of_plane = extents(points)
+    along, across, out_of_plane = fits.extents(points)
     if across < NEARLY_FLAT * along:
         message = (
             f"{these} on one line, so the rotation about it is uncertain; add a point well away "
             "from it."
         )
         yield RegistrationWarning("nearly-collinear", labels, message)
-    elif kind == AFFINE and out_of_plane < NEARLY_FLAT * along:
+    elif kind == fits.AFFINE and out_of_plane < NEARLY_FLAT * along:
         message = (
             f"{these} in one plane, so the affine registration is uncertain across it; add a "
             "point well away from it or choose rigid."
@@ -134,7 +127,7 @@ def _faults_of_one(
 
 def same_places(points: np.ndarray) -> np.ndarray:
     """Return which points, (n, n) bool, are at the same place as which others."""
-    limit = SAME_PLACE * np.linalg.norm(extents(points))
+    limit = SAME_PLACE * np.linalg.norm(fits.extents(points))
     distances = np.linalg.norm(points[:, None] - points[None], axis=2)
     return (distances <= limit) & ~np.eye(len(points), dtype=bool)
 
@@ -190,7 +183,7 @@ def find_scale(moving: np.ndarray, fixed: np.ndarray) -> float | None:
     Both the extents and the typical distance must differ: one bad touch far away changes the
     former, a wrong order the latter. A scale near 1 counts only if noise cannot explain it.
     """
-    scale = symmetric_scale(moving, fixed)
+    scale = fits.symmetric_scale(moving, fixed)
     # Distances of neighbors in the lists: one bad touch hardly moves their median.
     distances = [
         np.linalg.norm(np.roll(points, shift, axis=0) - points, axis=1)
@@ -235,7 +228,7 @@ def find_order(moving: np.ndarray, fixed: np.ndarray) -> np.ndarray | None:
     if len(rows) <= ORDERS_LIMIT:
         rotated = (np.roll(rows, shift) for shift in range(1, len(rows)))
         orders = np.vstack([orders, rows[::-1], *rotated])
-    squares = rigid_sums_of_squares(moving[orders], fixed, np.ones(len(moving)))
+    squares = fits.rigid_sums_of_squares(moving[orders], fixed, np.ones(len(moving)))
     best = int(np.argmin(squares))
     before, dof = _squares(moving, fixed), 3 * len(moving) - 6
     if not _explains(before, squares[best], 3, dof, len(orders), fixed):
@@ -269,7 +262,7 @@ def rigid_fre(moving: np.ndarray, fixed: np.ndarray) -> float:
 
 
 def is_poor_fit(moving: np.ndarray, fixed: np.ndarray) -> bool:
-    return rigid_fre(moving, fixed) > POOR_FIT * float(np.linalg.norm(extents(fixed)))
+    return rigid_fre(moving, fixed) > POOR_FIT * float(np.linalg.norm(fits.extents(fixed)))
 
 
 def _worst_subset(
@@ -284,9 +277,9 @@ def _worst_subset(
     subsets = np.array(list(itertools.combinations(candidates, size)))
     tried = np.repeat(weights[None], len(subsets), axis=0)
     np.put_along_axis(tried, subsets, 0.0, axis=1)
-    squares = rigid_sums_of_squares(moving, fixed, tried)
+    squares = fits.rigid_sums_of_squares(moving, fixed, tried)
     best = int(np.argmin(squares))
-    before = float(rigid_sums_of_squares(moving, fixed, weights))
+    before = float(fits.rigid_sums_of_squares(moving, fixed, weights))
     if _explains(before, squares[best], 3 * size, 3 * left - 6, len(subsets), fixed):
         return tuple(int(i) for i in subsets[best])
     return None
@@ -301,13 +294,13 @@ def _both_fit(moving: np.ndarray, fixed: np.ndarray, order: np.ndarray, squares:
     left = int(kept.sum())
     if left < 4:
         return True
-    others = float(rigid_sums_of_squares(moving, fixed, kept))
+    others = float(fits.rigid_sums_of_squares(moving, fixed, kept))
     return not _explains(squares, others, 6, 3 * left - 6, 1, fixed)
 
 
 def _worst_points(moving: np.ndarray, fixed: np.ndarray, weights: np.ndarray) -> np.ndarray:
     used = weights > 0
-    matrix = fit(moving[used], fixed[used], RIGID)
+    matrix = fits.fit(moving[used], fixed[used], fits.RIGID)
     distances = np.linalg.norm(transforms.apply(matrix, moving) - fixed, axis=1)
     return np.sort(np.argsort(-distances * weights, kind="stable")[:WORST_POINTS])
 
@@ -316,10 +309,10 @@ def _explains(
     before: float, after: float, parameters: int, dof: int, tries: int, fixed: np.ndarray
 ) -> bool:
     """Return whether `parameters` more parameters reduce the squares more than noise would."""
-    floor = len(fixed) * (NOISE_FLOOR * np.linalg.norm(extents(fixed))) ** 2
+    floor = len(fixed) * (NOISE_FLOOR * np.linalg.norm(fits.extents(fixed))) ** 2
     ratio = max(before - after, 0.0) / parameters / ((after + floor) / dof)
     return tries * f_tail(float(ratio), parameters, dof) < FALSE_ALARM
 
 
 def _squares(moving: np.ndarray, fixed: np.ndarray, handedness: int = 1) -> float:
-    return float(rigid_sums_of_squares(moving, fixed, np.ones(len(moving)), handedness))
+    return float(fits.rigid_sums_of_squares(moving, fixed, np.ones(len(moving)), handedness))

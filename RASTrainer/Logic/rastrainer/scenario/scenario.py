@@ -23,13 +23,7 @@ from rastrainer.head.trial_head import UNMOVED, Perturbation, SkinShift, perturb
 from rastrainer.head.volume import VolumeFile
 from rastrainer.json_checks import identifier, list_of, number, numbers, point, text
 from rastrainer.json_records import NOT_IN_JSON
-from rastrainer.procedure.plan import (
-    MAX_NO_GO_FILES,
-    MAX_PROCEDURES,
-    Procedure,
-    located,
-    named_once,
-)
+from rastrainer.procedure import plan
 from rastrainer.protocol import (
     COARSE_LANDMARKS,
     PLAYED_METHODS,
@@ -37,16 +31,7 @@ from rastrainer.protocol import (
     WORLD_LIMIT_MM,
     RegistrationMethod,
 )
-from rastrainer.scenario.points import (
-    MAX_LANDMARKS,
-    MAX_TARGETS,
-    MIN_TRAJECTORY_MM,
-    Landmark,
-    PlannedTarget,
-    PlannedTrajectory,
-    Task,
-    read_fiducials,
-)
+from rastrainer.scenario import points
 from rastrainer.transforms import is_rigid
 
 FILE_NAME = "scenario.json"
@@ -158,21 +143,23 @@ class Scenario:
     name: Annotated[str, identifier]
     title: Annotated[str, text(80)]
     head: Annotated[Path, relative_path]
-    target: PlannedTarget
+    target: points.PlannedTarget
     head_to_world: Annotated[np.ndarray, _rigid]
     perturbation: Perturbation
-    tasks: Annotated[tuple[Task, ...], named_once(1, MAX_TASKS)]
+    tasks: Annotated[tuple[points.Task, ...], plan.named_once(1, MAX_TASKS)]
     cameras: Annotated[Mapping[str, Camera], _all_cameras]
     table: OperatingTable
     stand: Stand
     provenance: Provenance
     skull: SkullFile | None = None
     volume: VolumeFile | None = None
-    targets: Annotated[tuple[PlannedTarget, ...], list_of(0, MAX_TARGETS, "objects")] = ()
-    trajectory: PlannedTrajectory | None = None
-    landmarks: Annotated[tuple[Landmark, ...], named_once(0, MAX_LANDMARKS)] = ()
+    targets: Annotated[
+        tuple[points.PlannedTarget, ...], list_of(0, points.MAX_TARGETS, "objects")
+    ] = ()
+    trajectory: points.PlannedTrajectory | None = None
+    landmarks: Annotated[tuple[points.Landmark, ...], plan.named_once(0, points.MAX_LANDMARKS)] = ()
     skin: Annotated[SkinShift, _amounts_of_skin] = UNMOVED
-    procedures: Annotated[tuple[Procedure, ...], named_once(0, MAX_PROCEDURES)] = ()
+    procedures: Annotated[tuple[plan.Procedure, ...], plan.named_once(0, plan.MAX_PROCEDURES)] = ()
     folder: Path = field(default=Path(), metadata=NOT_IN_JSON)
 
     @property
@@ -185,14 +172,14 @@ class Scenario:
         assert self.skull is not None, "a scenario with procedures has a skull"
         return self.skull.file
 
-    def task(self, name: str) -> Task:
+    def task(self, name: str) -> points.Task:
         for task in self.tasks:
             if task.name == name:
                 return task
         names = ", ".join(task.name for task in self.tasks)
         raise InputError(f"The scenario {self.name} has no such task; it has {names}.")
 
-    def procedure(self, name: str) -> Procedure:
+    def procedure(self, name: str) -> plan.Procedure:
         for procedure in self.procedures:
             if procedure.name == name:
                 return procedure
@@ -222,12 +209,13 @@ def _load(folder: Path) -> Scenario:
     _check_fields(read, path)
     tasks = (
         replace(
-            each, fiducials=read_fiducials(path_beside(path, each.file, f"tasks[{index}].file"))
+            each,
+            fiducials=points.read_fiducials(path_beside(path, each.file, f"tasks[{index}].file")),
         )
         for index, each in enumerate(read.tasks)
     )
     procedures = (
-        located(procedure, path, f"procedures[{index}].")
+        plan.located(procedure, path, f"procedures[{index}].")
         for index, procedure in enumerate(read.procedures)
     )
     skull, volume = read.skull, read.volume
@@ -249,15 +237,17 @@ def _check_fields(scenario: Scenario, path: Path) -> None:
         if np.linalg.norm(np.cross(sight, camera.view_up)) < 1e-6:
             wrong = f"cameras.{name}.viewUp must be a direction across the line of sight"
     line = scenario.trajectory
-    if line and np.linalg.norm(line.target_ras - line.entry_ras) < MIN_TRAJECTORY_MM:
-        wrong = f"trajectory.entryRas must be at least {MIN_TRAJECTORY_MM:g} mm from targetRas"
+    if line and np.linalg.norm(line.target_ras - line.entry_ras) < points.MIN_TRAJECTORY_MM:
+        wrong = (
+            f"trajectory.entryRas must be at least {points.MIN_TRAJECTORY_MM:g} mm from targetRas"
+        )
     if scenario.procedures and scenario.skull is None:
         wrong = (
             "skull must be given, because the scenario has procedures, and drilling needs a skull"
         )
     no_go = {each.file for procedure in scenario.procedures for each in procedure.no_go}
-    if len(no_go) > MAX_NO_GO_FILES:
-        wrong = f"procedures must be with at most {MAX_NO_GO_FILES} files of no-go meshes"
+    if len(no_go) > plan.MAX_NO_GO_FILES:
+        wrong = f"procedures must be with at most {plan.MAX_NO_GO_FILES} files of no-go meshes"
     if wrong:
         raise InputError(f"{path}: {wrong}.")
 
@@ -277,7 +267,7 @@ def playable_methods(scenario: Scenario) -> tuple[RegistrationMethod, ...]:
     return PLAYED_METHODS if has_landmarks else PLAYED_METHODS[:1]
 
 
-def task_by_method(scenario: Scenario, task_name: str, method: RegistrationMethod) -> Task:
+def task_by_method(scenario: Scenario, task_name: str, method: RegistrationMethod) -> points.Task:
     """Return a task with the points that a method has touched in place of its fiducials."""
     task = scenario.task(task_name)
     if method is RegistrationMethod.FIDUCIALS:

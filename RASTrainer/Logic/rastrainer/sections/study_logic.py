@@ -22,8 +22,12 @@ from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import moment
-from rastrainer.study.protocol.step_progress import StepProgress
-from rastrainer.study.protocol.steps import StepAnswers, instruction, objections_to
+from rastrainer.study.protocol.steps import (
+    StepAnswers,
+    StepProgress,
+    instruction,
+    objections_to,
+)
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study_messages import StudyStep

@@ -25,8 +25,7 @@ from rastrainer.study.curriculum.standing import (
     title_of,
 )
 from rastrainer.study.protocol.questionnaires import Questionnaire, find_questionnaire
-from rastrainer.study.protocol.step_progress import SKIPPED, StepProgress
-from rastrainer.study.protocol.steps import instruction
+from rastrainer.study.protocol.steps import SKIPPED, StepProgress, instruction
 from rastrainer.widgets.controls import (
     chosenData,
     fillTable,

@@ -15,18 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.journal.entries import (
-    AcceptedTouch,
-    Acknowledged,
-    FinalRegistration,
-    JournalHeader,
-    Line,
-    Registered,
-    Rejected,
-    Scored,
-    TracePoint,
-    read_line,
-)
+from rastrainer.journal import entries
 from rastrainer.journal.journal_file import NO_LINE, DamagedLineError, decode_line
 from rastrainer.journal.recording import Recording, WholeRecording
 from rastrainer.json_records import record_from_json
@@ -49,7 +38,9 @@ def check_journal(
     try:
         lines, place = _lines(journal, record.journal_sha256)
         header, registered = lines[0], lines[place].entry
-        if not isinstance(header.entry, JournalHeader) or not isinstance(registered, Registered):
+        if not isinstance(header.entry, entries.JournalHeader) or not isinstance(
+            registered, entries.Registered
+        ):
             raise InputError("Its journal holds no trial that was registered.")
         _check_record(record, header.entry, header.at.utc, registered)
         _check_touches(record, lines[:place])
@@ -75,17 +66,19 @@ def check_journal(
         raise InputError(f"Its journal holds an entry that is not one ({error!r}).") from None
 
 
-def _lines(journal: bytes, sealed: str) -> tuple[list[Line], int]:
+def _lines(journal: bytes, sealed: str) -> tuple[list[entries.Line], int]:
     """Return the lines of a trial, up to what came after it, and the place of the sealed one."""
-    lines: list[Line] = []
+    lines: list[entries.Line] = []
     previous, place = NO_LINE, None
     for number, line in enumerate(journal.splitlines(), start=1):
         try:
             values = decode_line(line, number, previous)
         except DamagedLineError as error:
             raise InputError(f"Line {number} of its journal was altered: {error}.") from None
-        found, previous = read_line(values), values["sha256"]
-        if isinstance(found.entry, FinalRegistration | Scored | Acknowledged):
+        found, previous = entries.read_line(values), values["sha256"]
+        if isinstance(
+            found.entry, entries.FinalRegistration | entries.Scored | entries.Acknowledged
+        ):
             break
         if previous == sealed:
             place = len(lines)
@@ -96,7 +89,10 @@ def _lines(journal: bytes, sealed: str) -> tuple[list[Line], int]:
 
 
 def _check_record(
-    record: TrialRecord, header: JournalHeader, started_utc: str, registered: Registered
+    record: TrialRecord,
+    header: entries.JournalHeader,
+    started_utc: str,
+    registered: entries.Registered,
 ) -> None:
     written = record_from_json(TrialRecord, registered.record)
     _require(written == replace(record, journal_sha256=""), "the record")
@@ -110,11 +106,13 @@ def _check_record(
     )
 
 
-def _check_touches(record: TrialRecord, lines: Sequence[Line]) -> None:
+def _check_touches(record: TrialRecord, lines: Sequence[entries.Line]) -> None:
     header = lines[0].entry
-    assert isinstance(header, JournalHeader)
+    assert isinstance(header, entries.JournalHeader)
     kept = _Measured.of(lines).trajectory()
-    last = {line.entry.label: line.at for line in lines if isinstance(line.entry, AcceptedTouch)}
+    last = {
+        line.entry.label: line.at for line in lines if isinstance(line.entry, entries.AcceptedTouch)
+    }
     found = [
         (touch, last[touch.label].sim_time_s - header.tick_s, last[touch.label].utc)
         for touch in kept.touches
@@ -144,11 +142,11 @@ class _Measured(WholeRecording):
     The time of a trial that was registered again includes the checkpoints before.
     """
 
-    def add(self, line: Line) -> None:
+    def add(self, line: entries.Line) -> None:
         entry = line.entry
-        if isinstance(entry, AcceptedTouch | Rejected | TracePoint):
+        if isinstance(entry, entries.AcceptedTouch | entries.Rejected | entries.TracePoint):
             entry = replace(entry, position_mm=entry.measured_mm or entry.position_mm)
-        super().add(Line(line.at, entry))
+        super().add(entries.Line(line.at, entry))
 
 
 def _is_on_path(touch: Touch, path: Trajectory) -> bool:

@@ -23,11 +23,9 @@ MODE_NAMES = {"desktop": "the desktop screen", "hmd": "the headset"}
 
 @dataclass(frozen=True)
 class Outcome:
-    """An outcome of a trial.
+    """An outcome of a trial; `better` is -1 if less is better, 1 if more is, 0 if neither.
 
-    Attributes:
-        definition: Of a motion metric, one sentence with every threshold; else "".
-        better: -1 if less is better, 1 if more is, 0 if neither.
+    The definition of a motion metric is one sentence with every threshold; others have none.
     """
 
     name: str

@@ -34,11 +34,8 @@ class RatingForm:
     """A form of domains that are marked from 1 (worst) to 5 (best), and added up.
 
     Names of domains and the scale are as published. The sentences that describe marks are our own,
-    in the simulator's texts: the published sentences belong to their authors.
-
-    Attributes:
-        domains: Those that a replay can show, in their order.
-        left_out: Titles of the published domains that it cannot show, with the reason.
+    in the simulator's texts: the published sentences belong to their authors. Domains that a replay
+    cannot show are left out, by their titles, with the reason.
     """
 
     name: str

@@ -16,20 +16,12 @@ from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.target_error import CommonBias, common_bias, true_touch_errors
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.trial import ctps
+from rastrainer.trial import ctps, touch_registration
 from rastrainer.trial.advice import advise
 from rastrainer.trial.procedure_outcome import ProcedureOutcome, procedure_outcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.score_reference import region_of, score_reference
 from rastrainer.trial.scoring import ScoreMeasures, ScoreReference, TrialScore, score_trial
-from rastrainer.trial.touch_registration import (
-    GivenPoints,
-    TouchRegistration,
-    normals_at,
-    register_trial,
-    skin_sentences,
-    unshifted_tre_mm,
-)
 from rastrainer.trial.trial_feedback import TrialFeedback, trial_feedback
 from rastrainer.trial.trial_row import TrialRow
 from rastrainer.trial.wording import Sentence
@@ -37,11 +29,9 @@ from rastrainer.trial.wording import Sentence
 
 @dataclass(frozen=True)
 class RevealedTruth:
-    """The true pose of the head.
+    """The true pose of the head, row by row, mm, MRI RAS to World, and how its skin has shifted.
 
-    Attributes:
-        head_to_world: 16 numbers, row by row, mm, from MRI RAS to World.
-        skin: its shift; a study keeps no more of it than the record does.
+    A study keeps no more of the shift than the record does.
     """
 
     head_to_world: Annotated[tuple[float, ...], numbers(16, 1e6)]
@@ -67,14 +57,11 @@ class PublishedScore:
 
 
 @dataclass(frozen=True, kw_only=True)
-class TrialAnalysis(TouchRegistration):
-    """The results of one trial.
+class TrialAnalysis(touch_registration.TouchRegistration):
+    """The results of one trial, with target errors at the scenario's target.
 
-    Attributes:
-        target_name: of the scenario's target, at which target errors are computed.
-        published_score: CTPS of the rigid registration; None without a cohort.
-        feedback: on this trial alone.
-        procedure: errors and score of the procedure; None without the truth, or of touches alone.
+    The published score is the CTPS of the rigid registration; None without a cohort. Feedback is on
+    this trial alone. The outcome of a procedure is None without the truth, or of touches alone.
     """
 
     record: TrialRecord
@@ -111,9 +98,11 @@ class TrialAnalysis(TouchRegistration):
             score_reference(scenario, record.task, references, record.method),
             record.method,
         )
-        unshifted = unshifted_tre_mm(record, scenario, truth.matrix, truth.skin)
+        unshifted = touch_registration.unshifted_tre_mm(record, scenario, truth.matrix, truth.skin)
         score = replace(score, unshifted_tre_mm=unshifted)
-        normals = normals_at(scenario, record.task, self.rigid.labels, record.method)
+        normals = touch_registration.normals_at(
+            scenario, record.task, self.rigid.labels, record.method
+        )
         feedback = trial_feedback(self.rigid, normals, record.motion, trajectory)
         procedure = procedure_outcome(record, scenario, truth.matrix, references)
         explained = replace(self, feedback=feedback, procedure=procedure)
@@ -127,7 +116,7 @@ class TrialAnalysis(TouchRegistration):
         skin: tuple[Sentence, ...] = ()
         if truth is not None:
             unshifted = None if score is None else score.unshifted_tre_mm
-            skin = skin_sentences(self.record.skin, truth.true_tre_mm, unshifted)
+            skin = touch_registration.skin_sentences(self.record.skin, truth.true_tre_mm, unshifted)
         return replace(
             self,
             truth=truth,
@@ -141,7 +130,7 @@ class TrialAnalysis(TouchRegistration):
         if record.method is not RegistrationMethod.FIDUCIALS:
             return None
         errors = true_touch_errors(rigid.moving_mm, truth.matrix, rigid.fixed_mm)
-        normals = normals_at(scenario, record.task, rigid.labels, record.method)
+        normals = touch_registration.normals_at(scenario, record.task, rigid.labels, record.method)
         return common_bias(errors, normals)
 
 
@@ -157,9 +146,11 @@ def analyze_trial(
     CTPS compares with the trials of the cohort in the same mode. The trajectory explains why a
     touch was off. `pause` is called every 10 ms or so; a worker may wait in it.
     """
-    registered = register_trial(GivenPoints.of_record(record), scenario, pause)
+    registered = touch_registration.register_trial(
+        touch_registration.GivenPoints.of_record(record), scenario, pause
+    )
     rigid = registered.rigid
-    normals = normals_at(scenario, record.task, rigid.labels, record.method)
+    normals = touch_registration.normals_at(scenario, record.task, rigid.labels, record.method)
     return TrialAnalysis(
         **vars(registered),
         record=record,

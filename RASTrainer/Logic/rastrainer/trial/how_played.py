@@ -13,15 +13,7 @@ from enum import Enum
 from typing import Annotated
 
 from rastrainer.commands import CommandName
-from rastrainer.journal.entries import (
-    CommandDone,
-    Continued,
-    DisplayReport,
-    JournalHeader,
-    Line,
-    PhaseChange,
-    Sample,
-)
+from rastrainer.journal import entries
 from rastrainer.json_checks import number, object_of, text, whole_number
 from rastrainer.protocol import Mode, Phase
 
@@ -137,28 +129,30 @@ class PlayRecording:
         self._view_s: Counter[str] = Counter()
         self._tip: tuple[float, ...] | None = None
 
-    def add(self, line: Line) -> None:
+    def add(self, line: entries.Line) -> None:
         self._add_time(line)
         how = self._how
         match line.entry:
-            case JournalHeader(session=session) | Continued(session=session):
+            case entries.JournalHeader(session=session) | entries.Continued(session=session):
                 speed = max(how.speed, session.speed or 0.0, key=lambda each: abs(each - 1.0))
                 self._how = replace(how, speed=speed)
                 if session.is_seeded and how.seed_source is SeedSource.DRAWN:
                     self._how = replace(self._how, seed_source=SeedSource.SESSION)
-            case CommandDone(name=CommandName.START_TASK, arguments=arguments, sender=sender):
+            case entries.CommandDone(
+                name=CommandName.START_TASK, arguments=arguments, sender=sender
+            ):
                 self._how = replace(how, started_by=sender)
                 if arguments.get("seed") is not None:
                     self._how = replace(self._how, seed_source=SeedSource.CLIENT)
-            case CommandDone(name=CommandName.FEED):
+            case entries.CommandDone(name=CommandName.FEED):
                 self._how = replace(how, feed_commands=how.feed_commands + 1)
-            case PhaseChange(phase=Phase.PAUSED):
+            case entries.PhaseChange(phase=Phase.PAUSED):
                 self._how = replace(how, pauses=how.pauses + 1)
-            case Sample(tip_mm=tip, moved_by=moved_by):
+            case entries.Sample(tip_mm=tip, moved_by=moved_by):
                 if self._tip is not None and moved_by:
                     self._way_mm[moved_by] += math.dist(tip, self._tip)
                 self._tip = tip
-            case DisplayReport(view=view):
+            case entries.DisplayReport(view=view):
                 # Views report once a second.
                 self._view_s[view] += 1
 
@@ -166,10 +160,10 @@ class PlayRecording:
         pace = self._simulated_s / self._clock_s if self._clock_s else self._how.speed
         return replace(self._how, pace=pace, way_mm=dict(self._way_mm), view_s=dict(self._view_s))
 
-    def _add_time(self, line: Line) -> None:
+    def _add_time(self, line: entries.Line) -> None:
         """Add what has passed since the last entry, except in a pause and after the last point."""
         entry, times = line.entry, (line.at.sim_time_s, line.at.monotonic_s)
-        is_after_interruption = isinstance(entry, Continued)
+        is_after_interruption = isinstance(entry, entries.Continued)
         if self._times is not None and not (is_after_interruption or self._phase is Phase.PAUSED):
             passed = times[0] - self._times[0], times[1] - self._times[1]
             if self._phase is Phase.COMPLETE:
@@ -179,8 +173,8 @@ class PlayRecording:
             else:
                 self._count(passed)
         self._times = times
-        if is_after_interruption or entry.kind == PhaseChange.kind:
-            assert isinstance(entry, Continued | PhaseChange)
+        if is_after_interruption or entry.kind == entries.PhaseChange.kind:
+            assert isinstance(entry, entries.Continued | entries.PhaseChange)
             self._phase = entry.phase
             if self._phase not in (Phase.PAUSED, Phase.COMPLETE):
                 if self._phase is Phase.RUNNING:

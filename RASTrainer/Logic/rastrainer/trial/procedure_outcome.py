@@ -25,17 +25,9 @@ from rastrainer.json_checks import number, whole_number
 from rastrainer.procedure.errors import ProcedureAnalysis, TrajectoryErrors, analyze_procedure
 from rastrainer.procedure.plan import MAX_SAFETY_MM, Procedure, read_procedure_meshes
 from rastrainer.scenario.scenario import Scenario
+from rastrainer.trial import scoring
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.score_reference import score_reference
-from rastrainer.trial.scoring import (
-    MAX_MEASURE,
-    TIME_FLOOR,
-    Desirability,
-    ScoreReference,
-    check_measures,
-    falling,
-    of_time,
-)
 
 PROCEDURE_SCORE_VERSION = "procedure-1"
 """Changes with any change of a formula or a reference, so that scores stay comparable."""
@@ -44,7 +36,7 @@ HALF_ENTRY_MM, ENTRY_LIMIT_MM = 1.5, 3.0
 HALF_ANGLE_DEG, ANGLE_LIMIT_DEG = 2.0, 5.0
 HALF_PLUNGE_MM, PLUNGE_LIMIT_MM = 2.0, 5.0
 HALF_INTRUSION_MM = 1.5
-_Measure = Annotated[float, number(0, MAX_MEASURE)]
+_Measure = Annotated[float, number(0, scoring.MAX_MEASURE)]
 _Count = Annotated[int, whole_number(0, 10_000)]
 
 VERIFYING_S, ALIGNING_S, DRILLING_S, HANDLING_S = 15.0, 45.0, 15.0, 10.0
@@ -119,15 +111,13 @@ class ProcedureMeasures:
 
 @dataclass(frozen=True)
 class ProcedureScore:
-    """The score of a procedure and its parts.
+    """The score of a procedure and its parts, by measure: `time`, `target`, `entry`, …
 
-    Attributes:
-        desirabilities: by measure: `time`, `target`, `entry`, `angle`, `plunge` and `distance`.
-        reference_s: duration of half the range of the time desirability.
+    `reference_s` is the duration of half the range of the time desirability.
     """
 
     score: Annotated[float, number(0, 100)]
-    desirabilities: Mapping[str, Desirability]
+    desirabilities: Mapping[str, scoring.Desirability]
     is_accurate: bool
     is_safe: bool
     measures: ProcedureMeasures
@@ -154,11 +144,11 @@ def reference_duration_s(touching_s: float, procedure: Procedure, self_aligned: 
 
 
 def score_procedure(measures: ProcedureMeasures, reference_s: float) -> ProcedureScore:
-    check_measures(measures, "The procedure's measures")
+    scoring.check_measures(measures, "The procedure's measures")
     if measures.duration_s == 0:
         raise InputError("The procedure's duration must be above 0 s.")
     desirabilities = {
-        "time": of_time(measures.duration_s, reference_s),
+        "time": scoring.of_time(measures.duration_s, reference_s),
         **_besides_time(
             *(measures.target_mm, measures.entry_mm, measures.angle_deg),
             *(measures.plunge_mm, measures.intrusion_mm),
@@ -181,18 +171,18 @@ def _besides_time(
     target_mm: float, entry_mm: float, angle_deg: float, plunge_mm: float, intrusion_mm: float
 ) -> dict[str, float]:
     return {
-        "target": falling(target_mm, HALF_TARGET_MM),
-        "entry": falling(entry_mm, HALF_ENTRY_MM),
-        "angle": falling(angle_deg, HALF_ANGLE_DEG),
-        "plunge": falling(plunge_mm, HALF_PLUNGE_MM),
-        "distance": falling(intrusion_mm, HALF_INTRUSION_MM),
+        "target": scoring.falling(target_mm, HALF_TARGET_MM),
+        "entry": scoring.falling(entry_mm, HALF_ENTRY_MM),
+        "angle": scoring.falling(angle_deg, HALF_ANGLE_DEG),
+        "plunge": scoring.falling(plunge_mm, HALF_PLUNGE_MM),
+        "distance": scoring.falling(intrusion_mm, HALF_INTRUSION_MM),
     }
 
 
 _AT_LIMITS = _besides_time(
     TARGET_LIMIT_MM, ENTRY_LIMIT_MM, ANGLE_LIMIT_DEG, PLUNGE_LIMIT_MM, MAX_SAFETY_MM
 )
-WORST_ACCEPTABLE = TIME_FLOOR * math.prod(_AT_LIMITS.values())
+WORST_ACCEPTABLE = scoring.TIME_FLOOR * math.prod(_AT_LIMITS.values())
 """Brings, as a factor, every procedure beyond a limit below every acceptable one.
 
 It is the product of the desirabilities at all limits and infinite time.
@@ -229,7 +219,7 @@ def procedure_outcome(
     record: TrialRecord,
     scenario: Scenario,
     head_to_world: np.ndarray,
-    references: Mapping[str, ScoreReference] | None = None,
+    references: Mapping[str, scoring.ScoreReference] | None = None,
 ) -> ProcedureOutcome | None:
     """Return the errors and the score of a trial's procedure; None for touches alone.
 

@@ -12,28 +12,11 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from rastrainer import json_checks
+from rastrainer import json_checks, protocol
 from rastrainer.errors import InputError
 from rastrainer.head.trial_head import UNMOVED, SkinShift
 from rastrainer.json_records import NOT_IN_JSON
 from rastrainer.procedure.record import TIME_LIMIT_S, ProcedureRecord, Seconds, WorldPoint
-from rastrainer.protocol import (
-    COARSE_LANDMARKS,
-    FIDUCIAL_COUNT,
-    MAX_TRACE_POINTS,
-    MIN_ABORTED_S,
-    MIN_TRACE_POINTS,
-    NUMBER_LIMIT,
-    OPEN_PHASES,
-    PLAYED_METHODS,
-    TRACED_METHODS,
-    TRIAL_RUN,
-    WORLD_LIMIT_MM,
-    Mode,
-    Phase,
-    RegistrationMethod,
-    TouchRule,
-)
 from rastrainer.trial.how_played import HowPlayed
 
 TOUCH_LIMIT = 1_000_000
@@ -59,7 +42,7 @@ def utc_time(value: Any) -> str:
 
 def trace_points(value: Any) -> tuple[TracePoint, ...]:
     """Accept a trace: a list of positions in World with their times, which do not fall."""
-    if isinstance(value, (list, tuple)) and len(value) <= MAX_TRACE_POINTS:
+    if isinstance(value, (list, tuple)) and len(value) <= protocol.MAX_TRACE_POINTS:
         with contextlib.suppress(ValueError, TypeError, LookupError):
             points: list[TracePoint] = []
             for *place, time_s in value:
@@ -68,12 +51,12 @@ def trace_points(value: Any) -> tuple[TracePoint, ...]:
             if all(later[3] >= earlier[3] for earlier, later in itertools.pairwise(points)):
                 return tuple(points)
     raise ValueError(
-        f"a list of at most {MAX_TRACE_POINTS} points [x, y, z, simTimeS], mm and s, in order of "
-        "time"
+        f"a list of at most {protocol.MAX_TRACE_POINTS} points [x, y, z, simTimeS], mm and s, in "
+        "order of time"
     )
 
 
-_IN_WORLD = json_checks.numbers(3, WORLD_LIMIT_MM, "mm")
+_IN_WORLD = json_checks.numbers(3, protocol.WORLD_LIMIT_MM, "mm")
 _AT_TIME = json_checks.number(0, TIME_LIMIT_S, "s")
 
 
@@ -84,7 +67,8 @@ def _text_or_number(value: Any) -> str | float:
 
 Count = Annotated[int, json_checks.whole_number(0, TOUCH_LIMIT)]
 PlayedMethod = Annotated[
-    RegistrationMethod, json_checks.one_of(*(each.value for each in PLAYED_METHODS))
+    protocol.RegistrationMethod,
+    json_checks.one_of(*(each.value for each in protocol.PLAYED_METHODS)),
 ]
 Utc = Annotated[str, utc_time]
 """The wall clock may jump, so no duration is taken from it."""
@@ -118,18 +102,20 @@ class AnyTrial:
     trial_id: Annotated[str, json_checks.trial_id]
     trainee: str
     task: str
-    mode: Annotated[str, json_checks.one_of(*(mode.value for mode in Mode))]
+    mode: Annotated[str, json_checks.one_of(*(mode.value for mode in protocol.Mode))]
     scenario: str
     started_utc: Utc
-    points: Annotated[tuple[TouchedPoint, ...], json_checks.list_of(0, FIDUCIAL_COUNT, "points")]
+    points: Annotated[
+        tuple[TouchedPoint, ...], json_checks.list_of(0, protocol.FIDUCIAL_COUNT, "points")
+    ]
     rejected_touches: Count
     undone_touches: Count
     versions: Annotated[Mapping[str, str], json_checks.object_of(VERSIONS_LIMIT)]
-    touch_rule: Annotated[str, json_checks.one_of(*(rule.value for rule in TouchRule))] = (
-        TouchRule.WITHIN_RADIUS.value
+    touch_rule: Annotated[str, json_checks.one_of(*(rule.value for rule in protocol.TouchRule))] = (
+        protocol.TouchRule.WITHIN_RADIUS.value
     )
-    method: PlayedMethod = RegistrationMethod.FIDUCIALS
-    number: Annotated[int, json_checks.whole_number(0, NUMBER_LIMIT)] = 0
+    method: PlayedMethod = protocol.RegistrationMethod.FIDUCIALS
+    number: Annotated[int, json_checks.whole_number(0, protocol.NUMBER_LIMIT)] = 0
     series: Annotated[str, json_checks.text(36, 0)] = ""
 
     def __post_init__(self) -> None:
@@ -187,23 +173,24 @@ class TrialRecord(AnyTrial):
         if self.skin.seed:
             object.__setattr__(self, "skin", replace(self.skin, seed=0))
         method, count = self.method, len(self.points)
-        if method is RegistrationMethod.FIDUCIALS and count != FIDUCIAL_COUNT:
+        if method is protocol.RegistrationMethod.FIDUCIALS and count != protocol.FIDUCIAL_COUNT:
             raise InputError(
-                f"The trial record's points must be a list of {FIDUCIAL_COUNT} points, not {count}."
+                f"The trial record's points must be a list of {protocol.FIDUCIAL_COUNT} points, "
+                f"not {count}."
             )
-        if count < COARSE_LANDMARKS:
+        if count < protocol.COARSE_LANDMARKS:
             raise InputError(
                 f"The trial record holds {count} touched landmarks; {method.value} needs at least "
-                f"{COARSE_LANDMARKS}."
+                f"{protocol.COARSE_LANDMARKS}."
             )
-        if method not in TRACED_METHODS and self.trace:
+        if method not in protocol.TRACED_METHODS and self.trace:
             raise InputError(
                 f"The trial record must hold no trace where the method is {method.value}."
             )
-        if method in TRACED_METHODS and len(self.trace) < MIN_TRACE_POINTS:
+        if method in protocol.TRACED_METHODS and len(self.trace) < protocol.MIN_TRACE_POINTS:
             raise InputError(
                 f"The trial record's trace has {len(self.trace)} points; {method.value} needs at "
-                f"least {MIN_TRACE_POINTS}."
+                f"least {protocol.MIN_TRACE_POINTS}."
             )
 
     @property
@@ -235,9 +222,9 @@ class AbortedTrial(AnyTrial):
 
     aborted_utc: Utc
     elapsed_s: Seconds
-    phase: Annotated[str, json_checks.one_of(*(phase.value for phase in OPEN_PHASES))]
+    phase: Annotated[str, json_checks.one_of(*(phase.value for phase in protocol.OPEN_PHASES))]
     reason: str
-    traced: Annotated[int, json_checks.whole_number(0, MAX_TRACE_POINTS)] = 0
+    traced: Annotated[int, json_checks.whole_number(0, protocol.MAX_TRACE_POINTS)] = 0
     step: str = field(default="", metadata=NOT_IN_JSON)
     repeat_reason: str = field(default="", metadata=NOT_IN_JSON)
 
@@ -245,25 +232,25 @@ class AbortedTrial(AnyTrial):
     def done(self) -> str:
         """How far the trainee came, such as "3 of 15 points touched"."""
         touched = len(self.points)
-        if self.method is RegistrationMethod.FIDUCIALS:
-            return f"{touched} of {FIDUCIAL_COUNT} points touched"
+        if self.method is protocol.RegistrationMethod.FIDUCIALS:
+            return f"{touched} of {protocol.FIDUCIAL_COUNT} points touched"
         landmarks = f"{touched} landmark{'' if touched == 1 else 's'} touched"
-        if self.method not in TRACED_METHODS:
+        if self.method not in protocol.TRACED_METHODS:
             return landmarks
         return f"{landmarks} and {self.traced} points traced"
 
     @property
     def is_after_all_touches(self) -> bool:
         """Whether all fiducials were touched and only Register was missing."""
-        return self.phase == Phase.COMPLETE.value
+        return self.phase == protocol.Phase.COMPLETE.value
 
     @property
     def is_kept(self) -> bool:
         """Whether a study stores it: it has a touch, even a refused one, or took some time."""
         touches = len(self.points) + self.rejected_touches + self.undone_touches
-        return touches > 0 or self.elapsed_s > MIN_ABORTED_S
+        return touches > 0 or self.elapsed_s > protocol.MIN_ABORTED_S
 
     @property
     def counts_as_failed(self) -> bool:
         """Whether it counts as not passed: a scored task with a kept or undone touch."""
-        return self.task != TRIAL_RUN and len(self.points) + self.undone_touches > 0
+        return self.task != protocol.TRIAL_RUN and len(self.points) + self.undone_touches > 0

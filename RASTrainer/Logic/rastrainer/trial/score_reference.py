@@ -111,8 +111,7 @@ class Region:
         The touching errors are independent, with an FLE of 1 mm, and isotropic along the skin:
         Cov(eᵢ) = ½ (I − nᵢnᵢᵀ). They move the fit by Σ (Σ JᵀJ)⁻¹ Jᵢᵀ eᵢ, and a point r by J(r)
         times that, to first order, with J the motions of a point. The fiducials (n, 3), RAS mm, are
-        not
-        collinear, and the unit normals (n, 3) of the skin there are in RAS.
+        not collinear, and the unit normals (n, 3) of the skin there are in RAS.
         """
         center = fiducials.mean(axis=0)
         moved = motions(RIGID, fiducials - center)

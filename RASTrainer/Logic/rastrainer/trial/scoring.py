@@ -55,12 +55,9 @@ Desirability = Annotated[float, number(0, 1)]
 
 @dataclass(frozen=True)
 class ScoreReference:
-    """The reference of a trial's score.
+    """The reference of a trial's score, and the largest acceptable true TRE.
 
-    Attributes:
-        time_s: completion time of half the range of the time desirability.
-        tre_mm: true TRE of accuracy desirability one half.
-        limit_mm: largest acceptable true TRE.
+    The desirability of time is half of its range at `time_s`, and accuracy is one half at `tre_mm`.
     """
 
     time_s: _Measure
@@ -166,7 +163,7 @@ def score_trial(
     """Return the score of a trial.
 
     Each method has its own references, and only fiducials have a common bias: scores are compared
-        within one method.
+    within one method.
     """
     check_measures(measures, "The trial's measures")
     bias_mm = measures.common_bias_mm

@@ -16,7 +16,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from rastrainer import transforms
+from rastrainer import protocol, transforms
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, pair
 from rastrainer.head.mesh import HeadMesh
@@ -24,13 +24,6 @@ from rastrainer.head.trial_head import SkinShift
 from rastrainer.json_checks import list_of
 from rastrainer.json_records import record_from_json
 from rastrainer.procedure.record import RegisteredTouch
-from rastrainer.protocol import (
-    COARSE_LANDMARKS,
-    FIDUCIAL_COUNT,
-    MIN_TRACE_POINTS,
-    TRACED_METHODS,
-    RegistrationMethod,
-)
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.localization_error import error_along_surface, isotropic_error
 from rastrainer.registration.registration import Registration, register, register_all_kinds
@@ -46,16 +39,11 @@ from rastrainer.trial.wording import Sentence, say
 
 @dataclass(frozen=True)
 class GivenPoints:
-    """The points that register a trial.
-
-    Attributes:
-        touches: World, mm, labeled.
-        trace_mm: (n, 3) float, World, the points that were traced; none where the method has none.
-    """
+    """The points that register a trial, World, mm; the trace, (n, 3) float, may be empty."""
 
     task: str
     touches: PointList
-    method: RegistrationMethod = RegistrationMethod.FIDUCIALS
+    method: protocol.RegistrationMethod = protocol.RegistrationMethod.FIDUCIALS
     trace_mm: np.ndarray = field(default_factory=lambda: np.empty((0, 3)))
 
     @classmethod
@@ -65,7 +53,7 @@ class GivenPoints:
 
     @classmethod
     def of_answer(
-        cls, answer: Mapping[str, Any], least_traced: int = MIN_TRACE_POINTS
+        cls, answer: Mapping[str, Any], least_traced: int = protocol.MIN_TRACE_POINTS
     ) -> GivenPoints:
         """Return the points in an answer to GetTrial about an open trial.
 
@@ -73,11 +61,13 @@ class GivenPoints:
         """
         what = "The trial"
         given = record_from_json(_TrialAnswer, answer, what)
-        is_by_fiducials = given.method is RegistrationMethod.FIDUCIALS
-        if is_by_fiducials and len(given.touches) < FIDUCIAL_COUNT:
-            raise InputError(f"{what}: touches must be a list of {FIDUCIAL_COUNT} touches.")
-        trace = given.trace if given.method in TRACED_METHODS else ()
-        if given.method in TRACED_METHODS and len(trace) < least_traced:
+        is_by_fiducials = given.method is protocol.RegistrationMethod.FIDUCIALS
+        if is_by_fiducials and len(given.touches) < protocol.FIDUCIAL_COUNT:
+            raise InputError(
+                f"{what}: touches must be a list of {protocol.FIDUCIAL_COUNT} touches."
+            )
+        trace = given.trace if given.method in protocol.TRACED_METHODS else ()
+        if given.method in protocol.TRACED_METHODS and len(trace) < least_traced:
             raise InputError(
                 f"{what}: trace must be a list of {least_traced} points or more, not {len(trace)}."
             )
@@ -92,20 +82,18 @@ class _TrialAnswer:
 
     task: str
     touches: Annotated[
-        tuple[RegisteredTouch, ...], list_of(COARSE_LANDMARKS, FIDUCIAL_COUNT, "touches")
+        tuple[RegisteredTouch, ...],
+        list_of(protocol.COARSE_LANDMARKS, protocol.FIDUCIAL_COUNT, "touches"),
     ]
-    method: PlayedMethod = RegistrationMethod.FIDUCIALS
+    method: PlayedMethod = protocol.RegistrationMethod.FIDUCIALS
     trace: Annotated[tuple[TracePoint, ...], trace_points] = ()
 
 
 @dataclass(frozen=True, eq=False)
 class FollowedTrace:
-    """A trace where the landmarks put it.
+    """A trace where the landmarks put it, RAS mm, and where the next points would help most.
 
-    Attributes:
-        places: (n, 3) float, RAS mm.
-        away_mm: as in `TraceGuide`.
-        next_place: (3,) float, RAS mm, where the next points would help most; None without one.
+    The places are (n, 3) float, the next one (3,) float or None; `away_mm` is as in `TraceGuide`.
     """
 
     places: np.ndarray
@@ -139,12 +127,8 @@ LEAST_ALONG_SURFACE = 6
 
 @dataclass(frozen=True)
 class TouchRegistration:
-    """Possible registrations of a trial, and their expected errors.
-
-    Attributes:
-        target_errors: expected error at the scenario's target, by kind.
-        match: of the trace, where the method has one.
-    """
+    """Possible registrations of a trial by kind, their expected errors at the scenario's target,
+    and the match of the trace, where the method has one."""
 
     fits: Mapping[str, Registration]
     target_errors: Mapping[str, TargetError]
@@ -174,7 +158,7 @@ def register_trial(
     task = task_by_method(scenario, given.task, given.method)
     labels, moving, fixed = pair(given.touches, PointList(task.labels, task.fiducials))
     fits = register_all_kinds(moving, fixed, labels)
-    if given.method in TRACED_METHODS:
+    if given.method in protocol.TRACED_METHODS:
         # The rigid one alone: a scaled or sheared head would fit any trace. It has the landmarks'
         # points and the matrix that fits the trace to the surface.
         coarse = fits[RIGID]
@@ -204,7 +188,7 @@ def register_trial(
 
 
 def normals_at(
-    scenario: Scenario, task_name: str, labels: Sequence[str], method: RegistrationMethod
+    scenario: Scenario, task_name: str, labels: Sequence[str], method: protocol.RegistrationMethod
 ) -> np.ndarray:
     """Return the outward normals of the skin at points of a task by a method, (n, 3) float, RAS.
 

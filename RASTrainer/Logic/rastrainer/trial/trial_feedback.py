@@ -11,17 +11,9 @@ from rastrainer.errors import InputError
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.number_text import fixed
 from rastrainer.registration.registration import Registration
+from rastrainer.trial import scoring
 from rastrainer.trial.advice import Advice, TouchFinding, advise, touch_findings
 from rastrainer.trial.lc_cusum import LcCusum, lc_cusum, lc_cusum_limit
-from rastrainer.trial.scoring import (
-    COMMON_BIAS_LIMIT_MM,
-    CONTACT_LIMIT_S,
-    CONTACT_PATH_LIMIT_MM,
-    DEPTH_LIMIT_MM,
-    LONG_PAUSE_S,
-    TrialScore,
-    passes,
-)
 from rastrainer.trial.trial_row import TrialRow
 from rastrainer.trial.wording import Sentence, say
 
@@ -70,7 +62,7 @@ def progress_of(
         about_mark = say("not passed", points=pass_mark - trial.score, mark=pass_mark)
     if pass_mark is None:
         return TraineeProgress(None, (about_scores, about_mark))
-    failures = [not passes(other.score, other.acceptable, pass_mark) for other in in_mode]
+    failures = [not scoring.passes(other.score, other.acceptable, pass_mark) for other in in_mode]
     about_competence = _about_competence(competence_of(failures), len(failures))
     return TraineeProgress(pass_mark, (about_scores, about_mark, about_competence))
 
@@ -112,12 +104,11 @@ MAX_SHORT = 4
 class TrialFeedback:
     """The feedback shown to a trainee after a trial.
 
-    Attributes:
-        paused_s: How long the trial was paused in all, as far as that is known.
-        skin: How the skin had shifted, and what that did; empty if it had not.
+    `paused_s` is how long it was paused in all, as far as that is known, and `skin` how the skin
+    had shifted, and what that did; empty if it had not.
     """
 
-    score: TrialScore | None
+    score: scoring.TrialScore | None
     touches: tuple[TouchFinding, ...]
     advice: tuple[Advice, ...]
     progress: TraineeProgress | None = None
@@ -141,7 +132,7 @@ class TrialFeedback:
                 _accuracy_sentence(score),
                 _safety_sentence(score),
             ]
-        if self.paused_s > LONG_PAUSE_S:
+        if self.paused_s > scoring.LONG_PAUSE_S:
             sentences.append(
                 f"Paused for {fixed(self.paused_s, 0)} s in all, which the score leaves out: "
                 "compare it with care to trials that were played in one go."
@@ -194,14 +185,14 @@ def trial_feedback(
     )
 
 
-def _accuracy_sentence(score: TrialScore) -> str:
+def _accuracy_sentence(score: scoring.TrialScore) -> str:
     bias_mm, limit_mm = score.measures.common_bias_mm, score.reference.limit_mm
     bias = "" if bias_mm is None else f" and {fixed(bias_mm, 2)} mm common to all touches"
     beyond = []
     if not score.is_accurate:
         beyond.append(f"more than {limit_mm:g} mm of error")
     if score.is_unbiased is False:
-        beyond.append(f"more than {COMMON_BIAS_LIMIT_MM:g} mm common to all touches")
+        beyond.append(f"more than {scoring.COMMON_BIAS_LIMIT_MM:g} mm common to all touches")
     end = f"; {' and '.join(beyond)} is not acceptable." if beyond else "."
     return (
         f"Accuracy: {fixed(score.measures.tre_mm, 2)} mm true error in the brain{bias}, worth "
@@ -209,13 +200,13 @@ def _accuracy_sentence(score: TrialScore) -> str:
     )
 
 
-def _safety_sentence(score: TrialScore) -> str:
+def _safety_sentence(score: scoring.TrialScore) -> str:
     measures = score.measures
     beyond = (
         "."
         if score.is_safe
-        else f"; more than {CONTACT_LIMIT_S:g} s, {CONTACT_PATH_LIMIT_MM:g} mm or "
-        f"{DEPTH_LIMIT_MM:g} mm deep is not acceptable."
+        else f"; more than {scoring.CONTACT_LIMIT_S:g} s, {scoring.CONTACT_PATH_LIMIT_MM:g} mm or "
+        f"{scoring.DEPTH_LIMIT_MM:g} mm deep is not acceptable."
     )
     contact = ""
     if measures.contact_time_s > 0:

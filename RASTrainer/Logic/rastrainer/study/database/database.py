@@ -33,12 +33,9 @@ _MAX_LENGTH = 1000
 
 @dataclass(frozen=True)
 class PostgresAddress:
-    """A database of a PostgreSQL server.
+    """A database of a PostgreSQL server; the host may be the folder of a socket.
 
-    Attributes:
-        uri: For libpq, checked.
-        host: A computer's name or number, or the folder of the socket on this one.
-        sslmode: None for libpq's default, which is enough on this computer.
+    `uri`, checked, is for libpq. Its default `sslmode` (None) is enough on this computer.
     """
 
     uri: str

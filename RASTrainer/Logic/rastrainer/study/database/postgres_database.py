@@ -16,6 +16,7 @@ import time
 from typing import Any
 
 from rastrainer.errors import InputError
+from rastrainer.study.database import schema
 from rastrainer.study.database.database import (
     LockWait,
     PostgresAddress,
@@ -28,14 +29,6 @@ from rastrainer.study.database.postgres_connecting import (
     connected_within,
     postgres_driver,
     postgres_error,
-)
-from rastrainer.study.database.schema import (
-    APPLICATION_ID,
-    SCHEMA_VERSION,
-    TABLES,
-    check_schema_version,
-    lacking_sentence,
-    missing_from,
 )
 
 LOCKED = "UPDATE rastrainer_study SET changes = changes + 1"
@@ -112,7 +105,7 @@ class PostgresDatabase(StudyDatabase):
         return changes - self._own_changes
 
     def continue_numbers(self) -> None:
-        for table in TABLES.values():
+        for table in schema.TABLES.values():
             if table.order == "id" and table.name != "trainee_numbers":
                 self._execute(
                     f"SELECT setval(pg_get_serial_sequence('{table.name}', 'id'), "
@@ -177,20 +170,20 @@ class PostgresDatabase(StudyDatabase):
             )
         with self.reading():
             is_study = self._holds_study()
-            if is_study and not missing_from(self._names()):
+            if is_study and not schema.missing_from(self._names()):
                 return
         if not (self._may_change if is_study else self._may_create):
-            raise InputError(lacking_sentence(self._address))
+            raise InputError(schema.lacking_sentence(self._address))
         with self._connection.transaction():
             self._execute(self._limited_wait())
-            self._execute("SELECT pg_advisory_xact_lock(?)", APPLICATION_ID)
+            self._execute("SELECT pg_advisory_xact_lock(?)", schema.APPLICATION_ID)
             # Another process may have been faster.
             if not self._holds_study():
                 self._execute(_HEADER)
-                header = (APPLICATION_ID, SCHEMA_VERSION)
+                header = (schema.APPLICATION_ID, schema.SCHEMA_VERSION)
                 self._execute("INSERT INTO rastrainer_study VALUES (?, ?, 0)", *header)
             self._execute(LOCKED)
-            for statement in missing_from(self._names()):
+            for statement in schema.missing_from(self._names()):
                 self._execute(in_postgres(statement))
 
     def _names(self) -> set[str]:
@@ -211,9 +204,9 @@ class PostgresDatabase(StudyDatabase):
             rows = self._connection.execute(header).fetchall()
         elif not self._first(_TABLES):
             return False
-        if len(rows) != 1 or rows[0][0] != APPLICATION_ID:
+        if len(rows) != 1 or rows[0][0] != schema.APPLICATION_ID:
             raise InputError(f"{self._address} is the database of another program.")
-        check_schema_version(rows[0][1], self._address)
+        schema.check_schema_version(rows[0][1], self._address)
         return True
 
     def _first(self, query: str) -> Any:

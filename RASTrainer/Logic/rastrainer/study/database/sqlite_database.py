@@ -15,14 +15,8 @@ from urllib.parse import quote
 
 from rastrainer.errors import InputError
 from rastrainer.files.writing import keep_others_out, open_private
+from rastrainer.study.database import schema
 from rastrainer.study.database.database import LockWait, StudyBusyError, StudyDatabase
-from rastrainer.study.database.schema import (
-    APPLICATION_ID,
-    SCHEMA_VERSION,
-    check_schema_version,
-    lacking_sentence,
-    missing_from,
-)
 
 _COMMANDS = "SELECT count(*) FROM sqlite_master WHERE type NOT IN ('table', 'index')"
 _BY_WORDS = {
@@ -126,11 +120,11 @@ class SqliteDatabase(StudyDatabase):
                     f"The study {self.path} contains triggers or views, which no study of "
                     "RASTrainer has."
                 )
-            if self._number("application_id") != (APPLICATION_ID if names else 0):
+            if self._number("application_id") != (schema.APPLICATION_ID if names else 0):
                 raise InputError(f"{self.path} is the database of another program.")
             if names:
-                check_schema_version(self._number("user_version"), self.path)
-        if missing_from(names):
+                schema.check_schema_version(self._number("user_version"), self.path)
+        if schema.missing_from(names):
             self._create_tables()
         is_whole = self._connection.execute("PRAGMA integrity_check(1)").fetchone() == ("ok",)
         if not is_whole or self._connection.execute("PRAGMA foreign_key_check").fetchone():
@@ -140,13 +134,13 @@ class SqliteDatabase(StudyDatabase):
 
     def _create_tables(self) -> None:
         if not self._may_change:
-            raise InputError(lacking_sentence(self.path))
+            raise InputError(schema.lacking_sentence(self.path))
         with self.writing():
             # Another process may have been faster.
-            for statement in missing_from(self._names()):
+            for statement in schema.missing_from(self._names()):
                 self._execute(statement)
-            self._execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
-            self._execute(f"PRAGMA application_id = {APPLICATION_ID}")
+            self._execute(f"PRAGMA user_version = {schema.SCHEMA_VERSION}")
+            self._execute(f"PRAGMA application_id = {schema.APPLICATION_ID}")
 
     def _names(self) -> set[str]:
         return {name for (name,) in self._connection.execute("SELECT name FROM sqlite_master")}

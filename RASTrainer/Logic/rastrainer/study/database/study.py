@@ -14,6 +14,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import replace
+from enum import Enum
 from typing import Any
 
 from rastrainer import json_checks
@@ -27,7 +28,7 @@ from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.study.database.database import LockWait, PostgresAddress, StudyDatabase, study_place
 from rastrainer.study.database.postgres_database import PostgresDatabase
-from rastrainer.study.database.schema import TRAINEE_ID
+from rastrainer.study.database.schema import TABLES, TRAINEE_ID
 from rastrainer.study.database.sqlite_database import SqliteDatabase
 from rastrainer.study.database.values import (
     PROCEDURE,
@@ -53,7 +54,12 @@ STUDY_FILE = "study.db"
 """The usual name."""
 RECORD_LIMIT_BYTES = 2**20
 
-_RECORDS = "trials", "aborted_trials", "drills"
+Delivered = TrialRecord | AbortedTrial | DrillRecord
+_RECORDS: Mapping[str, type[Delivered]] = {
+    "trials": TrialRecord,
+    "aborted_trials": AbortedTrial,
+    "drills": DrillRecord,
+}
 """The tables of what the simulator delivers."""
 _TRAINEES = "SELECT pseudonym, consent, archived, created_utc FROM trainees"
 _STAMPED_TRIALS = f"""
@@ -231,31 +237,32 @@ class Study(AbstractContextManager["Study"]):
         with self.database.writing():
             if not self.is_new(record):
                 return False
-            self._store(
-                "trials",
-                record,
-                delivered,
-                task=record.task,
-                mode=record.mode,
-                scenario=record.scenario,
-                method=record.method.value,
-                started_utc=record.started_utc,
-                completion_time_s=record.completion_time_s,
-            )
+            self._store("trials", record, delivered)
             self.add_results(record.trial_id, registrations, target_errors, score, **others)
         return True
 
-    def is_new(self, record: TrialRecord) -> bool:
-        """Return whether a trial would be new; refuse a deleted one, and another of its UUID."""
+    def is_new(self, record: Delivered) -> bool:
+        """Return whether a record would be new; refuse a deleted one, and another of its UUID."""
+        trial_id = record.trial_id
         with self.database.reading():
-            self._check_not_deleted(record.trial_id)
-            if self.has("trials", record.trial_id):
-                # The seed is the simulator's secret at first and may be revealed later.
-                if replace(self.record(record.trial_id), seed=None) != replace(record, seed=None):
-                    raise _other_trial(record.trial_id)
+            if self.is_deleted(trial_id):
+                raise DeletedTrialError(
+                    "The trial was deleted from the study with its trainee and is not stored again."
+                )
+            for table in ("trials",) if isinstance(record, TrialRecord) else _RECORDS:
+                query = f"SELECT record_json FROM {table} WHERE trial_id = ?"
+                row = self.database.row(query, trial_id)
+                if row is None:
+                    continue
+                stored = decoded_record(_RECORDS[table], row[0])
+                if _without_seed(stored) != _without_seed(record):
+                    raise InputError(
+                        f"Another trial is stored under the UUID {trial_id}; the stored one is "
+                        "kept."
+                    )
                 return False
-            json_checks.accepted(json_checks.pseudonym, record.trainee, "A pseudonym")
-            return True
+        json_checks.accepted(json_checks.pseudonym, record.trainee, "A pseudonym")
+        return True
 
     def add_aborted(
         self, record: AbortedTrial | Mapping[str, Any], delivered: Mapping[str, Any] | None = None
@@ -265,7 +272,7 @@ class Study(AbstractContextManager["Study"]):
             delivered = record
             record = record_from_json(AbortedTrial, delivered)
         with self.database.writing():
-            if not self._is_new_in("aborted_trials", record):
+            if not self.is_new(record):
                 return False
             if record.is_kept:
                 self._store("aborted_trials", record, delivered)
@@ -276,21 +283,10 @@ class Study(AbstractContextManager["Study"]):
     def add_drill(self, record: DrillRecord, delivered: Mapping[str, Any] | None = None) -> bool:
         """Store a drill of decisions, as `add_trial`."""
         with self.database.writing():
-            is_new = self._is_new_in("drills", record)
+            is_new = self.is_new(record)
             if is_new:
-                self._store("drills", record, delivered, started_utc=record.started_utc)
+                self._store("drills", record, delivered)
         return is_new
-
-    def _is_new_in(self, table: str, record: AbortedTrial | DrillRecord) -> bool:
-        """Return whether a record would be new in its table; otherwise as `is_new`."""
-        self._check_not_deleted(record.trial_id)
-        query = f"SELECT record_json FROM {table} WHERE trial_id = ?"
-        row = self.database.row(query, record.trial_id)
-        is_other = row is not None and decoded_record(type(record), row[0]) != record
-        others = [other for other in _RECORDS if other != table]
-        if is_other or any(self.has(other, record.trial_id) for other in others):
-            raise _other_trial(record.trial_id)
-        return row is None
 
     def has(self, table: str, trial_id: str) -> bool:
         query = f"SELECT 1 FROM {table} WHERE trial_id = ?"
@@ -304,12 +300,6 @@ class Study(AbstractContextManager["Study"]):
         query = "SELECT 1 FROM deleted_trials WHERE trial_sha256 = ?"
         return self.database.row(query, _sha256(trial_id)) is not None
 
-    def _check_not_deleted(self, trial_id: str) -> None:
-        if self.is_deleted(trial_id):
-            raise DeletedTrialError(
-                "The trial was deleted from the study with its trainee and is not stored again."
-            )
-
     def _note_delivery(self, record: AbortedTrial | TrialRecord) -> None:
         """Note that a trial has arrived; one without a number, from elsewhere, leaves no trace."""
         if record.number and record.series:
@@ -317,13 +307,7 @@ class Study(AbstractContextManager["Study"]):
                 "deliveries", is_once=True, series=record.series, number=record.number
             )
 
-    def _store(
-        self,
-        table: str,
-        record: AbortedTrial | TrialRecord | DrillRecord,
-        delivered: Mapping[str, Any] | None,
-        **columns: Any,
-    ) -> None:
+    def _store(self, table: str, record: Delivered, delivered: Mapping[str, Any] | None) -> None:
         text = json_text(delivered or record_to_json(record))
         if len(text) > RECORD_LIMIT_BYTES:
             raise InputError("The trial record is larger than 1 MiB, the most that is stored.")
@@ -331,9 +315,13 @@ class Study(AbstractContextManager["Study"]):
             self._note_delivery(record)
         if not self.has_trainee(record.trainee):
             self.create_trainee(record.trainee)
-        self.database.insert(
-            table, trainee=record.trainee, trial_id=record.trial_id, record_json=text, **columns
-        )
+        found = {name: getattr(record, name, None) for name in TABLES[table].columns}
+        columns = {
+            name: value.value if isinstance(value, Enum) else value
+            for name, value in found.items()
+            if value is not None
+        }
+        self.database.insert(table, trainee=record.trainee, record_json=text, **columns)
 
     def undelivered(self) -> Mapping[str, tuple[tuple[int, int], ...]]:
         """Return the first and last numbers of each gap in what arrived, by series.
@@ -491,8 +479,9 @@ def _no_trial(trial_id: str) -> InputError:
     return InputError(f"The study has no trial {json.dumps(str(trial_id)[:64])}.")
 
 
-def _other_trial(trial_id: str) -> InputError:
-    return InputError(f"Another trial is stored under the UUID {trial_id}; the stored one is kept.")
+def _without_seed(record: object) -> object:
+    """Return a record without the seed, a secret of the simulator that may be revealed later."""
+    return replace(record, seed=None) if isinstance(record, TrialRecord) else record
 
 
 def _sha256(trial_id: str) -> str:

@@ -23,9 +23,8 @@ _Mark = Annotated[int, whole_number(0, 100)]
 class QuestionnaireItem:
     """One item: a name for data files, and its topic.
 
-    Attributes:
-        anchors: The meaning of the smallest and the largest answer, if the item has its own.
-        groups: First letters of the SSQ's scales that include the symptom.
+    It may have its own anchors, the meaning of the smallest and the largest answer. `groups` are
+    the first letters of the SSQ's scales that include the symptom.
     """
 
     name: str

@@ -18,16 +18,8 @@ from rastrainer.protocol import StepKind
 from rastrainer.study.database.schema import TRAINEE_ID
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import TRUTH, decoded, decoded_record, json_text, moment
+from rastrainer.study.protocol import steps
 from rastrainer.study.protocol.questionnaires import find_questionnaire
-from rastrainer.study.protocol.step_progress import (
-    DONE,
-    SKIPPED,
-    StepEntry,
-    StepProgress,
-    checked_details,
-    checked_reason,
-)
-from rastrainer.study.protocol.steps import objections_to
 from rastrainer.study.protocol.study_protocol import StudyProtocol, steps_for
 from rastrainer.study_messages import StudyStep
 from rastrainer.trial.record import AbortedTrial, TrialRecord
@@ -101,7 +93,7 @@ class StudyProgress:
             )
         )
 
-    def progress(self, pseudonym: str) -> StepProgress:
+    def progress(self, pseudonym: str) -> steps.StepProgress:
         with self._database.reading():
             protocol = self._require_protocol()
             enrolled = self._database.row(
@@ -118,10 +110,10 @@ class StudyProgress:
                 pseudonym,
             )
             entries = tuple(
-                StepEntry(step, outcome, decoded(details, dict), utc)
+                steps.StepEntry(step, outcome, decoded(details, dict), utc)
                 for step, outcome, details, utc in rows
             )
-            progress = StepProgress(steps_for(protocol, place), entries, enrolled_utc)
+            progress = steps.StepProgress(steps_for(protocol, place), entries, enrolled_utc)
             step = progress.next_step
             practiced = self._database.row(
                 f"SELECT seconds FROM practice WHERE trainee_id = ({TRAINEE_ID}) AND step = ?",
@@ -136,34 +128,34 @@ class StudyProgress:
 
     def finish(
         self, pseudonym: str, step: str, details: Mapping[str, Any] | None = None
-    ) -> StepProgress:
+    ) -> steps.StepProgress:
         with self._database.writing():
             due = self.progress(pseudonym).due(step)
-            checked = checked_details(due, details or {})
-            return self._store(pseudonym, step, DONE, checked)
+            checked = steps.checked_details(due, details or {})
+            return self._store(pseudonym, step, steps.DONE, checked)
 
-    def skip(self, pseudonym: str, step: str, reason: str) -> StepProgress:
+    def skip(self, pseudonym: str, step: str, reason: str) -> steps.StepProgress:
         with self._database.writing():
             self.progress(pseudonym).due(step)
-            checked = checked_reason(reason, "A step can be skipped")
-            return self._store(pseudonym, step, SKIPPED, {"reason": checked})
+            checked = steps.checked_reason(reason, "A step can be skipped")
+            return self._store(pseudonym, step, steps.SKIPPED, {"reason": checked})
 
     def _store(
         self, pseudonym: str, step: str, outcome: str, details: Mapping[str, Any]
-    ) -> StepProgress:
+    ) -> steps.StepProgress:
         text = json_text(dict(details))
         self._database.insert(
             "steps", trainee=pseudonym, step=step, outcome=outcome, details_json=text
         )
         return self.progress(pseudonym)
 
-    def explain_repeat(self, pseudonym: str, reason: str) -> StepProgress:
+    def explain_repeat(self, pseudonym: str, reason: str) -> steps.StepProgress:
         with self._database.writing():
             progress = self.progress(pseudonym)
             if not progress.unexplained:
                 raise InputError("The next step was not aborted; it needs no reason to be played.")
             step = progress.due()
-            checked = checked_reason(reason, "An aborted trial can be repeated")
+            checked = steps.checked_reason(reason, "An aborted trial can be repeated")
             for record in progress.unexplained:
                 self._database.insert(
                     "repeats", trial_id=record.trial_id, step=step.name, reason=checked
@@ -184,7 +176,7 @@ class StudyProgress:
                 float(seconds),
             )
 
-    def count_played(self, pseudonym: str) -> StepProgress:
+    def count_played(self, pseudonym: str) -> steps.StepProgress:
         """Count stored trials for the next steps, and return the new progress.
 
         Trials count also if they arrive late or an interruption left their step open. A repeat
@@ -200,7 +192,7 @@ class StudyProgress:
                 progress = self._store(pseudonym, entry.step, entry.outcome, entry.details)
             return progress
 
-    def played(self, pseudonym: str) -> StepProgress:
+    def played(self, pseudonym: str) -> steps.StepProgress:
         """Return the progress that `count_played` would give, without storing it."""
         with self._database.reading():
             progress = self.progress(pseudonym)
@@ -215,14 +207,14 @@ class StudyProgress:
         for name in self.enrolled():
             progress = self.progress(name)
             for step, entry in zip(progress.steps, progress.entries, strict=False):
-                if step.kind == StepKind.QUESTIONNAIRE and entry.outcome == DONE:
+                if step.kind == StepKind.QUESTIONNAIRE and entry.outcome == steps.DONE:
                     given = tuple(entry.details["answers"])
                     scores = find_questionnaire(step.questionnaire).score(given)
                     utc = entry.stored_utc
                     found.append(QuestionnaireAnswers(name, step, given, scores, utc))
         return tuple(found)
 
-    def _played_next(self, pseudonym: str, progress: StepProgress) -> list[StepEntry]:
+    def _played_next(self, pseudonym: str, progress: steps.StepProgress) -> list[steps.StepEntry]:
         entries = []
         while (step := progress.next_step) is not None:
             found = self._played_for(pseudonym, progress, step)
@@ -233,54 +225,41 @@ class StudyProgress:
         return entries
 
     def _played_for(
-        self, pseudonym: str, progress: StepProgress, step: StudyStep
-    ) -> StepEntry | None:
-        """Return the entry of the next step's trial, or None; a repeat needs a reason to count."""
-        if step.kind == StepKind.DECIDE:
-            return self._decided_for(pseudonym, progress, step)
-        if step.kind != StepKind.TRIAL:
+        self, pseudonym: str, progress: steps.StepProgress, step: StudyStep
+    ) -> steps.StepEntry | None:
+        """Return the entry of the next step's trial or drill, or None; a repeat needs a reason."""
+        found: list[tuple[TrialRecord | DrillRecord, str]]
+        if step.kind == StepKind.TRIAL:
+            rows = self._database.rows(
+                "SELECT record_json, stored_utc FROM trials "
+                f"WHERE trainee_id = ({TRAINEE_ID}) AND mode = ? AND task = ? AND method = ? "
+                "AND trial_id IN (SELECT trial_id FROM results WHERE kind != ?)",
+                *(pseudonym, step.mode, step.task, step.method, TRUTH),
+            )
+            played = ((decoded_record(TrialRecord, text), utc) for text, utc in rows)
+            found = [(each, utc) for each, utc in played if _is_played_as_asked(step, each)]
+        elif step.kind == StepKind.DECIDE:
+            query = f"SELECT record_json, stored_utc FROM drills WHERE trainee_id = ({TRAINEE_ID})"
+            rows = self._database.rows(query, pseudonym)
+            decided = ((decoded_record(DrillRecord, text), utc) for text, utc in rows)
+            found = [(each, utc) for each, utc in decided if each.mode == step.mode]
+        else:
             return None
-        rows = self._database.rows(
-            "SELECT record_json, stored_utc FROM trials "
-            f"WHERE trainee_id = ({TRAINEE_ID}) AND mode = ? AND task = ? AND method = ? "
-            "AND trial_id IN (SELECT trial_id FROM results WHERE kind != ?)",
-            *(pseudonym, step.mode, step.task, step.method, TRUTH),
-        )
-        since = self._since(pseudonym, progress)
-        played = [(decoded_record(TrialRecord, text), utc) for text, utc in rows]
-        for record, stored_utc in sorted(played, key=lambda each: moment(each[0].started_utc)):
-            procedure = "" if record.procedure is None else record.procedure.procedure
-            if (
-                procedure == step.procedure
-                and step.is_played_on(record.skin.shift_mm, record.skin.indentation_mm)
-                and record.trial_id not in progress.counted_trials
-                and moment(record.started_utc) >= since
-                and not objections_to(step, record)
-            ):
-                aborted = self._aborted_before(pseudonym, progress)
-                if any(moment(a.started_utc) <= moment(record.started_utc) for a in aborted):
-                    return None
-                return StepEntry(step.name, DONE, {"trialId": record.trial_id}, stored_utc)
-        return None
-
-    def _decided_for(
-        self, pseudonym: str, progress: StepProgress, step: StudyStep
-    ) -> StepEntry | None:
         since, counted = self._since(pseudonym, progress), progress.counted_trials
-        query = f"SELECT record_json, stored_utc FROM drills WHERE trainee_id = ({TRAINEE_ID})"
-        found = [
-            (moment(record.started_utc), record.trial_id, stored_utc)
-            for text, stored_utc in self._database.rows(query, pseudonym)
-            if (record := decoded_record(DrillRecord, text)).mode == step.mode
-            and record.trial_id not in counted
-            and moment(record.started_utc) >= since
+        begun = [
+            (started, record.trial_id, stored_utc)
+            for record, stored_utc in found
+            if (started := moment(record.started_utc)) >= since and record.trial_id not in counted
         ]
-        if not found:
+        if not begun:
             return None
-        _started, trial_id, stored_utc = min(found)
-        return StepEntry(step.name, DONE, {"trialId": trial_id}, stored_utc)
+        started, trial_id, stored_utc = min(begun)
+        aborted = self._aborted_before(pseudonym, progress)
+        if any(moment(record.started_utc) <= started for record in aborted):
+            return None
+        return steps.StepEntry(step.name, steps.DONE, {"trialId": trial_id}, stored_utc)
 
-    def _since(self, pseudonym: str, progress: StepProgress) -> datetime:
+    def _since(self, pseudonym: str, progress: steps.StepProgress) -> datetime:
         counted = progress.counted_trials
         after = [
             moment(started_utc)
@@ -293,7 +272,9 @@ class StudyProgress:
         ]
         return max([*after, moment(progress.enrolled_utc)])
 
-    def _aborted_before(self, pseudonym: str, progress: StepProgress) -> tuple[AbortedTrial, ...]:
+    def _aborted_before(
+        self, pseudonym: str, progress: steps.StepProgress
+    ) -> tuple[AbortedTrial, ...]:
         step = progress.next_step
         if step is None or step.kind != StepKind.TRIAL:
             return ()
@@ -307,3 +288,12 @@ class StudyProgress:
             and (record.mode, record.task) == (step.mode, step.task)
             and moment(record.started_utc) >= since
         )
+
+
+def _is_played_as_asked(step: StudyStep, record: TrialRecord) -> bool:
+    procedure = "" if record.procedure is None else record.procedure.procedure
+    return (
+        procedure == step.procedure
+        and step.is_played_on(record.skin.shift_mm, record.skin.indentation_mm)
+        and not steps.objections_to(step, record)
+    )
