@@ -293,42 +293,38 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
         self.assertEqual(widget.ui.targetComboBox.currentNodeID, target.GetID())
 
     def test_touchesAreRegisteredAndABadOneIsLeftOutByOneClick(self):
-        with self.fixture() as fixture:
-            ui = fixture.ui
-            ui.showScenarioButton.click()
-            fixture.process()
-            touches = fixture.touches()
-            touches[6] += 9.0
-            fixture.touch(touches)
-            self.assertEqual(ui.residualsTable.rowCount, 15)
-            self.assertIn("7", fixture.child("warning0Text").text)
-            fixture.child("remedy0Button").click()
-            fixture.process()
-            self.assertEqual(ui.residualsTable.rowCount, 14)
-            ui.undoButton.click()
-            fixture.process()
-            self.assertEqual(ui.residualsTable.rowCount, 15)
+        fixture = self.fixture()
+        ui = fixture.ui
+        fixture.showScenario()
+        touches = fixture.touches()
+        touches[6] += 9.0
+        fixture.touch(touches)
+        self.assertEqual(ui.residualsTable.rowCount, 15)
+        self.assertIn("7", fixture.child("warning0Text").text)
+        fixture.child("remedy0Button").click()
+        fixture.process()
+        self.assertEqual(ui.residualsTable.rowCount, 14)
+        ui.undoButton.click()
+        fixture.process()
+        self.assertEqual(ui.residualsTable.rowCount, 15)
 
     def test_theSceneMayBeClearedAndEveryNodeDeleted(self):
-        with self.fixture() as fixture:
-            fixture.ui.showScenarioButton.click()
-            fixture.process()
-            fixture.ui.robotCheckBox.checked = True
-            fixture.touch(fixture.touches())
-            slicer.mrmlScene.Clear()
-            fixture.session.sceneWasCleared()
-            fixture.process()
-            self.assertEqual(fixture.ui.residualsTable.rowCount, 0)
-            fixture.ui.showScenarioButton.click()
-            fixture.process()
-            fixture.touch(fixture.touches())
-            for node in list(slicer.util.getNodesByClass("vtkMRMLDisplayableNode")):
-                if node.GetScene() is not None and not node.GetSingletonTag():
-                    slicer.mrmlScene.RemoveNode(node)
-                    fixture.process()
-            self.assertGreater(len(fixture.ui.registrationText.text), 20)
+        fixture = self.fixture()
+        fixture.showScenario()
+        fixture.ui.robotCheckBox.checked = True
+        fixture.touch(fixture.touches())
+        slicer.mrmlScene.Clear()
+        fixture.process()
+        self.assertEqual(fixture.ui.residualsTable.rowCount, 0)
+        fixture.showScenario()
+        fixture.touch(fixture.touches())
+        for node in list(slicer.util.getNodesByClass("vtkMRMLDisplayableNode")):
+            if node.GetScene() is not None and not node.GetSingletonTag():
+                slicer.mrmlScene.RemoveNode(node)
+                fixture.process()
+        self.assertGreater(len(fixture.ui.registrationText.text), 20)
 
     def fixture(self):
         from rastrainer.sections.self_test_fixture import SelfTestFixture
 
-        return SelfTestFixture(Path(slicer.modules.rastrainer.path))
+        return SelfTestFixture(slicer.util.getModuleWidget("RASTrainer"))

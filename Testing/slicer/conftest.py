@@ -13,7 +13,13 @@ from rastrainer.slicer.program.child_process import OwnProcess, runHere
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.scene import HeadlessScene
 from Testing.domain.scenario.made_up_scenario import ball_head
-from Testing.slicer.host.fixtures import host, module_widget, start_slicer  # noqa: F401
+from Testing.slicer.host.fixtures import (  # noqa: F401
+    fresh_module,
+    host,
+    lasting_host,
+    module_widget,
+    start_slicer,
+)
 from Testing.slicer.simulator_double import SimulatorDouble
 from Testing.slicer.training_room import Room
 

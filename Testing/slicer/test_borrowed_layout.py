@@ -11,9 +11,12 @@ OWN = slicer.vtkMRMLLayoutNode.SlicerLayoutOneUp3DView
 
 
 @pytest.fixture
-def looking(host, make_record):
+def looking(fresh_module, make_record):
     """The module with a trainee who has a trial, in the user's own layout."""
-    host.open()
+    return look(fresh_module, make_record)
+
+
+def look(host, make_record):
     record = make_record(str(uuid.UUID(int=1)), trainee="T001", scenario="colin27")
     store_trial_on_colin(host, record, 2)
     host.press("createTraineeButton")
@@ -48,7 +51,11 @@ def test_tables_and_the_learning_curve_are_shown_until_the_button_is_pressed_aga
     assert views() == (OWN, 0, 0)
 
 
-def test_leaving_a_section_the_module_or_slicer_restores_the_users_layout(looking):
+def test_leaving_a_section_the_module_or_slicer_restores_the_users_layout(
+    host, module_widget, make_record
+):
+    looking = look(host, make_record)
+
     def fold():
         looking.find("scoreCollapsibleButton").collapsed = True
         looking.process_events()
@@ -64,7 +71,7 @@ def test_leaving_a_section_the_module_or_slicer_restores_the_users_layout(lookin
         assert views() == (OWN, 0, 0)
         looking.wait_until(lambda: not looking.find("showTablesButton").checked, "it follows")
     looking.press("showTablesButton")
-    looking.widget.cleanup()
+    module_widget.cleanup()
     assert views() == (OWN, 0, 0)
 
 

@@ -28,8 +28,12 @@ FIDUCIALS = "vtkMRMLMarkupsFiducialNode"
 
 
 @pytest.fixture
+def host(fresh_module):
+    return fresh_module
+
+
+@pytest.fixture
 def session(host):
-    host.open()
     return host.widget.logic.session
 
 

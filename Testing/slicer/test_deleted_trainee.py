@@ -17,12 +17,11 @@ NAME = "T-001"
 
 
 @pytest.fixture
-def panel(host):
+def panel(fresh_module):
     """The section Trainees, with a chosen trainee."""
-    host.open()
-    host.type("pseudonymLineEdit", NAME)
-    host.press("createTraineeButton")
-    return host
+    fresh_module.type("pseudonymLineEdit", NAME)
+    fresh_module.press("createTraineeButton")
+    return fresh_module
 
 
 @pytest.fixture
@@ -39,7 +38,7 @@ def stored(panel):
         return [trainee.pseudonym for trainee in study.trainees()]
 
 
-def test_a_deletion_that_has_not_begun_is_canceled(panel, journal):
+def test_a_deletion_that_has_not_begun_is_canceled(panel, journal, monkeypatch):
     trainees, may_open, left = panel.widget.logic.session.trainees, threading.Event(), []
     open_patiently = trainees._openPatiently
 
@@ -48,7 +47,7 @@ def test_a_deletion_that_has_not_begun_is_canceled(panel, journal):
         assert may_open.wait(60.0)
         return open_patiently()
 
-    trainees._openPatiently = open_late
+    monkeypatch.setattr(trainees, "_openPatiently", open_late)
     panel.answer("cannot be undone", "Yes")
     with cancels(panel, "deleteTraineeButton", lambda: left):
         panel.press("deleteTraineeButton")

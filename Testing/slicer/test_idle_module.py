@@ -2,7 +2,6 @@
 
 import json
 
-import pytest
 import slicer
 
 from rastrainer.igtl.content import String
@@ -78,9 +77,10 @@ def test_a_sentence_is_shown_and_hidden_in_a_closed_section_without_a_layout(hos
     assert not label.visible
 
 
-@pytest.mark.parametrize(
-    ("layout", "is_entered", "in_slices", "is_seen"),
-    [
+def test_visibility_depends_on_the_layout_and_on_the_module(host):
+    from rastrainer.sections.application import isAnythingVisible
+
+    for layout, is_entered, in_slices, is_seen in (
         ("FourUpView", True, False, True),
         ("FourUpView", False, False, True),
         ("OneUp3DView", False, False, True),
@@ -90,17 +90,11 @@ def test_a_sentence_is_shown_and_hidden_in_a_closed_section_without_a_layout(hos
         ("OneUpRedSliceView", False, True, True),
         ("OneUpPlotView", False, True, False),
         ("OneUpPlotView", True, False, True),
-    ],
-)
-def test_visibility_depends_on_the_layout_and_on_the_module(
-    host, layout, is_entered, in_slices, is_seen
-):
-    from rastrainer.sections.application import isAnythingVisible
-
-    number = getattr(slicer.vtkMRMLLayoutNode, f"SlicerLayout{layout}")
-    slicer.app.layoutManager().setLayout(number)
-    assert isAnythingVisible(is_entered, in_slices) is is_seen
-    host.minimize()
-    assert not isAnythingVisible(is_entered, in_slices)
-    host.minimize(False)
-    assert isAnythingVisible(is_entered, in_slices) is is_seen
+    ):
+        number = getattr(slicer.vtkMRMLLayoutNode, f"SlicerLayout{layout}")
+        slicer.app.layoutManager().setLayout(number)
+        assert isAnythingVisible(is_entered, in_slices) is is_seen
+        host.minimize()
+        assert not isAnythingVisible(is_entered, in_slices)
+        host.minimize(False)
+        assert isAnythingVisible(is_entered, in_slices) is is_seen

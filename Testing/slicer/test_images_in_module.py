@@ -18,13 +18,17 @@ ANSWERS = {"ListTasks": {"scenario": "colin27", "title": "Colin27 head", "tasks"
 TARGET = (22.0, 8.0, 14.0)
 
 
+@pytest.fixture
+def host(fresh_module):
+    return fresh_module
+
+
 def images(host):
     return Role.HEAD_VOLUME.find(host.scene)
 
 
 def show_scenario(host):
     """Press the button, and wait for the images, which come a moment later."""
-    host.open()
     host.unfold("showScenarioButton")
     host.press("showScenarioButton")
     wait_for_images(host)

@@ -25,7 +25,7 @@ def start(start_slicer):
     return start
 
 
-def test_choices_are_kept_across_a_restart(start, tmp_path):
+def test_choices_are_kept_across_a_restart_and_unusable_ones_are_forgotten(start, tmp_path):
     checked = {
         "windowCheckBox": False,
         "networkCheckBox": True,
@@ -69,10 +69,6 @@ def test_choices_are_kept_across_a_restart(start, tmp_path):
     assert {name: host.find(name).currentText for name in chosen} == chosen
     assert host.find("portSpinBox").value == 18999
     assert host.widget.logic.session.registration.kind == "affine"
-
-
-def test_unusable_settings_leave_the_defaults(start):
-    host = start()
     slicer.app.settings().setValue(PORT.key, "a lot")
     slicer.app.settings().setValue("RASTrainer/Mode", "telepathy")
     slicer.app.settings().setValue(STUDY_ADDRESS.key, "postgresql://seat:secret@host/study")

@@ -8,7 +8,6 @@ from rastrainer.scenario.library import user_library
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.sections.landmarks_logic import LandmarkPoints
 from Testing.end_to_end.module.story import Story
-from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
 
 COLIN27 = ["Nasion", "Left tragus", "Right outer canthus"]
 COLIN27 += ["Right inner canthus", "Left inner canthus"]
@@ -19,8 +18,8 @@ def names(host):
     return [table.item(row, 0).text() for row in range(table.rowCount)]
 
 
-def test_landmarks_are_placed_by_clicks_and_each_change_is_undone(host):
-    host.open()
+def test_landmarks_are_placed_by_clicks_and_each_change_is_undone(fresh_module):
+    host = fresh_module
     assert not host.find("undoLandmarkButton").enabled
     assert not host.find("saveLandmarksButton").enabled
     host.press("placeLandmarkButton")
@@ -47,25 +46,20 @@ def test_landmarks_are_placed_by_clicks_and_each_change_is_undone(host):
     assert not host.find("undoLandmarkButton").enabled
 
 
-def test_a_scenarios_landmarks_are_shown_for_editing(host):
-    host.open()
+def test_a_scenarios_landmarks_are_shown_and_deselected_ones_left_out_which_is_said_and_kept(
+    fresh_module,
+):
+    host = fresh_module
     host.choose("scenarioComboBox", 0)
     host.press("showLandmarksButton")
     assert names(host) == COLIN27
     assert host.find("landmarkNameComboBox").currentText == "Left outer canthus"
-
-
-def test_deselected_landmarks_are_left_out_which_is_said_and_kept(host):
-    host.open()
-    host.choose("scenarioComboBox", 0)
-    host.press("showLandmarksButton")
     node = host.scene.GetFirstNodeByName("Landmarks")
     node.SetNthControlPointSelected(1, False)
     host.wait_until(lambda: len(names(host)) == 4, "it is left out")
     assert "Left tragus" not in names(host)
-    assert "Left out, as they are deselected in the module Markups: Left tragus." in host.text(
-        "landmarksText"
-    )
+    said = host.text("landmarksText")
+    assert "Left out, as they are deselected in the module Markups: Left tragus." in said
     assert [each.name for each in LandmarkPoints(host.scene).placed(False)] == ["Left tragus"]
     host.choose("landmarksTable", 1)
     host.press("removeLandmarkButton")

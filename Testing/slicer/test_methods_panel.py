@@ -10,8 +10,8 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.sections.scenario_files import compareMethods
 from rastrainer.sections.simulator_logic import SimulatorLogic
+from rastrainer.work_progress import no_progress
 from Testing.end_to_end.module.story import Story
-from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
 
 TOLD = {
     "residual_mm": 0.5,
@@ -44,7 +44,10 @@ class Simulator(SimulatorLogic):
 def test_the_programs_output_is_read(scenario):
     simulator = Simulator(json.dumps({"methods": {"surface": TOLD, "scan": TOLD}}))
     numbers = (0.5, 0.7, 0.6, 0.95, 0.1, 1.2)
-    assert compareMethods(simulator, scenario, 3, 2.0) == {"surface": numbers, "scan": numbers}
+    assert compareMethods(simulator, scenario, 3, 2.0, no_progress) == {
+        "surface": numbers,
+        "scan": numbers,
+    }
     given = dict(zip(simulator.words[1::2], simulator.words[2::2], strict=True))
     assert (given["--trials"], given["--skin-shift"]) == ("3", "2.0")
 
@@ -52,7 +55,6 @@ def test_the_programs_output_is_read(scenario):
 @pytest.mark.parametrize(
     ("text", "script", "said"),
     [
-        pytest.param("{}", WRITES, "a different version", id="no methods"),
         pytest.param('{"methods": {"scan": {}}}', WRITES, "a different version", id="no numbers"),
         pytest.param("{", WRITES, "is not JSON", id="no JSON"),
         pytest.param(
@@ -63,7 +65,7 @@ def test_the_programs_output_is_read(scenario):
 )
 def test_a_failed_comparison_is_reported_in_one_sentence(scenario, text, script, said):
     with pytest.raises(InputError, match=said):
-        compareMethods(Simulator(text, script), scenario, 1, 0.0)
+        compareMethods(Simulator(text, script), scenario, 1, 0.0, no_progress)
 
 
 @pytest.mark.soak

@@ -12,12 +12,14 @@ from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 from rastrainer.slicer.settings import HOST
 from Testing.slicer.simulator_double import connect_module
 
-pytestmark = pytest.mark.usefixtures("module_widget")
+
+@pytest.fixture
+def host(fresh_module):
+    return fresh_module
 
 
 @pytest.fixture
 def connected(host, simulator):
-    host.open()
     connect_module(host, simulator)
 
 
@@ -78,16 +80,6 @@ def test_a_trajectory_is_placed_by_two_clicks(host):
     assert line.GetNumberOfControlPoints() == 2
 
 
-def test_sample_data_are_loaded_into_the_scene_and_the_slices(host):
-    host.find("newScenarioCollapsibleButton").collapsed = False
-    host.process_events()
-    red = slicer.app.layoutManager().sliceWidget("Red").mrmlSliceCompositeNode()
-    host.press("sampleDataButton")
-    volume = host.scene.GetFirstNodeByName("MRBrainTumor1")
-    assert red.GetBackgroundVolumeID() == volume.GetID()
-    assert host.find("scanComboBox").currentNode() is volume
-
-
 def test_without_a_network_sample_data_are_reported_and_leave_nothing(host, monkeypatch):
     logic, nodes = slicer.util.getModuleLogic("SampleData"), host.scene.GetNumberOfNodes()
     usual = logic.uri
@@ -106,6 +98,16 @@ def test_without_a_network_sample_data_are_reported_and_leave_nothing(host, monk
     host.press("sampleDataButton")
     assert len(host.messages) == 3
     assert "could not be downloaded" in host.messages[-1].text
+
+
+def test_sample_data_are_loaded_into_the_scene_and_the_slices(host):
+    host.find("newScenarioCollapsibleButton").collapsed = False
+    host.process_events()
+    red = slicer.app.layoutManager().sliceWidget("Red").mrmlSliceCompositeNode()
+    host.press("sampleDataButton")
+    volume = host.scene.GetFirstNodeByName("MRBrainTumor1")
+    assert red.GetBackgroundVolumeID() == volume.GetID()
+    assert host.find("scanComboBox").currentNode() is volume
 
 
 ACTIONS = {"press", "press_slowly", "choose", "check", "click"}

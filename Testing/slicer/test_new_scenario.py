@@ -14,21 +14,23 @@ from rastrainer.scenario.setup import SetUp
 from rastrainer.scenario.writer import new_folder, write_scenario
 from rastrainer.sections import new_scenario_logic, scenario_files, scenario_logic
 from rastrainer.sections.new_scenario_logic import editedHead
-from rastrainer.slicer.head.extraction import findHead
-from rastrainer.slicer.head.volume import HeadSettings, Volume, forSegment, volumeOfSegment
+from rastrainer.slicer.head.volume import HeadSettings, Volume
 from rastrainer.slicer.scene.nodes import Role, setPoints
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario, png
 from Testing.slicer.head.phantoms import phantom
 from Testing.slicer.head.placed import add_transform, add_volume
 from Testing.slicer.host.cancels import cancels
 
-pytestmark = pytest.mark.usefixtures("module_widget")
-
 SIZE = 0.75
 SPACING = (3.5, 3.5, 3.5)
 """Size of the heads, and spacing of their images, mm: these are found faster."""
 
 EMPTY = Volume(np.zeros((16, 16, 16), np.float32), np.eye(4))
+
+
+@pytest.fixture
+def host(fresh_module):
+    return fresh_module
 
 
 @pytest.fixture
@@ -55,21 +57,21 @@ def found_once(find):
     return find_once
 
 
-def ignore(_step, _share):
-    """Receive the progress, and do nothing."""
-
-
 def add_zip(host, path):
     host.answer("Add a scenario", path)
     host.press("importScenarioButton")
 
 
-def test_zip_files_are_added_listed_with_their_picture_or_refused(host, package, tmp_path):
-    bad = tmp_path / "bad.zip"
+def test_zip_files_are_added_listed_with_their_picture_or_refused_or_canceled(
+    start_slicer, package, monkeypatch, tmp_path
+):
+    host, bad = start_slicer(), tmp_path / "bad.zip"
     with zipfile.ZipFile(bad, "w") as archive:
         archive.writestr("../../evil.txt", "x")
     add_zip(host, bad)
     assert "holds a file with the path" in host.messages[-1].text
+    assert not user_library().exists()
+    cancel_adding(host, package, monkeypatch)
     assert not user_library().exists()
     assert host.find("scenarioComboBox").count == 1
     broken = user_library() / "broken"
@@ -94,7 +96,7 @@ def test_zip_files_are_added_listed_with_their_picture_or_refused(host, package,
     assert not (tmp_path / "out.zip").exists()
 
 
-def test_adding_a_zip_file_may_be_canceled_and_leaves_nothing(host, package, monkeypatch):
+def cancel_adding(host, package, monkeypatch):
     begun, skip_ahead, ended = threading.Event(), threading.Event(), threading.Event()
 
     def unpack_when_told(*arguments):
@@ -105,15 +107,14 @@ def test_adding_a_zip_file_may_be_canceled_and_leaves_nothing(host, package, mon
         finally:
             ended.set()
 
-    monkeypatch.setattr(scenario_files, "unpack", unpack_when_told)
-    with cancels(host, "importScenarioButton", begun.is_set):
-        add_zip(host, package)
-    skip_ahead.set()
-    assert "Canceled" in host.text("scenarioText")
-    assert host.text("importScenarioButton") == "Add from a zip file"
-    host.wait_until(ended.is_set, "the thread ends")
-    assert not user_library().exists()
-    assert host.find("scenarioComboBox").count == 1
+    with monkeypatch.context() as patch:
+        patch.setattr(scenario_files, "unpack", unpack_when_told)
+        with cancels(host, "importScenarioButton", begun.is_set):
+            add_zip(host, package)
+        skip_ahead.set()
+        assert "Canceled" in host.text("scenarioText")
+        assert host.text("importScenarioButton") == "Add from a zip file"
+        host.wait_until(ended.is_set, "the thread ends")
 
 
 def test_a_volume_without_a_head_is_reported(host):
@@ -129,69 +130,50 @@ def test_a_volume_without_a_head_is_reported(host):
     assert not user_library().exists()
 
 
-def test_a_found_head_becomes_a_segment_with_the_displayed_base_and_threshold(host):
-    volume = add_volume(host.scene, phantom(spacing=SPACING, size=SIZE), "MRI")
-    host.choose("scanComboBox", volume)
-    host.type("thresholdSpinBox", "150")
-    host.press("previewHeadButton")
-    assert "no voxel lies above the threshold" in host.messages.pop().text
-    assert Role.HEAD_PREVIEW.find(host.scene) is None
-    host.type("thresholdSpinBox", str(host.find("thresholdSpinBox").minimum))
-    host.press("previewHeadButton")
-    assert host.messages == []
-    node = Role.HEAD_SEGMENT.find(host.scene)
-    assert node.GetSegmentation().GetNumberOfSegments() == 1
-    bounds = Role.HEAD_PREVIEW.find(host.scene).GetPolyData().GetBounds()
-    assert bounds[5] == pytest.approx(70.0 * SIZE, abs=1.5)
-    settings = HeadSettings()
-    found = findHead(volumeOfSegment(editedHead(volume, settings)), forSegment(settings), ignore)
-    assert found.baseMm == pytest.approx(bounds[4], abs=0.01)
-    assert editedHead(add_volume(host.scene, EMPTY, "other"), settings) is None
-    host.type("thresholdSpinBox", "60")
-    host.press("makeScenarioButton")
-    assert "changed since the head was found" in host.messages[-1].text
-    assert not user_library().exists()
-
-
-def test_a_draft_is_hidden_once_a_scenario_is_made_and_shown_when_it_is_found_again(
+def test_a_found_head_is_kept_as_a_segment_where_its_volume_is_until_a_scenario_is_made(
     host, monkeypatch
 ):
     made = host.widget.logic.session.scenarios.find("colin27")
     monkeypatch.setattr(new_scenario_logic, "planScenario", lambda *_arguments: [])
     monkeypatch.setattr(scenario_files, "load_scenario", lambda _folder: made)
-    monkeypatch.setattr(new_scenario_logic, "findSkin", found_once(scenario_logic.findSkin))
-    volume = add_volume(host.scene, phantom(spacing=SPACING, size=SIZE), "phantom")
+    volume = add_volume(host.scene, phantom(spacing=SPACING, size=SIZE), "MRI")
+    volume.SetAndObserveTransformNodeID(add_transform(host.scene, [0.0, 0.0, 100.0]).GetID())
     rendering = host.scene.AddNode(slicer.vtkMRMLCPURayCastVolumeRenderingDisplayNode())
     volume.AddAndObserveDisplayNodeID(rendering.GetID())
     host.choose("scanComboBox", volume)
+    host.type("thresholdSpinBox", "150")
     host.press("previewHeadButton")
-    draft = [
-        Role.HEAD_SEGMENT.find(host.scene),
-        Role.HEAD_PREVIEW.find(host.scene),
-    ]
-    assert [bool(node.GetDisplayVisibility()) for node in draft] == [True, True]
+    assert "no voxel lies above the threshold" in host.messages.pop().text
+    assert Role.HEAD_PREVIEW.find(host.scene) is None
+    monkeypatch.setattr(new_scenario_logic, "findSkin", found_once(scenario_logic.findSkin))
+    host.type("thresholdSpinBox", str(host.find("thresholdSpinBox").minimum))
+    host.type("cutSpinBox", "65")
+    host.press("previewHeadButton")
+    assert "This is the head that was found" in host.text("newScenarioText")
+    assert "The slices are 3.5 mm apart" in host.text("newScenarioText")
+    draft = Role.HEAD_SEGMENT.find(host.scene), Role.HEAD_PREVIEW.find(host.scene)
+    assert draft[0].GetSegmentation().GetNumberOfSegments() == 1
+    bounds = draft[1].GetPolyData().GetBounds()
+    assert bounds[4] == pytest.approx(65.0, abs=0.01)
+    assert bounds[5] == pytest.approx(100.0 + 70.0 * SIZE, abs=3.0)
+    settings = HeadSettings(baseMm=65.0)
+    assert editedHead(volume, settings) is not None
+    assert editedHead(add_volume(host.scene, EMPTY, "other"), settings) is None
+    host.type("thresholdSpinBox", "60")
+    host.press("makeScenarioButton")
+    assert "changed since the head was found" in host.messages.pop().text
+    assert not user_library().exists()
+    host.type("thresholdSpinBox", str(host.find("thresholdSpinBox").minimum))
+    assert all(node.GetDisplayVisibility() for node in draft)
     host.type("programPathLineEdit", sys.executable)
     host.press("makeScenarioButton")
     assert "was made" in host.text("newScenarioText")
-    assert [bool(node.GetDisplayVisibility()) for node in draft] == [False, False]
+    assert not any(node.GetDisplayVisibility() for node in draft)
     assert not rendering.GetVisibility()
     host.press("previewHeadButton")
+    host.type("cutSpinBox", str(host.find("cutSpinBox").minimum))
     assert host.messages == []
-    assert "This is the head that was found" in host.text("newScenarioText")
-    assert [bool(node.GetDisplayVisibility()) for node in draft] == [True, True]
-
-
-def test_a_preview_shows_a_warning_and_is_where_the_volumes_transform_places_it(host):
-    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 5.0), size=SIZE), "MRI")
-    volume.SetAndObserveTransformNodeID(add_transform(host.scene, [0.0, 0.0, 100.0]).GetID())
-    host.choose("scanComboBox", volume)
-    host.type("cutSpinBox", "65")
-    host.press("previewHeadButton")
-    assert host.messages == []
-    assert "The slices are 5.0 mm apart" in host.text("newScenarioText")
-    bounds = Role.HEAD_PREVIEW.find(host.scene).GetPolyData().GetBounds()
-    assert bounds[4] == pytest.approx(65.0, abs=0.01)
-    assert bounds[5] == pytest.approx(100.0 + 70.0 * SIZE, abs=3.0)
+    assert all(node.GetDisplayVisibility() for node in draft)
 
 
 @pytest.mark.usefixtures("own_processes")

@@ -37,8 +37,32 @@ class Instructor(ToldModule):
 
 
 @pytest.fixture
+def host(fresh_module):
+    return fresh_module
+
+
+@pytest.fixture
 def instructor(host, simulator):
     return Instructor(host, simulator)
+
+
+def test_the_usual_states_fit_on_one_screen(instructor, tmp_path):
+    host, heights = instructor.host, {}
+
+    def measure(state):
+        host.screenshot(tmp_path / f"{state}.png", width=470)
+        heights[state] = host.find("RASTrainer").height
+
+    measure("trainees")
+    host.press("nextStepButton")
+    measure("ready")
+    instructor.tell(phase="running", instruction="Touch point 3.", nextPoint="3")
+    instructor.wait_for("Pause")
+    measure("running")
+    instructor.tell(phase="complete", nextPoint="")
+    instructor.wait_for("Waiting…")
+    measure("complete")
+    assert max(heights.values()) <= SCREEN_HEIGHT, heights
 
 
 def test_a_section_opens_when_its_step_comes_and_folds_after_it(instructor):
@@ -70,14 +94,7 @@ def test_sections_the_user_opens_or_folds_stay_so_until_the_next_step(instructor
     host.choose("traineeComboBox", "Choose a trainee")
     instructor.wait_for("Choose a trainee")
     assert instructor.open_sections() == {"trainees"}
-
-
-def test_a_trainee_is_chosen_from_the_list_that_the_button_opens(instructor):
-    host = instructor.host
-    host.press("createTraineeButton")
-    instructor.wait_for("Start the trial run")
-    host.choose("traineeComboBox", "Choose a trainee")
-    instructor.wait_for("Choose a trainee")
+    # The button opens the list of trainees.
     host.find("traineesCollapsibleButton").collapsed = True
     host.press("nextStepButton")
     assert instructor.open_sections() >= {"trainees"}
@@ -103,7 +120,6 @@ def test_the_trial_run_waits_for_the_tutorial_unless_the_instructor_unchecks_it(
 
 
 def test_the_same_button_starts_or_connects_to_a_simulator_on_another_computer(host):
-    host.open()
     assert host.text("linkText") == "Not connected"
     assert host.text("nowTraineeText") == "No trainee"
     assert host.text("nextStepButton") == "Start and connect"
@@ -115,7 +131,6 @@ def test_the_same_button_starts_or_connects_to_a_simulator_on_another_computer(h
 
 
 def test_the_button_can_be_reached_by_keyboard(host):
-    host.open()
     button = host.find("nextStepButton")._qt
     button.window().activateWindow()
     host.wait_until(button.window().isActiveWindow, "the window is active")
@@ -127,22 +142,3 @@ def test_the_button_can_be_reached_by_keyboard(host):
         button, QtCore.Qt.Key.Key_Return, QtCore.Qt.KeyboardModifier.ControlModifier
     )
     host.wait_until(lambda: host.messages, "the shortcut asks whether to set up")
-
-
-def test_the_usual_states_fit_on_one_screen(instructor, tmp_path):
-    host, heights = instructor.host, {}
-
-    def measure(state):
-        host.screenshot(tmp_path / f"{state}.png", width=470)
-        heights[state] = host.find("RASTrainer").height
-
-    measure("trainees")
-    host.press("nextStepButton")
-    measure("ready")
-    instructor.tell(phase="running", instruction="Touch point 3.", nextPoint="3")
-    instructor.wait_for("Pause")
-    measure("running")
-    instructor.tell(phase="complete")
-    instructor.wait_for("Waiting…")
-    measure("complete")
-    assert max(heights.values()) <= SCREEN_HEIGHT, heights

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import slicer
 from PySide6 import QtCore
 
 from rastrainer.registration.target_error import INTERVAL_NOTE
@@ -20,15 +19,12 @@ from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.widgets.plain_text import toolTip
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli.main import main
-from Testing.end_to_end.module.installed_simulator import write_program
 from Testing.slicer.recorded_trial import (
-    COLIN27,
     put_touches,
     store_trial_on_colin,
     touches_on_colin,
     write_recorded_trial,
 )
-from Testing.slicer.test_images_in_module import wait_for_images
 
 PROTOCOL = asset_path("studies", "published-protocol.json")
 PAIRED = """
@@ -40,13 +36,17 @@ if "--lan" in sys.argv:
 threading.Event().wait()
 """
 """A simulator that only explains how a headset is paired."""
+REPORTING = """
+import pathlib, sys
+pathlib.Path(sys.argv[-1], "report.html").write_text(" ".join(sys.argv[1:]))
+"""
+"""A simulator whose report only repeats its arguments."""
 
 
 @pytest.fixture
-def panels(host):
+def panels(fresh_module):
     """The module; a section is opened where something in it is used."""
-    host.open()
-    return host
+    return fresh_module
 
 
 @pytest.fixture
@@ -94,19 +94,13 @@ def choose_study(host, path):
     return host.text("traineeText").replace("\u200b", "")
 
 
-def use_installed(host, folder):
-    """Have the module use the simulator of this checkout."""
-    program = write_program(folder / "rastrainer", folder / "pid", [])
+def use_program(host, folder, source):
+    """Have the module use a program as its simulator."""
+    program = folder / "rastrainer"
+    program.write_text(f"#!{sys.executable}\n{source}", encoding="utf-8")
+    program.chmod(0o755)
     host.find("programPathLineEdit").currentPath = str(program)
     host.process_events()
-
-
-def cells(host, name):
-    table = host.find(name)
-    return [
-        [table.item(row, column).text() for column in range(table.columnCount)]
-        for row in range(table.rowCount)
-    ]
 
 
 # Trainees
@@ -158,11 +152,13 @@ def test_a_study_locked_by_another_program_is_reported_and_shown_again_automatic
     assert panels.find("historyTable").rowCount == 1
 
 
-def test_history_is_shown_plotted_and_exported(panels, add_trial, tmp_path):
+def test_history_is_shown_plotted_and_exported_a_file_is_replaced_once_confirmed(
+    panels, add_trial, tmp_path
+):
     for number in (1, 2, 3):
         add_trial(number, completionTimeS=100.0 - number)
     choose_trainee(panels)
-    rows = cells(panels, "historyTable")
+    rows = panels.cells("historyTable")
     assert [row[2:4] for row in rows] == [["Task 1", time] for time in ("99.0", "98.0", "97.0")]
     panels.press("learningCurveButton")
     chart = Role.LEARNING_CURVE.find(panels.scene)
@@ -174,19 +170,16 @@ def test_history_is_shown_plotted_and_exported(panels, add_trial, tmp_path):
     panels.answer("Export the trainee", str(tmp_path / "trainee"))
     panels.press("exportTraineeButton")
     assert len(json.loads((tmp_path / "trainee.json").read_text())["trials"]) == 3
-
-
-def test_a_file_gets_its_suffix_and_replaces_another_once_confirmed(trainee, tmp_path):
     (tmp_path / "export.csv").write_text("mine")
     for answer in ("No", "Yes"):
-        trainee.answer("Export the history", str(tmp_path / "export"))
-        trainee.answer("already exists", answer)
-        trainee.press("exportHistoryButton")
+        panels.answer("Export the history", str(tmp_path / "export"))
+        panels.answer("already exists", answer)
+        panels.press("exportHistoryButton")
         assert ((tmp_path / "export.csv").read_text() == "mine") == (answer == "No")
-    trainee.answer("Export the history", str(tmp_path / "EXPORT.CSV"))
-    trainee.press("exportHistoryButton")
+    panels.answer("Export the history", str(tmp_path / "EXPORT.CSV"))
+    panels.press("exportHistoryButton")
     with (tmp_path / "EXPORT.CSV").open(newline="") as file:
-        assert len(list(csv.DictReader(file))) == 1
+        assert len(list(csv.DictReader(file))) == 3
 
 
 def test_only_the_file_of_a_study_is_used_and_another_leaves_the_study_open(panels, tmp_path):
@@ -211,9 +204,7 @@ def test_only_the_file_of_a_study_is_used_and_another_leaves_the_study_open(pane
         assert new.parent.is_dir() == (answer == "Yes")
     assert panels.find("studyPathLineEdit").currentPath == str(new)
     assert said.startswith("Choose who is training")
-
-
-def test_an_unusable_address_is_refused_without_repeating_its_password(panels):
+    # An unusable address is refused without its password.
     panels.type("studyAddressLineEdit", "postgresql://seat:secret@host/study")
     assert "must not hold a password" in panels.messages[-1].text
     assert "secret" not in panels.messages[-1].text
@@ -247,91 +238,6 @@ def test_head_fiducials_and_robot_are_shown_and_another_model_can_be_the_head(pa
     assert not former.GetDisplayVisibility()
     panels.clear_scene()
     panels.wait_until(lambda: not panels.find("robotCheckBox").checked, "the box follows")
-
-
-# Registration
-
-
-def test_fits_and_errors_are_shown_with_their_units_and_fit_and_target_are_chosen(panels, touched):
-    put_touches(panels, touched)
-    rows = cells(panels, "fitsTable")
-    assert [row[0] for row in rows] == ["Rigid", "Similarity", "Affine"]
-    assert "Expected TRE at the target" in panels.text("treText")
-    assert "(mm)" in panels.find("fitsTable").horizontalHeaderItem(1).text()
-    tips = (panels.find("treText").toolTip, panels.find("fitsTable").item(0, 3).toolTip())
-    assert tips == (toolTip(INTERVAL_NOTE),) * 2
-    assert len(cells(panels, "residualsTable")) == 15
-    transform = Role.WORLD_TO_HEAD.find(panels.scene)
-    rigid = slicer.util.arrayFromTransformMatrix(transform)
-    panels.choose("kindComboBox", "Similarity")
-    panels.finish_work()
-    similar = slicer.util.arrayFromTransformMatrix(transform)
-    assert np.linalg.det(rigid[:3, :3]) == pytest.approx(1.0)
-    assert np.linalg.det(similar[:3, :3]) != pytest.approx(1.0, abs=1e-6)
-    points = Role.CAPTURED_POINTS.make(panels.scene)
-    assert panels.find("appliedCheckBox").checked
-    panels.check("appliedCheckBox", False)
-    assert points.GetParentTransformNode() is None
-    panels.check("appliedCheckBox")
-    assert points.GetParentTransformNode().GetName() == "WorldToHead"
-    points.SetAndObserveTransformNodeID(None)
-    panels.wait_until(lambda: not panels.find("appliedCheckBox").checked, "the box follows")
-    before = panels.text("treText")
-    target = panels.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Tumor")
-    target.AddControlPoint(60.0, 60.0, -60.0)
-    panels.choose("targetComboBox", target)
-    panels.wait_until(lambda: panels.text("treText") != before, "the error is updated")
-
-
-def test_the_chosen_fiducial_is_shown_in_the_slices_weighted_and_left_out(panels, touched):
-    touched[2] += [2.0, -1.0, 0.5]
-    put_touches(panels, touched)
-    # Slice views are fitted to the images once they are loaded.
-    wait_for_images(panels)
-    before = cells(panels, "residualsTable")
-    assert [row[3] for row in before] == ["–"] * 15
-    with pytest.raises(AssertionError, match="Choose a row"):
-        panels.press("fleButton")
-    view = panels.scene.AddNewNodeByClass("vtkMRMLSliceNode", "Mine")
-    panels.choose("residualsTable", 2)
-    panels.finish_work()
-    height = COLIN27.task("task-1").fiducials[2, 2]
-    assert view.GetSliceToRAS().GetElement(2, 3) == pytest.approx(height, abs=1e-3)
-    panels.type("fleSpinBox", "20")
-    panels.press("fleButton")
-    panels.finish_work()
-    after = cells(panels, "residualsTable")
-    assert after[2][3] == "20.00"
-    # A point of little weight lies where the others put it, fitted or left out.
-    assert float(after[2][1]) == pytest.approx(float(after[2][2]), abs=0.02)
-    assert "weighted by the stated FLE; the score" in panels.text("registrationText")
-    panels.press("undoButton")
-    panels.finish_work()
-    assert cells(panels, "residualsTable") == before
-    panels.press("excludeButton")
-    panels.finish_work()
-    assert "Left out: 3" in panels.text("registrationText")
-
-
-def test_one_small_legend_is_drawn_only_in_the_3d_view(panels, touched, tmp_path):
-    put_touches(panels, touched)
-    head = Role.HEAD_MODEL.find(panels.scene).GetDisplayNode()
-    head.SetOpacity(0.4)
-    seen = [panels.legends()]
-    panels.check("headColoredCheckBox")
-    panels.finish_work()
-    seen.append(panels.legends())
-    # Through a translucent head the colors would differ from the legend.
-    assert head.GetOpacity() == 1.0
-    panels.window_screenshot(tmp_path / "colored.png")
-    assert panels.legends() == seen[-1]
-    panels.check("headColoredCheckBox", False)
-    seen.append(panels.legends())
-    assert head.GetOpacity() == 0.4
-    titles = [[title for title, _share in drawn.pop("View1")] for drawn in seen]
-    assert titles == [["Residual (mm)"], ["TRE (mm)"], ["Residual (mm)"]]
-    assert [drawn for drawn in seen if any(drawn.values())] == []
-    assert panels.legends()["View1"][0][1] < 0.05
 
 
 # Plan
@@ -389,16 +295,16 @@ def test_a_trial_is_scored_beside_the_reference_group_and_exported(
     add_trial(2)
     choose_trainee(panels)
     assert panels.find("trialComboBox").currentText.startswith("2: Task 1")
-    measures = [row[0] for row in cells(panels, "scoreTable")]
+    measures = [row[0] for row in panels.cells("scoreTable")]
     assert measures[0] == "Score"
     tip = panels.find("scoreTable").item(measures.index("Expected TRE"), 0).toolTip()
     assert "an offset that all touches share" in tip
-    assert "CTPS as published" in [row[0] for row in cells(panels, "ctpsTable")]
+    assert "CTPS as published" in [row[0] for row in panels.cells("ctpsTable")]
     assert "rises with a slower completion" in panels.text("ctpsText")
-    groups = {row[2] for row in cells(panels, "standingsTable")}
+    groups = {row[2] for row in panels.cells("standingsTable")}
     assert groups == {"own", "reference"}
     panels.choose("trialComboBox", "1: Task 1")
-    assert cells(panels, "motionTable") == [["Smoothness, SPARC", "−1.90"]]
+    assert panels.cells("motionTable") == [["Smoothness, SPARC", "−1.90"]]
     panels.press("showTablesButton")
     assert Role.SCORE.find(panels.scene) is not None
     panels.answer("Export all trials", str(tmp_path / "all.csv"))
@@ -411,23 +317,16 @@ def test_a_trial_is_scored_beside_the_reference_group_and_exported(
     assert "consent to research: 1." in panels.text("scoreMessageText")
 
 
-def test_the_report_of_those_who_consent_is_written_and_opened(
-    panels, add_trial, study_path, tmp_path
-):
-    for number in (1, 2, 3):
-        add_trial(number, mode="hmd" if number == 3 else "desktop")
+def test_the_report_is_written_by_the_simulator_and_opened(panels, study_path, tmp_path):
     panels.press("reportButton")
     assert "is not set up yet: in the section Simulator, press Set up" in panels.messages[-1].text
-    use_installed(panels, tmp_path)
-    with Study.open(study_path) as study:
-        study.change_trainee("T-001", consent=True)
-    panels.answer("Folder for the report", str(tmp_path / "report"))
+    use_program(panels, tmp_path, REPORTING)
+    panels.answer("Folder for the report", str(tmp_path))
     panels.press("reportButton")
-    page = tmp_path / "report" / "report.html"
-    assert "T-001" in page.read_text(encoding="utf-8")
+    page = tmp_path / "report.html"
+    assert page.read_text() == f"report {study_path} -o {tmp_path}"
     assert panels.text("scoreMessageText") == f"The report is {page}."
     assert panels.messages[-1].text == page.as_uri()
-    assert len((tmp_path / "report" / "trials.csv").read_text().splitlines()) == 4
 
 
 def await_feedback(host):
@@ -532,11 +431,7 @@ def test_the_simulator_must_be_set_up_before_it_is_started(panels, tmp_path):
 
 
 def test_how_to_pair_a_headset_is_shown_while_the_simulator_runs(panels, tmp_path):
-    program = tmp_path / "rastrainer"
-    program.write_text(f"#!{sys.executable}\n{PAIRED}", encoding="utf-8")
-    program.chmod(0o755)
-    panels.find("programPathLineEdit").currentPath = str(program)
-    panels.process_events()
+    use_program(panels, tmp_path, PAIRED)
     panels.check("networkCheckBox")
     panels.press("startSimulatorButton")
     wanted = "open http://127.0.0.1:18945 or https://192.0.2.7:18946 and enter the code 012345."

@@ -8,7 +8,6 @@ from PySide6 import QtCore, QtTest
 
 from rastrainer.sections.training_logic import LOADING
 from rastrainer.slicer.link.link_status import LinkState
-from Testing.slicer.recorded_trial import put_touches, touches_on_colin
 from Testing.slicer.simulator_double import connect_module, run_until_received
 from Testing.slicer.told_module import ToldModule
 
@@ -27,16 +26,8 @@ def press_slowly(host, name, meanwhile):
 
 
 @pytest.fixture
-def touched(host):
-    """The module with fifteen touches, of which the seventh is 9 mm off."""
-    host.open()
-    host.unfold("residualsTable")
-    host.widget.logic.session.scenario.show("colin27", "task-1")
-    host.finish_work()
-    points = touches_on_colin()
-    points[6] += 9.0
-    put_touches(host, points)
-    return host
+def host(fresh_module):
+    return fresh_module
 
 
 class Trial(ToldModule):
@@ -87,14 +78,12 @@ def test_a_trial_that_begins_while_the_question_is_open_is_not_aborted(trial, mo
 
 
 def test_connect_does_not_disconnect_a_link_that_was_started_meanwhile(host):
-    host.open()
     link = host.widget.logic.session.link
     press_slowly(host, "connectButton", lambda: link.connectTo("127.0.0.1", 1))
     assert link.status.state is not LinkState.OFF
 
 
 def test_cancel_does_not_restart_work_that_ended_meanwhile(host, monkeypatch):
-    host.open()
     host.unfold("useHeadButton")
     model = host.scene.AddNewNodeByClass("vtkMRMLModelNode", "Mine")
     host.choose("headModelComboBox", model)
@@ -112,33 +101,15 @@ def test_cancel_does_not_restart_work_that_ended_meanwhile(host, monkeypatch):
     assert begun == [True]
 
 
-def test_the_button_of_a_warning_stays_while_the_registration_is_redisplayed(touched):
-    session = touched.widget.logic.session
-    press_slowly(touched, "remedy0Button", lambda: session.registration.chooseKind("similarity"))
-    touched.finish_work()
-    assert touched.find("residualsTable").rowCount == 14
-
-
-def test_a_fiducial_stays_chosen_by_its_label_whichever_row_it_moves_to(touched):
-    session = touched.widget.logic.session
-    touched.choose("residualsTable", 9)
-    session.registration.change(session.registration.choices.without(("7",)))
-    touched.finish_work()
-    touched.press("excludeButton")
-    touched.finish_work()
-    assert session.registration.choices.excluded == {"7", "10"}
-    assert not touched.find("excludeButton").enabled
-
-
-def test_the_chosen_target_is_used_even_if_another_was_placed_meanwhile(touched):
-    touched.unfold("planTargetComboBox")
-    touched.press("placeTargetButton")
-    touched.place(10.0, 20.0, 30.0)
-    touched.press("placeTargetButton")
-    touched.place(20.0, 20.0, 30.0)
-    combo = touched.find("planTargetComboBox")
-    touched.wait_until(lambda: combo.count == 2, "both targets are offered")
-    node = touched.find("planComboBox").currentNode()
+def test_the_chosen_target_is_used_even_if_another_was_placed_meanwhile(host):
+    host.unfold("planTargetComboBox")
+    host.press("placeTargetButton")
+    host.place(10.0, 20.0, 30.0)
+    host.press("placeTargetButton")
+    host.place(20.0, 20.0, 30.0)
+    combo = host.find("planTargetComboBox")
+    host.wait_until(lambda: combo.count == 2, "both targets are offered")
+    node = host.find("planComboBox").currentNode()
     node.AddControlPoint(30.0, 20.0, 30.0)
     combo._qt.setCurrentIndex(0)
     combo._qt.activated.emit(0)
@@ -146,7 +117,6 @@ def test_the_chosen_target_is_used_even_if_another_was_placed_meanwhile(touched)
 
 
 def test_a_consent_that_could_not_be_saved_is_not_shown_as_given(host, monkeypatch):
-    host.open()
     host.press("createTraineeButton")
     host.unfold("consentCheckBox")
 
@@ -161,7 +131,6 @@ def test_a_consent_that_could_not_be_saved_is_not_shown_as_given(host, monkeypat
 
 
 def test_a_failed_setup_does_not_start_a_simulator_after_the_next_one(host, tmp_path):
-    host.open()
     host.find("wheelsPathLineEdit").currentPath = str(tmp_path)
     host.answer("not set up on this computer yet", "Ok")
     host.unfold("startSimulatorButton")
@@ -177,7 +146,6 @@ STARTING = ("startTrialRunButton", "startTaskButton", "nextStepButton")
 
 def test_the_buttons_that_start_trials_are_disabled_while_slicers_head_is_loaded(host, simulator):
     simulator.responder = lambda name, _arguments: None if name == "LoadScenario" else {}
-    host.open()
     connect_module(host, simulator)
     host.check("newConsentCheckBox")
     host.press("createTraineeButton")

@@ -10,10 +10,7 @@ from vtk.util.numpy_support import vtk_to_numpy
 from rastrainer import transforms
 from rastrainer.procedure.errors import analyze_procedure, true_lines
 from rastrainer.slicer.scene.nodes import Role, worldPoints
-from rastrainer.slicer.scene.procedure_lines import (
-    showPlannedLines,
-    showProcedureErrors,
-)
+from rastrainer.slicer.scene.procedure_lines import showPlannedLines, showProcedureErrors
 from rastrainer_simulator.flow.session.plan_marks import PLACED, PLANNED, SHOWN
 from rastrainer_simulator.presentation.look import TONES
 from Testing.domain.procedure.made_up_procedure import made_up_meshes, made_up_procedure, trajectory
@@ -34,20 +31,6 @@ def analysis():
     first, *others = done.instruments
     done = replace(done, instruments=(replace(first, self_aligned=True), *others))
     return analyze_procedure(done, procedure, made_up_meshes(), truth), true_lines(done, truth)
-
-
-def test_each_meaning_has_one_color_in_slicer_and_in_the_simulators_views(headless_scene, analysis):
-    showProcedureErrors(headless_scene.scene, *analysis)
-    for role, tone in zip(ROLES, (PLANNED, SHOWN, PLACED), strict=True):
-        color = role.all(headless_scene.scene)[0].GetDisplayNode().GetSelectedColor()
-        assert color == pytest.approx(Color(TONES[tone]).coords(), abs=1e-3)
-
-
-def test_showing_it_again_leaves_no_node_of_the_former_behind(headless_scene, analysis):
-    showProcedureErrors(headless_scene.scene, *analysis)
-    before = headless_scene.scene.GetNumberOfNodes()
-    showProcedureErrors(headless_scene.scene, *analysis)
-    assert headless_scene.scene.GetNumberOfNodes() == before
 
 
 def lines(scene, role):
@@ -79,8 +62,10 @@ def check(scene, found):
         assert column(scene, "plunge depth (mm)")[row] == pytest.approx(errors.plunge_mm, abs=1e-3)
 
 
-def test_the_lines_in_a_scene_have_the_errors_shown_in_its_table(headless_scene, analysis):
-    scene, found = headless_scene.scene, analysis[0]
+def test_lines_arrows_and_table_show_the_same_errors_in_the_colors_of_the_simulators_views(
+    scene, analysis
+):
+    found = analysis[0]
     showProcedureErrors(scene, *analysis)
     check(scene, found)
     aligned = Role.PROCEDURE_ERRORS.find(scene).GetTable()
@@ -89,13 +74,10 @@ def test_the_lines_in_a_scene_have_the_errors_shown_in_its_table(headless_scene,
     names = [node.GetName() for node in Role.TRUE_LINE.all(scene)]
     assert names == ["Left, true", "Right, true"]
     assert all(node.GetLocked() for role in ROLES for node in role.all(scene))
-
-
-def test_the_arrows_show_the_registration_error_then_the_hand_error_true_to_scale(
-    headless_scene, analysis
-):
-    scene, found = headless_scene.scene, analysis[0]
-    showProcedureErrors(scene, *analysis)
+    for role, tone in zip(ROLES, (PLANNED, SHOWN, PLACED), strict=True):
+        color = role.all(scene)[0].GetDisplayNode().GetSelectedColor()
+        assert color == pytest.approx(Color(TONES[tone]).coords(), abs=1e-3)
+    # Both are true to scale: first the registration's error, and then the hand's.
     by_registration, by_hand = (
         role.find(scene).GetPolyData()
         for role in (Role.ERRORS_BY_REGISTRATION, Role.ERRORS_BY_HAND)
@@ -110,6 +92,9 @@ def test_the_arrows_show_the_registration_error_then_the_hand_error_true_to_scal
         ):
             points = vtk_to_numpy(data.GetPoints().GetData())
             assert np.linalg.norm(points - place, axis=1).min() < 0.3
+    before = scene.GetNumberOfNodes()
+    showProcedureErrors(scene, *analysis)
+    assert scene.GetNumberOfNodes() == before
 
 
 def test_everything_is_still_there_in_a_saved_and_reopened_scene(

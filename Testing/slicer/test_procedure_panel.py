@@ -38,10 +38,10 @@ ALL = sorted({name for buttons in BUTTONS.values() for name in buttons})
 
 
 @pytest.fixture
-def surgery(host):
+def surgery(fresh_module):
     """The module, connected, with a trainee and a scenario that has procedures."""
+    host = fresh_module
     with SimulatorDouble(lambda _name, _arguments: {"scenario": "colin27"}) as simulator:
-        host.open()
         connect_module(host, simulator)
         host.press("createTraineeButton")
         host.find("procedureCollapsibleButton").collapsed = False
@@ -133,8 +133,8 @@ def test_touches_that_cannot_be_registered_can_only_be_repeated(surgery):
     host.wait_until(lambda: sent(simulator, "RegisterAgain"), "they are touched again")
 
 
-def test_the_errors_are_shown_with_the_shares_of_registration_and_hand(host):
-    host.open()
+def test_the_errors_are_shown_with_the_shares_of_registration_and_hand(fresh_module):
+    host = fresh_module
     session = host.widget.logic.session
     procedure = made_up_procedure()
     off = transforms.rigid(np.eye(3), np.array([0.0, 1.5, 0.0]))

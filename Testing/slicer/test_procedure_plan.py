@@ -6,7 +6,7 @@ import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.procedure.plan import MAX_NO_GO_TRIANGLES
-from rastrainer.sections.procedure_plan_logic import ProcedurePlanLogic, noGoMeshes
+from rastrainer.sections.procedure_plan_logic import noGoMeshes, readPlan
 from rastrainer.slicer.scene.nodes import Role, setPoints, setValues
 from rastrainer.slicer.scene.plan_points import unfinishedLine
 from rastrainer.slicer.scene.procedure_lines import (
@@ -25,11 +25,6 @@ PLAN = {"title": "Two leads", "kind": "dbs"}
 ENDS = np.array([[0.0, 0.0, 90.0], [0.0, 0.0, 20.0]])
 
 
-@pytest.fixture
-def logic(scene):
-    return ProcedurePlanLogic(scene, None)
-
-
 def placed(scene, name="Line", ends=ENDS):
     line = unfinishedLine(scene, Role.PLAN_LINE)
     line.SetName(name)
@@ -46,11 +41,11 @@ def sphere_node(scene, name="Vessel", resolution=20, is_open=False):
     return node
 
 
-def test_a_displayed_plan_is_read_back_unchanged(scene, logic):
+def test_a_displayed_plan_is_read_back_unchanged(scene):
     procedure = made_up_procedure()
     showPlan(scene, procedure, {"Vessel": vessel()})
     node = scene.GetFirstNodeByName("Checkpoints")
-    read, meshes = logic.read(**PLAN, name="dbs-1", checkpoints=node)
+    read, meshes = readPlan(scene, **PLAN, name="dbs-1", checkpoints=node)
     assert [each.name for each in read.trajectories] == ["Left", "Right"]
     for one, other in zip(read.trajectories, procedure.trajectories, strict=True):
         np.testing.assert_allclose(one.entry_ras, other.entry_ras)
@@ -89,20 +84,20 @@ SPOILERS = {
 
 
 @pytest.mark.parametrize("sentence", SPOILERS)
-def test_anything_missing_or_unusable_is_reported_in_one_sentence(scene, logic, sentence):
+def test_anything_missing_or_unusable_is_reported_in_one_sentence(scene, sentence):
     SPOILERS[sentence](scene, placed(scene))
     with pytest.raises(InputError) as refused:
-        logic.read(**PLAN)
+        readPlan(scene, **PLAN)
     assert sentence in str(refused.value)
 
 
-def test_a_plan_needs_a_title_from_which_a_name_can_be_made(scene, logic):
+def test_a_plan_needs_a_title_from_which_a_name_can_be_made(scene):
     placed(scene)
     with pytest.raises(InputError, match="Enter a title"):
-        logic.read("  ", "dbs")
+        readPlan(scene, "  ", "dbs")
     with pytest.raises(InputError, match="needs a Latin letter or digit"):
-        logic.read("Ω", "dbs")
-    assert logic.read("Ä first: Try!", "dbs")[0].name == "first-try"
+        readPlan(scene, "Ω", "dbs")
+    assert readPlan(scene, "Ä first: Try!", "dbs")[0].name == "first-try"
 
 
 def test_a_structure_is_where_its_transform_places_it(scene):
@@ -129,7 +124,7 @@ def test_each_segment_of_a_segmentation_is_a_structure(scene):
     assert meshes["Vein"].vertices[:, 0].mean() == pytest.approx(20.0, abs=0.5)
 
 
-def test_instruments_and_structures_are_kept_with_the_scene(headless_scene, logic, tmp_path):
+def test_instruments_and_structures_are_kept_with_the_scene(headless_scene, scene, tmp_path):
     line = placed(headless_scene.scene, "Left")
     setInstrument(line, 2.25, 3.5)
     sphere_node(headless_scene.scene)
@@ -139,7 +134,7 @@ def test_instruments_and_structures_are_kept_with_the_scene(headless_scene, logi
     assert instrumentOf(line) == (2.25, 3.5)
     (node,) = noGoNodes(headless_scene.scene)
     assert isNoGo(node)
-    procedure, meshes = logic.read(**PLAN)
+    procedure, meshes = readPlan(scene, **PLAN)
     assert procedure.trajectories[0].diameter_mm == 2.25
     assert len(meshes) == 1
 

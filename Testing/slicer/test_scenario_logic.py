@@ -1,6 +1,7 @@
 """Any model or volume of the scene can be the head that is shown."""
 
 import threading
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from rastrainer.slicer.scene.robot import missingLinks
 from rastrainer.slicer.scene.robot_description import READ_LINKS
 from rastrainer.slicer.scene.trial_scene import isApplied
 from rastrainer_simulator.assets import asset_path
+from Testing.domain.scenario.made_up_scenario import ball_head
 from Testing.slicer.work_at_once import in_turns
 
 
@@ -40,10 +42,10 @@ def logic(scene, scenario, work, runs):
     return ScenarioLogic(scene, Cache(scenario), asset_path("robots", "iiwa7"), run, work)
 
 
-def volume(scene, values, spacing):
+def volume(scene, values):
     node = scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode", "MRI")
     slicer.util.updateVolumeFromArray(node, values)
-    node.SetSpacing(spacing, spacing, spacing)
+    node.SetSpacing(3.0, 3.0, 3.0)
     return node
 
 
@@ -102,58 +104,58 @@ def test_a_scene_that_is_cleared_while_a_scenario_comes_stays_empty(scene, logic
     assert Role.TARGET.find(scene) is None
 
 
-def ball():
-    grid = np.indices((50, 50, 50)) - 25.0
-    return (np.linalg.norm(grid, axis=0) < 20).astype(np.float32) * 100.0
+class Search:
+    """A search for the head of a volume, which goes on until it is told to end."""
+
+    def __init__(self, logic):
+        self.end = threading.Event()
+        logic.run = self
+
+    def __call__(self, *_arguments):
+        assert self.end.wait(60.0)
+        return SimpleNamespace(labels=None), ball_head(60.0), ["A warning."]
 
 
-def test_a_head_that_is_shown_while_another_is_searched_gives_way_to_it(scene, logic, work):
+def test_a_scenario_is_shown_and_a_head_found_meanwhile_takes_its_place(scene, logic, work):
+    with pytest.raises(InputError, match="no such task"):
+        logic.show("ball", "task-9")
+    assert not work.isBusy
+    formers, search = [], Search(logic)
+
     def show(_step, _share):
-        if Role.HEAD_MODEL.find(scene) is None:
+        if not search.end.is_set():
             logic.show("ball", "task-1")
             in_turns(work)
+            formers.append(Role.HEAD_MODEL.find(scene))
+            search.end.set()
 
-    model, _warnings = logic.useHead(volume(scene, ball(), 3.0), show)
+    model, warnings = logic.useHead(volume(scene, np.ones((20, 20, 20))), show)
+    assert isApplied(Role.WORLD_TO_HEAD.find(scene))
     assert Role.HEAD_MODEL.all(scene) == [model]
+    assert (model.GetName(), warnings) == ("Head of MRI", ["A warning."])
+    assert [bool(former.GetDisplayVisibility()) for former in formers] == [False]
+    # The next scenario's head does not overwrite it.
+    logic.show("ball", "task-1")
+    in_turns(work)
+    assert Role.HEAD_MODEL.find(scene) is not model
+    assert not model.GetDisplayVisibility()
+    np.testing.assert_allclose(model.GetPolyData().GetBounds(), [-60.0, 60.0] * 3, atol=1.0)
 
 
-def test_a_canceled_search_for_another_head_leaves_the_head(scene, logic, work):
+def test_a_canceled_search_or_a_broken_volume_leaves_the_head(scene, logic, work):
     def cancel(_step, _share):
         raise InputError("Canceled")
 
     logic.show("ball", "task-1")
     in_turns(work)
     shown = Role.HEAD_MODEL.find(scene)
-    with pytest.raises(InputError, match="Canceled"):
-        logic.useHead(volume(scene, ball(), 3.0), cancel)
-    assert Role.HEAD_MODEL.all(scene) == [shown]
-    assert shown.GetDisplayVisibility()
-
-
-def test_a_scenario_is_shown_and_the_skin_of_a_volume_becomes_the_head(scene, logic, work):
-    with pytest.raises(InputError, match="no such task"):
-        logic.show("ball", "task-9")
-    assert not work.isBusy
-    logic.show("ball", "task-1")
-    in_turns(work)
-    assert isApplied(Role.WORLD_TO_HEAD.find(scene))
-    former = Role.HEAD_MODEL.find(scene)
-    model, warnings = logic.useHead(volume(scene, ball(), 3.0))
-    assert Role.HEAD_MODEL.find(scene) is model
-    assert model.GetName() == "Head of MRI"
-    assert not former.GetDisplayVisibility()
-    bounds = np.array(model.GetPolyData().GetBounds())
-    np.testing.assert_allclose(bounds[1] - bounds[0], 2 * 20 * 3.0, atol=4.0)
-    assert "The slices are 3.0 mm apart" in warnings[0]
-
-
-def test_a_broken_volume_is_reported_and_the_head_stays(scene, logic, work):
-    logic.show("ball", "task-1")
-    in_turns(work)
-    shown = Role.HEAD_MODEL.find(scene)
     with pytest.raises(InputError, match="not numbers"):
-        logic.useHead(volume(scene, np.full((60, 60, 60), np.nan, np.float32), 3.0))
-    assert Role.HEAD_MODEL.find(scene) is shown
-    assert shown.GetDisplayVisibility()
+        logic.useHead(volume(scene, np.full((60, 60, 60), np.nan, np.float32)))
     with pytest.raises(InputError, match="holds no image"):
         logic.useHead(scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode", "Empty"))
+    search = Search(logic)
+    with pytest.raises(InputError, match="Canceled"):
+        logic.useHead(volume(scene, np.ones((20, 20, 20))), cancel)
+    search.end.set()
+    assert Role.HEAD_MODEL.all(scene) == [shown]
+    assert shown.GetDisplayVisibility()

@@ -12,13 +12,8 @@ from rastrainer.head.volume import VolumeFile, write_nrrd
 from rastrainer.scenario.scenario import SkullFile, SkullKind
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.scene import scenario_nodes
-from rastrainer.slicer.scene.nodes import Role
-from rastrainer.slicer.scene.scenario_nodes import (
-    VOLUME,
-    SceneFileLoader,
-    showImages,
-    showScenario,
-)
+from rastrainer.slicer.scene.nodes import VOLUME, Role, nodesOfClass
+from rastrainer.slicer.scene.scenario_nodes import SceneFileLoader, showImages, showScenario
 from rastrainer_headless.scene import HeadlessScene
 from Testing.domain.scenario.made_up_scenario import ball_head, ball_volume
 from Testing.slicer.scene_bundle import load_bundle
@@ -62,10 +57,12 @@ def imaged(scenario):
     return replace(scenario, volume=VolumeFile(path, 120.0, 60.0))
 
 
+def composites(scene):
+    return nodesOfClass(scene, "vtkMRMLSliceCompositeNode")
+
+
 def backgrounds(scene):
-    nodes = scene.GetNodesByClass("vtkMRMLSliceCompositeNode")
-    nodes.UnRegister(None)
-    return [nodes.GetItemAsObject(i).GetBackgroundVolumeID() for i in range(3)]
+    return [node.GetBackgroundVolumeID() for node in composites(scene)]
 
 
 def test_the_images_lie_where_the_head_is_with_their_window_in_all_slice_views(
@@ -127,9 +124,7 @@ def test_displayed_images_are_not_read_again_and_a_users_changes_stay(scene, loa
     loading.finish()
     loading.node.GetDisplayNode().SetWindowLevel(40.0, 20.0)
     other = scene.AddNewNodeByClass(VOLUME, "Another MRI")
-    nodes = scene.GetNodesByClass("vtkMRMLSliceCompositeNode")
-    nodes.UnRegister(None)
-    nodes.GetItemAsObject(0).SetBackgroundVolumeID(other.GetID())
+    composites(scene)[0].SetBackgroundVolumeID(other.GetID())
     count = scene.GetNumberOfNodes()
     showScenario(scene, imaged)
     loading.finish()

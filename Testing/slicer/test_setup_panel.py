@@ -42,7 +42,9 @@ def test_source_size_and_folder_are_reported_before_anything_is_downloaded(host,
     assert "comes from the folder /media/wheels" in host.text("setupText")
 
 
-def test_the_simulator_is_set_up_package_by_package_and_removed_when_the_user_confirms(host, setup):
+def test_the_simulator_is_set_up_package_by_package_and_removed_when_the_user_confirms(
+    host, setup, tmp_path
+):
     shown = []
     setup.progressed.connect(
         lambda _line: shown.append(
@@ -72,9 +74,7 @@ def test_the_simulator_is_set_up_package_by_package_and_removed_when_the_user_co
     assert not setup.folder.exists()
     assert "press Set up, once" in host.text("setupText")
     assert "not set up yet" in host.text("programText")
-
-
-def test_a_module_without_its_simulator_says_to_reinstall_it(host, setup, tmp_path):
+    # A module without its simulator has to be installed again.
     setup.package = SimulatorPackage(tmp_path)
     host.press("setupButton")
     assert "reinstall the extension RASTrainer" in host.messages[-1].text

@@ -21,10 +21,9 @@ TRIAL = str(uuid.UUID(int=1))
 
 
 @pytest.fixture
-def opened(host):
-    host.open()
-    host.unfold("robotCheckBox")
-    return host
+def opened(fresh_module):
+    fresh_module.unfold("robotCheckBox")
+    return fresh_module
 
 
 def shown(host, *actions):

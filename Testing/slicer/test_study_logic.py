@@ -288,17 +288,6 @@ def test_a_deleted_trainee_is_no_longer_in_the_study(enrolled):
     enrolled.room.run_until(lambda: sent_step(enrolled) == {"trainee": "T001", "kind": "free"})
 
 
-def test_a_trial_of_an_unselected_trainee_counts_and_the_simulator_is_sent_the_next_step(
-    practicing, played
-):
-    practicing.skip("has practiced in the pilot")
-    practicing.trainees.create("T002", consent=True)
-    practicing.trainees.study.add_trial(played["trial"], score=played["score"])
-    practicing.logic.leadOn("T001")
-    practicing.room.run_until(lambda: sent_step(practicing).get("task") == "task-2")
-    assert sent_step(practicing)["trainee"] == "T001"
-
-
 def test_a_late_trial_counts_before_the_next_step_is_sent(practicing, played, tmp_path):
     practicing.skip("has practiced in the pilot")
     practicing.trainees.choose("")

@@ -1,31 +1,35 @@
-"""The section Study by its buttons alone: start, enroll, answer, skip; refusals are explained."""
+"""The section Study by its buttons alone: start, enroll, answer, skip, set a curriculum."""
 
 import json
+import uuid
 from datetime import datetime, timezone
 from pathlib import Path
 
 import pytest
 
-from rastrainer.json_records import record_from_json
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import StepKind
 from rastrainer.study.database.study import Study
+from rastrainer.study.database.values import day_of
 from rastrainer.study.protocol.questionnaires import SSQ
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.trial.record import AbortedTrial
+from rastrainer_simulator.board.class_table import ClassReader, class_table
 from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record
+from Testing.simulator.board.class_study import as_in_narrow_columns
 
 SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "published-protocol.json"
+CURRICULUM = SHIPPED.with_name("example-curriculum.json")
 
 
 @pytest.fixture
-def panel(host):
+def panel(fresh_module):
     """The module with the sections Trainees, Study and Training open, and a trainee T001."""
-    host.open()
     for section in ("trainees", "study", "training"):
-        host.find(f"{section}CollapsibleButton").collapsed = False
-    host.process_events()
-    host.press("createTraineeButton")
-    return host
+        fresh_module.find(f"{section}CollapsibleButton").collapsed = False
+    fresh_module.process_events()
+    fresh_module.press("createTraineeButton")
+    return fresh_module
 
 
 @pytest.fixture
@@ -148,3 +152,71 @@ def test_an_aborted_trial_is_played_again_only_with_a_reason(begun):
     with Study.open(begun.find("studyPathLineEdit").currentPath) as study:
         (stored,) = study.aborted("T001")
     assert stored.repeat_reason == "the tracking of the headset was lost"
+
+
+# The part Curriculum
+
+
+@pytest.fixture
+def classroom(panel):
+    """The module with the part open, and another trainee, T002."""
+    panel.find("curriculumCollapsibleButton").collapsed = False
+    panel.press("createTraineeButton")
+    return panel
+
+
+def test_a_curriculum_is_set_for_a_trainee_shown_and_ended(classroom):
+    assert classroom.text("curriculumText") == "No curriculum: trainees choose what they practice."
+    with pytest.raises(AssertionError, match="Choose the file of a curriculum first"):
+        classroom.press("setCurriculumButton")
+    classroom.type("curriculumPathLineEdit", str(CURRICULUM.with_name("published-protocol.json")))
+    classroom.press("setCurriculumButton")
+    assert "use name, title, assignments" in classroom.messages[-1].text
+    classroom.type("curriculumPathLineEdit", str(CURRICULUM))
+    classroom.press("setCurriculumButton")
+    assert classroom.text("curriculumText") == (
+        "First steps: 0 of 6 reached. Next: Task 1, which has not been played yet."
+    )
+    rows = classroom.cells("assignmentsTable")
+    assert rows[0] == ["Task 1", "0 of 2", "–"]
+    assert rows[1][1] == "locked"
+    tip = classroom.find("assignmentsTable").item(1, 0).toolTip()
+    assert "second-points: locked until first-points is reached, 0 of 2 trials in a row" in tip
+    assert classroom.cells("classTable") == [["T002", "0 / 6", "Task 1"]]
+    classroom.answer("End the curriculum of T002?", "Yes")
+    classroom.press("endCurriculumButton")
+    assert classroom.text("curriculumText").startswith("No curriculum")
+    with pytest.raises(AssertionError, match="There is no curriculum to end"):
+        classroom.press("endCurriculumButton")
+
+
+def test_a_curriculum_for_everybody_shows_the_class_as_a_board_does_and_follows_what_arrives(
+    classroom,
+):
+    classroom.type("curriculumPathLineEdit", str(CURRICULUM))
+    classroom.choose("traineeComboBox", "Choose a trainee")
+    with pytest.raises(AssertionError, match="Choose a trainee in the section"):
+        classroom.press("setCurriculumButton")
+    classroom.press("everybodyCheckBox")
+    classroom.press("setCurriculumButton")
+    assert [row[0] for row in classroom.cells("classTable")] == ["T001", "T002"]
+    classroom.choose("traineeComboBox", "T001")
+    with Study.open(classroom.find("studyPathLineEdit").currentPath) as study:
+        for _ in range(2):
+            record = make_record(trialId=str(uuid.uuid4()), trainee="T001")
+            study.add_trial(record, score=gentle_score(60.0, 0.2))
+    classroom.widget.logic.session.trainees.changed.emit()
+    classroom.process_events()
+    day = day_of(make_record()["startedUtc"])
+    assert classroom.cells("assignmentsTable")[0][:2] == ["Task 1", f"reached {day}"]
+    shown = classroom.cells("classTable")
+    assert shown[0][1] == "1 / 6"
+    reader = ClassReader(Path(classroom.find("studyPathLineEdit").currentPath))
+    table = record_to_json(*class_table(reader.read(), "en"), with_defaults=True)
+    reader.close()
+    assert shown == [
+        [row["trainee"], f"{row['reached']} / {len(row['cells'])}", row["next"]]
+        for row in table["trainees"]
+    ]
+    chosen = list(map(as_in_narrow_columns, table["trainees"][0]["cells"]))
+    assert chosen == [row[1] for row in classroom.cells("assignmentsTable")]

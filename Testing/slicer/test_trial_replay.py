@@ -35,10 +35,14 @@ def tips(tmp_path):
     return write_recorded_trial(tmp_path, TRIAL)
 
 
+def show(scene, folder, name="Trial 1", **options):
+    track = find_track(folder, TRIAL)
+    return showReplay(scene, name, track, toolPoses(URDF, track.q), WORLD_TO_HEAD, **options)
+
+
 @pytest.fixture
 def replayed(scene, tips, tmp_path):  # noqa: ARG001 (the journal is needed)
-    track = find_track(tmp_path, TRIAL)
-    return showReplay(scene, "Trial 1", track, toolPoses(URDF, track.q), WORLD_TO_HEAD)
+    return show(scene, tmp_path)
 
 
 def node(scene, name):
@@ -75,8 +79,7 @@ def test_the_tool_is_where_it_was_at_every_time(scene, replayed, tips):
 
 def test_touches_and_trace_appear_as_they_were_made_and_leave_with_the_replay(scene, tmp_path):
     tips = write_recorded_trial(tmp_path, TRIAL, traced=45)
-    track = find_track(tmp_path, TRIAL)
-    showReplay(scene, "Trial 1", track, toolPoses(URDF, track.q), WORLD_TO_HEAD)
+    show(scene, tmp_path)
     counts = []
     for seconds in (0.02, 0.3, 0.5, 1.1, 2.5, 3.0):
         goTo(scene, seconds)
@@ -95,8 +98,7 @@ def test_touches_and_trace_appear_as_they_were_made_and_leave_with_the_replay(sc
 def test_another_trial_replaces_the_previous_one(scene, replayed, tmp_path):
     before = shown(scene)
     write_recorded_trial(tmp_path / "other", TRIAL, seconds=1.0)
-    track = find_track(tmp_path / "other", TRIAL)
-    other = showReplay(scene, "Trial 2", track, toolPoses(URDF, track.q), WORLD_TO_HEAD)
+    other = show(scene, tmp_path / "other", "Trial 2")
     assert other is not replayed
     assert shown(scene) == before
     removeReplay(scene)
@@ -107,8 +109,7 @@ def test_another_trial_replaces_the_previous_one(scene, replayed, tmp_path):
 
 def test_a_replay_with_its_trace_is_saved_with_the_scene(headless_scene, scene, tmp_path):
     write_recorded_trial(tmp_path, TRIAL, traced=45)
-    track = find_track(tmp_path, TRIAL)
-    replayed = showReplay(scene, "Trial 1", track, toolPoses(URDF, track.q), WORLD_TO_HEAD)
+    replayed = show(scene, tmp_path)
     headless_scene.save(tmp_path / "trial.mrb")
     again = HeadlessScene()
     load_bundle(again, tmp_path / "trial.mrb")
@@ -131,9 +132,9 @@ def test_a_missing_journal_or_one_from_another_robot_is_reported(scene, tips, tm
 
 def test_the_application_may_redraw_after_each_slice_of_a_replay(scene, tips, tmp_path):  # noqa: ARG001
     shares = []
-    track = find_track(tmp_path, TRIAL)
-    replay = showReplay(scene, "1", track, toolPoses(URDF, track.q), WORLD_TO_HEAD, shares.append)
-    states = 2 * replay.GetNumberOfItems() + len(track.trajectory.touches) + 1
+    replay = show(scene, tmp_path, rest=shares.append)
+    touches = find_track(tmp_path, TRIAL).trajectory.touches
+    states = 2 * replay.GetNumberOfItems() + len(touches) + 1
     # The first are between the nodes, before there are any states.
     assert sum(share > 0.0 for share in shares) == states // STATES_A_SLICE
     assert shares == sorted(shares)

@@ -6,7 +6,6 @@ import slicer
 from slicer.util import arrayFromMarkupsControlPoints
 
 from rastrainer import transforms
-from rastrainer.errors import InputError
 from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import target_error
 from rastrainer.slicer.scene import trial_scene
@@ -66,6 +65,11 @@ def test_the_result_is_applied_or_not_and_another_registration_gives_the_same(
     np.testing.assert_allclose(worldPoints(moving), arrayFromMarkupsControlPoints(moving))
     assert placed(scene, registration, moving, fixed) is node
     assert not trial_scene.isApplied(node)
+    # Deleted lists cause no trouble.
+    scene.RemoveNode(moving)
+    assert trial_scene.movingNode(node) is None
+    assert not trial_scene.isApplied(node)
+    trial_scene.setApplied(node, True)
 
 
 def test_the_transform_remembers_its_lists_even_in_a_saved_scene(
@@ -79,21 +83,6 @@ def test_the_transform_remembers_its_lists_even_in_a_saved_scene(
     assert trial_scene.movingNode(node).GetName() == "CapturedPoints"
     assert labelsOf(node.GetNodeReference(trial_scene.FIXED_REFERENCE)) == LABELS
     assert trial_scene.isApplied(node)
-
-
-def test_deleted_lists_cause_no_trouble(scene, moving, fixed):
-    node = placed(scene, registered(moving, fixed), moving, fixed)
-    scene.RemoveNode(moving)
-    assert trial_scene.movingNode(node) is None
-    assert not trial_scene.isApplied(node)
-    trial_scene.setApplied(node, True)
-
-
-def test_labels_that_do_not_pair_are_refused_with_a_message(scene, fixed, points):
-    for label, words in (("A", "A is only in the moving list"), ("2", "given to two points")):
-        touched = markups(scene, "Touched", (label, *LABELS[1:]), points)
-        with pytest.raises(InputError, match=words):
-            registered(touched, fixed)
 
 
 def test_the_residual_table_has_one_row_per_fiducial_and_units_in_its_columns(scene, moving, fixed):
@@ -115,17 +104,12 @@ def test_the_residual_table_has_one_row_per_fiducial_and_units_in_its_columns(sc
 
 
 def test_the_fits_are_compared_side_by_side(scene, moving, fixed):
-    kinds = ("rigid", "similarity", "affine")
-    fits = {kind: registered(moving, fixed, kind) for kind in kinds}
+    fits = {kind: registered(moving, fixed, kind) for kind in ("rigid", "similarity", "affine")}
     target = np.array([10.0, 20.0, -30.0])
-    errors = {kind: target_error(fit, target) for kind, fit in fits.items()}
-    table = showFits(scene, fits, errors)
-    fre = slicer.util.arrayFromTableColumn(table, "FRE (mm)")
-    assert fre[0] >= fre[1] >= fre[2]
+    table = showFits(scene, fits, {kind: target_error(fit, target) for kind, fit in fits.items()})
     low, expected, high = (
         slicer.util.arrayFromTableColumn(table, name)
         for name in ("TRE from, 95 % (mm)", "expected TRE (mm)", "TRE to, 95 % (mm)")
     )
-    assert (low < expected).all()
-    assert (expected < high).all()
-    assert [table.GetCellText(row, 0) for row in range(3)] == ["rigid", "similarity", "affine"]
+    assert ((low < expected) & (expected < high)).all()
+    assert [table.GetCellText(row, 0) for row in range(3)] == list(fits)

@@ -16,6 +16,28 @@ def host(tmp_path):
     assert not running.errors, "\n".join(running.errors)
 
 
+@pytest.fixture(scope="module")
+def lasting_host(tmp_path_factory):
+    """A host that runs for all tests of a file, with our module open."""
+    from Testing.slicer.host.host import Host
+
+    running = Host(tmp_path_factory.mktemp("slicer"))
+    try:
+        running.open()
+        yield running
+    finally:
+        running.close()
+
+
+@pytest.fixture
+def fresh_module(lasting_host, tmp_path):
+    """The open module with an empty scene, and a study of its own."""
+    lasting_host.begin_anew(tmp_path / "study.db")
+    yield lasting_host
+    lasting_host.widget.logic.session.link.disconnect()
+    assert not lasting_host.errors, "\n".join(lasting_host.errors)
+
+
 @pytest.fixture
 def module_widget(host):
     """The module's widget, opened and entered."""

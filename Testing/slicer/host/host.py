@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import shutil
 import sys
 from pathlib import Path
 from types import ModuleType
@@ -120,6 +121,21 @@ class Host(User):
         window = self._main_window._qt
         window.showMinimized() if is_minimized else window.showNormal()
         self.process_events()
+
+    def begin_anew(self, study: Path) -> None:
+        """Forget what was done in the open module, and continue with another study."""
+        ANSWERS.clear()
+        FAILURES.texts.clear()
+        session = self.widget.logic.session
+        # The next simulator may say nothing of a trial.
+        session.link.stateChanged.emit({})
+        shutil.rmtree(session.places.records, ignore_errors=True)
+        self.clear_scene()
+        self.find("hostLineEdit").text = "127.0.0.1"
+        for name in ("programPathLineEdit", "wheelsPathLineEdit"):
+            self.find(name).currentPath = ""
+        self.find("studyPathLineEdit").currentPath = str(study)
+        self.finish_work()
 
     def clear_scene(self) -> None:
         """Close the scene, by Slicer's menu."""

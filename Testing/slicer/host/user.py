@@ -113,6 +113,12 @@ class User:
         """Return the text of a widget."""
         return self.find(name).text
 
+    def cells(self, name: str) -> list[list[str]]:
+        """Return the texts of a table's cells, row by row."""
+        table = self.find(name)
+        columns = range(table.columnCount)
+        return [[table.item(row, n).text() for n in columns] for row in range(table.rowCount)]
+
     def wait_until(self, condition: Callable[[], Any], what: str, timeout_s: float = 300.0) -> None:
         """Process events until something is true."""
         deadline = time.monotonic() + timeout_s

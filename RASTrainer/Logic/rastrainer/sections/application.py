@@ -50,7 +50,6 @@ def findPlaces(moduleFile: Path, settings: Settings) -> ModulePaths:
 
 
 def callSoon(work: Callable[[], None]) -> None:
-    """Call `work` in the next turn of the event loop."""
     qt.QTimer.singleShot(0, work)
 
 
@@ -92,7 +91,6 @@ CURVE, CALIBRATION, TABLES = "learning curve", "calibration", "tables"
 
 
 def showChart(layout: BorrowedLayout, chart: Any, purpose: str = CURVE) -> None:
-    """Show a `vtkMRMLPlotChartNode` in a layout that has a plot view."""
     layout.show(purpose, WITH_PLOT)
     logic = slicer.app.applicationLogic()
     logic.GetSelectionNode().SetActivePlotChartID(chart.GetID())

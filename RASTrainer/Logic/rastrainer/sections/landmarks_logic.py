@@ -9,17 +9,15 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.files.point_files import read_markups, write_markups
-from rastrainer.files.point_list import PointList
 from rastrainer.scenario.points import Landmark
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.sections.scenario_files import ScenarioFiles
-from rastrainer.slicer.scene.nodes import Role
+from rastrainer.slicer.scene.nodes import Role, usedPoints
 from rastrainer.slicer.scene.plan_points import (
     PlacedPoint,
     UndoablePoints,
@@ -28,7 +26,7 @@ from rastrainer.slicer.scene.plan_points import (
     startPlacing,
 )
 from rastrainer.slicer.translation import _
-from rastrainer.work_progress import Progress, no_progress
+from rastrainer.work_progress import Progress
 
 FILE = "landmarks.mrk.json"
 
@@ -71,44 +69,29 @@ class LandmarkPoints(UndoablePoints):
             points.remove([point for point in points if point.isSelected][row])
             putPoints(node, points)
 
+    @contextmanager
+    def written(self) -> Iterator[Path]:
+        """Yield a file of the landmarks, in the order of touching."""
+        if not self.placed():
+            raise InputError(_("Place landmarks first, or have them proposed."))
+        with tempfile.TemporaryDirectory() as temporary:
+            path = Path(temporary) / FILE
+            write_markups(path, usedPoints(Role.LANDMARKS.make(self._scene)))
+            yield path
 
-class LandmarkLogic:
-    """Work of the group Landmarks with the landmarks of the scene, its `points`."""
-
-    def __init__(self, scene: Any, files: ScenarioFiles) -> None:
-        self.points = LandmarkPoints(scene)
-        self._files = files
-
-    def propose(self, scenario: Scenario, progress: Progress = no_progress) -> str:
+    def propose(self, files: ScenarioFiles, scenario: Scenario, progress: Progress) -> str:
         """Propose landmarks in place of those in the scene; return a sentence about them."""
         with tempfile.TemporaryDirectory() as temporary:
             path = Path(temporary) / FILE
             words = ["landmarks", str(scenario.folder), str(path), "--propose"]
-            sentence = self._files.run(words, progress)
+            sentence = files.run(words, progress)
             proposed = read_markups(path)
         places = np.array(proposed.points, dtype=float)
-        self.points.show([*map(Landmark, proposed.labels or (), places)])
+        self.show([*map(Landmark, proposed.labels or (), places)])
         return sentence
 
-    def check(self, scenario: Scenario, progress: Progress = no_progress) -> str:
+    def check(self, files: ScenarioFiles, scenario: Scenario, progress: Progress) -> str:
         """Return the faults of the landmarks on the head of a scenario, or that there are none."""
-        with self._written() as path:
+        with self.written() as path:
             words = ["landmarks", str(scenario.folder), str(path)]
-            return self._files.run(words, progress, mayFail=True)
-
-    def save(self, scenario: Scenario, title: str, progress: Progress = no_progress) -> Scenario:
-        with self._written() as path:
-            plan = ["--landmarks", str(path)]
-            return self._files.saveWith(plan, scenario.name, title, progress)
-
-    @contextmanager
-    def _written(self) -> Iterator[Path]:
-        landmarks = self.points.placed()
-        if not landmarks:
-            raise InputError(_("Place landmarks first, or have them proposed."))
-        names = tuple(landmark.name for landmark in landmarks)
-        places = np.array([landmark.position_ras for landmark in landmarks])
-        with tempfile.TemporaryDirectory() as temporary:
-            path = Path(temporary) / FILE
-            write_markups(path, PointList(names, places))
-            yield path
+            return files.run(words, progress, mayFail=True)

@@ -11,10 +11,9 @@ from typing import Any
 from rastrainer.protocol import DECIDE, Phase, RegistrationMethod
 from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario, playable_methods
-from rastrainer.sections.landmarks_logic import LandmarkLogic
+from rastrainer.sections.landmarks_logic import LandmarkPoints
 from rastrainer.sections.new_scenario_logic import ScenarioMaker
 from rastrainer.sections.procedure_logic import ProcedureLogic
-from rastrainer.sections.procedure_plan_logic import ProcedurePlanLogic
 from rastrainer.sections.registration_logic import RegistrationLogic
 from rastrainer.sections.scenario_files import ScenarioCache, ScenarioFiles
 from rastrainer.sections.scenario_logic import ScenarioLogic
@@ -57,11 +56,9 @@ ROBOT = Path("robots", "iiwa7")
 class ModulePaths:
     """Where the session reads and writes files.
 
-    Attributes:
-        python: that sets the simulator up, runs it, and does long work in separate processes.
-        study: file of the study, until another is chosen, or is at `studyAddress`.
-        records: folder of the journals of the simulator that is started from here.
-        library: folder of the user's own scenarios, which the simulator knows too.
+    `python` sets the simulator up, runs it, and does long work in separate processes. `records`
+    are the journals of the simulator that is started from here. In the `library` are the user's own
+    scenarios.
     """
 
     assets: Path
@@ -80,10 +77,9 @@ class ModuleSession:
     `process` is to be called soon after `woken` has been emitted, and when `restS` are over.
 
     Attributes:
-        studyFile: file of the study that is not kept at an address.
-        studyPlace: where the present study is: that file, or an address.
-        procedures: names and titles of the procedures of the chosen scenario.
-        methods: names of the ways in which a trial of that scenario can be registered.
+        studyPlace: where the present study is: `studyFile`, or an address.
+        procedures, methods: names and titles of procedures, and names of methods of registration,
+            that the chosen scenario has.
         isSeen: returns whether someone may be looking at the module, at the 3D view, or (where
             asked to count them) at the slice views; the module's widget sets it.
         scenarioMade: emits the name of a scenario that has just been made.
@@ -110,8 +106,7 @@ class ModuleSession:
         self.layout = BorrowedLayout(scene)
         self.studyFile = places.study
         self.studyPlace: StudyPlace = places.studyAddress or places.study
-        self._scene = scene
-        self._callSoon = callSoon
+        self._scene, self._callSoon = scene, callSoon
         self._lockWait = LockWait(*INTERACTIVE_WAIT_S)
         find_driver_in(places.simulator)
         self.scenarios = cache = ScenarioCache(places.assets / "scenarios", places.library)
@@ -143,25 +138,20 @@ class ModuleSession:
         )
         self.registration = RegistrationLogic(scene, self.work)
         self.plan = PlanLogic(scene, self.link, self.registration)
-        self.landmarks = LandmarkLogic(scene, self.scenarioFiles)
-        self.procedurePlan = ProcedurePlanLogic(scene, self.scenarioFiles)
-        self.task = ""
-        self.taskTitle = ""
+        self.landmarks = LandmarkPoints(scene)
+        self.task = self.taskTitle = ""
         self.isSeen: Callable[[bool], bool] = lambda _inSlices: False
-        self.taskChosen = Signal()
-        self.scenarioMade = Signal()
-        self.woken = Signal()
-        self.sceneChanged = Signal()
-        self.secondPassed = Signal()
+        self.taskChosen, self.scenarioMade = Signal(), Signal()
+        self.woken, self.sceneChanged, self.secondPassed = Signal(), Signal(), Signal()
         self._second = 0
         self._watch = SceneWatch(scene)
         self._trial = ""
         self.training.sceneShown.connect(self.procedure.showPlan)
         self.training.sceneShown.connect(self.traces.begin)
+        self.trials.trialScored.connect(self._takeScored)
         unscored = self.trials.abortedKept, self.trials.drillKept
         for kept in (self.trials.trialKept, *unscored):
             kept.connect(lambda trial: self.study.leadAgain(trial.trainee))
-        self.trials.trialScored.connect(self._takeScored)
         for kept in unscored:
             kept.connect(self._showTrainees)
         self.training.changed.connect(self._noticeNewTrial)
@@ -175,11 +165,7 @@ class ModuleSession:
             signal.connect(lambda *_values: self.woken.emit())
 
     def openStudy(self) -> Study:
-        """Open the present study, or begin it; this thread draws the window and waits for no lock.
-
-        Raises:
-            StudyBusyError: another program has it locked.
-        """
+        """Open the present study, or begin it; the window's thread waits for no lock."""
         return Study.open(self.studyPlace, self._lockWait, make_folder=True)
 
     def openStudyPatiently(self) -> Study:

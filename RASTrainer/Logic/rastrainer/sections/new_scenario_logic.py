@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.point_files import write_markups
+from rastrainer.files.point_list import PointList
 from rastrainer.files.writing import write_json
 from rastrainer.json_records import record_to_json
 from rastrainer.protocol import FIDUCIAL_COUNT
@@ -26,15 +27,8 @@ from rastrainer.sections.scenario_logic import findSkin
 from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.polydata import meshPolyData
 from rastrainer.slicer.program.child_process import Run, runChild
-from rastrainer.slicer.scene.nodes import (
-    ROLE_ATTRIBUTE,
-    Role,
-    isUsed,
-    labelsOf,
-    nodesOfClass,
-    usedPoints,
-    worldPoints,
-)
+from rastrainer.slicer.scene import nodes
+from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.translation import _
 from rastrainer.work_progress import Progress, no_progress
 
@@ -50,11 +44,8 @@ SETTINGS_ATTRIBUTE = "RASTrainer.previewedWith"
 class NewScenarioOptions:
     """Options of a new scenario; the name of its volume stands in for empty texts.
 
-    Attributes:
-        volume: the `vtkMRMLScalarVolumeNode`, a T1-weighted MRI or CT of a head.
-        threshold, cutMm: as in `HeadSettings`.
-        targets, trajectory: a list of points and a line from entry to target, or None.
-        isHandPlaced: whether the scene's own point lists of 15 are the tasks, in their order.
+    The volume is a T1-weighted MRI or CT of a head, the plan a list of points and a line from entry
+    to target. `isHandPlaced` makes the scene's own point lists of 15 the tasks, in their order.
     """
 
     volume: Any
@@ -102,17 +93,15 @@ class ScenarioMaker:
 
         volume, settings = options.volume, options.headSettings
         found, skin, warnings = findSkin(self.run, volume, settings, progress)
-        draft = Role.HEAD_SEGMENT.make(self.scene)
-        model = Role.HEAD_PREVIEW.make(self.scene)
-        for node in (draft, model):
-            # It is shown where it was found.
-            node.SetAndObserveTransformNodeID(None)
+        draft, model = Role.HEAD_SEGMENT.make(self.scene), Role.HEAD_PREVIEW.make(self.scene)
         showSegment(draft, found)
         draft.SetReferenceImageGeometryParameterFromVolumeNode(volume)
         draft.SetAttribute(PREVIEWED_ATTRIBUTE, volume.GetID())
         draft.SetAttribute(SETTINGS_ATTRIBUTE, repr(settings))
         model.SetAndObservePolyData(meshPolyData(skin))
         for node in (draft, model):
+            # It is shown where it was found.
+            node.SetAndObserveTransformNodeID(None)
             node.SetDisplayVisibility(True)
         return warnings
 
@@ -140,7 +129,7 @@ class ScenarioMaker:
         source = options.source.strip() or f"The volume {volume.GetName()} in 3D Slicer."
         terms = options.license.strip() or UNKNOWN_LICENSE
         words = [f"--title={options.name}", f"--source={source}", f"--license={terms}"]
-        lists, leftOut = list[Any](), list[str]()
+        lists, leftOut = list[PointList](), list[str]()
         if options.isHandPlaced:
             lists, leftOut = handPlacedLists(self.scene, options.targets)
 
@@ -153,8 +142,8 @@ class ScenarioMaker:
             write_json(setUp, record_to_json(options.setUp, with_defaults=True))
             words += ["--setup", str(setUp), *planArguments(options.targets, options.trajectory)]
             tasks = [Path(temporary, f"task-{index}.mrk.json") for index in range(len(lists))]
-            for path, node in zip(tasks, lists, strict=True):
-                write_markups(path, usedPoints(node, worldPoints(node), labelsOf(node)))
+            for path, points in zip(tasks, lists, strict=True):
+                write_markups(path, points)
             words += ["--tasks", *map(str, tasks)] if tasks else []
             words += ["--check"] if folder is None else []
             command = self.files.simulator.command([])
@@ -190,17 +179,16 @@ def editedHead(volume: Any, settings: HeadSettings) -> SegmentImage | None:
 MAX_LISTS = 6
 
 
-def handPlacedLists(scene: Any, targets: Any) -> tuple[list[Any], list[str]]:
-    """Return the usable lists, in the scene's order, and why others are left out.
+def handPlacedLists(scene: Any, targets: Any) -> tuple[list[PointList], list[str]]:
+    """Return the points of the usable lists, in the scene's order, and why others are left out.
 
     The list of the planned `targets` has no fiducials.
     """
-    taken: list[Any] = []
-    leftOut = []
-    for node in nodesOfClass(scene, "vtkMRMLMarkupsFiducialNode"):
-        if node is targets or node.GetAttribute(ROLE_ATTRIBUTE) is not None:
+    taken, leftOut = list[PointList](), list[str]()
+    for node in nodes.nodesOfClass(scene, "vtkMRMLMarkupsFiducialNode"):
+        if node is targets or node.GetAttribute(nodes.ROLE_ATTRIBUTE) is not None:
             continue
-        count = sum(isUsed(node, row) for row in range(node.GetNumberOfControlPoints()))
+        count = sum(nodes.isUsed(node, row) for row in range(node.GetNumberOfControlPoints()))
         if count != FIDUCIAL_COUNT:
             reason = _(
                 "The point list {name} is left out: it has {count} points that are placed and "
@@ -212,12 +200,12 @@ def handPlacedLists(scene: Any, targets: Any) -> tuple[list[Any], list[str]]:
             leftOut.append(reason.format(name=node.GetName(), most=MAX_LISTS))
         else:
             try:
-                used = usedPoints(node, worldPoints(node), labelsOf(node))
+                used = nodes.usedPoints(node)
                 touch_order(used.labels or [""] * len(used.points))
             except InputError as error:
                 problem = _("The point list {name} cannot be used: {reason}")
                 raise InputError(problem.format(name=node.GetName(), reason=error)) from None
-            taken.append(node)
+            taken.append(used)
     if not taken:
         problem = _("There is no point list of {count} fiducials in the scene.")
         raise InputError(" ".join([problem.format(count=FIDUCIAL_COUNT), *leftOut]))

@@ -20,6 +20,7 @@ from rastrainer.sections.application import downloadSample, fitThreeDViews
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.new_scenario_logic import NewScenarioOptions
 from rastrainer.sections.panel import Panel, chosenScenario, connectClick
+from rastrainer.sections.scenario_files import ScenarioFiles
 from rastrainer.slicer.translation import _
 from rastrainer.widgets.controls import (
     CancelableWork,
@@ -96,7 +97,6 @@ class NewScenarioPanel(Panel):
         self._showUsable()
 
     def loadSampleData(self) -> None:
-        """Download an MRI through Slicer's Sample Data, and choose it."""
         with showErrors(_("The sample could not be loaded."), waitCursor=True):
             logic = slicer.util.getModuleLogic("SampleData")
             volume = self._work.run(partial(downloadSample, slicer.mrmlScene, logic, SAMPLE))
@@ -190,16 +190,11 @@ def _chosen(box: Any) -> float | None:
     return None if box.value == box.minimum else box.value
 
 
-NAMES = {
-    "Nasion": _("Nasion"),
-    "Right outer canthus": _("Right outer canthus"),
-    "Left outer canthus": _("Left outer canthus"),
-    "Right inner canthus": _("Right inner canthus"),
-    "Left inner canthus": _("Left inner canthus"),
-    "Right tragus": _("Right tragus"),
-    "Left tragus": _("Left tragus"),
-    "Tip of the nose": _("Tip of the nose"),
-}
+_SHOWN = [_("Nasion"), _("Right outer canthus"), _("Left outer canthus")]
+_SHOWN += [_("Right inner canthus"), _("Left inner canthus"), _("Right tragus")]
+_SHOWN += [_("Left tragus"), _("Tip of the nose")]
+NAMES = dict(zip(FACE_LANDMARKS, _SHOWN, strict=True))
+"""What a landmark is called here, by its name in files."""
 ENTRIES = [(NAMES[name], name) for name in FACE_LANDMARKS]
 
 
@@ -208,21 +203,21 @@ class LandmarksPanel(Panel):
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
-        self._logic = session.landmarks
-        propose = partial(self._run, self._logic.propose)
+        self._points = points = session.landmarks
+        propose = partial(self._run, points.propose)
         failure = _("No landmarks could be proposed.")
         shows = self._showMessage, self.showState
         self._work = CancelableWork(ui.proposeLandmarksButton, propose, failure, *shows)
         fillComboBox(ui.landmarkNameComboBox, ENTRIES, FACE_LANDMARKS[0])
         connectClick(ui.showLandmarksButton, self.show, _("The landmarks cannot be shown."))
-        points, names, table = self._logic.points, ui.landmarkNameComboBox, ui.landmarksTable
+        names, table = ui.landmarkNameComboBox, ui.landmarksTable
         place, failure = ui.placeLandmarkButton, _("No landmark can be placed.")
         connectClick(place, lambda: points.startPlacing(chosenData(names)), failure)
         ui.removeLandmarkButton.connect("clicked()", lambda: points.remove(table.currentRow()))
         ui.undoLandmarkButton.connect("clicked()", points.undo)
         for button in (ui.removeLandmarkButton, ui.undoLandmarkButton):
             button.connect("clicked()", self.showState)
-        check = partial(self._run, self._logic.check)
+        check = partial(self._run, points.check)
         connectClick(ui.checkLandmarksButton, check, _("The landmarks were not checked."))
         connectClick(ui.saveLandmarksButton, self.save, _("The landmarks were not saved."))
         self._message = ""
@@ -234,22 +229,20 @@ class LandmarksPanel(Panel):
         scenario = chosenScenario(self._ui, self._session)
         if not scenario.landmarks:
             raise InputError(_("{title} has no landmarks.").format(title=scenario.title))
-        self._logic.points.show(scenario.landmarks)
+        self._points.show(scenario.landmarks)
         self._showMessage("")
         self.showState()
 
     def save(self) -> None:
-        """Copy the chosen scenario with these landmarks and use the copy."""
-        title = self._ui.landmarksTitleLineEdit.text.strip()
-        scenario = chosenScenario(self._ui, self._session)
-        saved = self._work.run(lambda report: self._logic.save(scenario, title, report))
+        with self._points.written() as path:
+            title, plan = self._ui.landmarksTitleLineEdit.text, ["--landmarks", str(path)]
+            saved = self.saveCopy(self._work, title, plan)
         if saved is not None:
             text = _("{title} was made and is chosen above.")
             self._showMessage(text.format(title=saved.title))
-            self._session.scenarioMade.emit(saved.name)
 
     def showState(self) -> None:
-        ui, points, isAtWork = self._ui, self._logic.points, self._work.isUnderWay
+        ui, points, isAtWork = self._ui, self._points, self._work.isUnderWay
         self._showMessage(self._message)
         rows = [
             (NAMES.get(each.name, each.name), *(fixed(float(v), 1) for v in each.position_ras))
@@ -267,15 +260,15 @@ class LandmarksPanel(Panel):
             reason = _("Wait until the current work is done.") if isAtWork else none
             setEnabled(button, bool(rows) and not isAtWork, reason)
 
-    def _run(self, work: Callable[[Scenario, Progress], str]) -> None:
+    def _run(self, work: Callable[[ScenarioFiles, Scenario, Progress], str]) -> None:
         scenario = chosenScenario(self._ui, self._session)
-        said = self._work.run(lambda report: work(scenario, report))
+        said = self._work.run(partial(work, self._session.scenarioFiles, scenario))
         if said is not None:
             self._showMessage(said)
 
     def _showMessage(self, sentence: str) -> None:
         self._message = sentence
-        others = self._logic.points.placed(areSelected=False)
+        others = self._points.placed(areSelected=False)
         if others:
             leftOut = _("Left out, as they are deselected in the module Markups: {names}.")
             names = ", ".join(NAMES.get(each.name, each.name) for each in others)

@@ -9,30 +9,18 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 
 from rastrainer.protocol import Phase, StepKind
-from rastrainer.sections.training_logic import LOADING, tutorialSentence
-from rastrainer.sections.trial_status import TrialStatus
+from rastrainer.sections.training_logic import LOADING, TrialStatus, tutorialSentence
 from rastrainer.slicer.link.link_status import LinkState, LinkStatus
 from rastrainer.slicer.program.simulator_program import ProgramState
 from rastrainer.slicer.translation import _
+from rastrainer.study.protocol.steps import StepProgress, instruction
 
-
-class NextAction(str, Enum):
-    """Actions of the button."""
-
-    WAIT = "wait"
-    START_SIMULATOR = "start simulator"
-    CONNECT = "connect"
-    CONNECT_TO_RUNNING = "connect to running"
-    CREATE_TRAINEE = "create trainee"
-    CHOOSE_TRAINEE = "choose trainee"
-    START_TRIAL_RUN = "start trial run"
-    START_TASK = "start task"
-    START_STUDY_STEP = "start study step"
-    EXPLAIN_REPEAT = "explain repeat"
-    ANSWER = "answer"
-    PAUSE = "pause"
-    RESUME = "resume"
-    SHOW_RESULT = "show result"
+NextAction = Enum(
+    "NextAction",
+    "WAIT START_SIMULATOR CONNECT CONNECT_TO_RUNNING CREATE_TRAINEE CHOOSE_TRAINEE "
+    "START_TRIAL_RUN START_TASK START_STUDY_STEP EXPLAIN_REPEAT ANSWER PAUSE RESUME SHOW_RESULT",
+)
+"""Actions of the button."""
 
 
 class Section(str, Enum):
@@ -68,6 +56,7 @@ class WorkflowState:
         isLearning: the trainee does the tutorial before the trial run.
         isUnscored: the trial that was registered last could not be kept or scored.
         hasNewResult: a trial of the trainee was scored and has not been viewed.
+        progress: in the study; None for a trainee who practices freely.
     """
 
     link: LinkStatus
@@ -87,9 +76,7 @@ class WorkflowState:
     isUnscored: bool = False
     hasNewResult: bool = False
     isResultShown: bool = False
-    studyStep: StepKind | None = None
-    needsRepeatReason: bool = False
-    studySentence: str = ""
+    progress: StepProgress | None = None
 
 
 def nextStep(now: WorkflowState) -> NextStep:
@@ -176,12 +163,13 @@ _STUDY_STEPS = {
 
 
 def _trial(now: WorkflowState) -> NextStep:
-    if now.studyStep is not None:
-        action, title = _STUDY_STEPS[now.studyStep]
-        if now.needsRepeatReason:
+    if now.progress is not None and now.progress.next_step is not None:
+        step, repeat = now.progress.next_step, now.progress.repeat_sentence
+        action, title = _STUDY_STEPS[StepKind(step.kind)]
+        if repeat:
             action, title = NextAction.EXPLAIN_REPEAT, _("Reason for the repeat…")
         here = Section.SCORE if now.isResultShown else Section.STUDY
-        text = tutorialSentence(now.trainee) if now.isLearning else now.studySentence
+        text = tutorialSentence(now.trainee) if now.isLearning else repeat or instruction(step)
         return NextStep(action, title, text, here)
     here = Section.SCORE if now.isResultShown else Section.TRAINING
     if not now.hasPracticed:

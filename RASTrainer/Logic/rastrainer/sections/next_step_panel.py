@@ -12,7 +12,7 @@ import qt
 
 from rastrainer.decision.drill_record import DrillRecord
 from rastrainer.errors import InputError
-from rastrainer.protocol import TRIAL_RUN, Phase, StepKind
+from rastrainer.protocol import TRIAL_RUN, Phase
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.next_step_logic import (
     NextAction,
@@ -24,7 +24,6 @@ from rastrainer.sections.next_step_logic import (
 from rastrainer.sections.panel import Panel
 from rastrainer.slicer.link.link_status import NOT_INSTALLED
 from rastrainer.slicer.translation import _
-from rastrainer.study.protocol.steps import instruction
 from rastrainer.trial.record import TrialRecord
 from rastrainer.widgets.controls import LINK_LOOKS, connectAsPressed, setEnabled, setLight, setText
 from rastrainer.widgets.plain_text import buttonTitle, shortName
@@ -36,9 +35,8 @@ THIS_COMPUTER = ("", "127.0.0.1", "localhost", "::1")
 class NextStepPanel(Panel):
     """Leads through a session: it draws what `nextStep` says, and lets the sections do it.
 
-    It folds and opens sections only when the workflow moves to another one. Until then, sections
-    stay as the user opens or folds them. Sections without a next step, such as Scenario and Plan,
-    are never changed.
+    Sections are folded and opened only when the workflow moves to another one. Those without a next
+    step, such as Scenario and Plan, are never changed.
     """
 
     def __init__(
@@ -136,20 +134,12 @@ class NextStepPanel(Panel):
         trainees, now = self._session.trainees, self._now
         if trainees.chosen != now.trainee:
             now = replace(now, hasPracticed=False, hasNewResult=False, isResultShown=False)
-        now = replace(now, trainee=trainees.chosen, studyStep=None, needsRepeatReason=False)
+        now = replace(now, trainee=trainees.chosen, progress=None)
         # The section Trainees shows the error.
         with contextlib.suppress(InputError):
             now = replace(now, hasTrainees=bool(trainees.trainees()))
             now = replace(now, hasPracticed=now.hasPracticed or bool(trainees.history()))
-            progress = self._session.study.progress()
-            step = None if progress is None else progress.next_step
-            if progress is not None and step is not None:
-                now = replace(
-                    now,
-                    studyStep=StepKind(step.kind),
-                    needsRepeatReason=bool(progress.repeat_sentence),
-                    studySentence=progress.repeat_sentence or instruction(step),
-                )
+            now = replace(now, progress=self._session.study.progress())
         self._now = now
         self.showState()
 

@@ -63,10 +63,12 @@ class PanelStack:
         for place, kind in enumerate((NextStepPanel, *SECTIONS)):
             widget = slicer.util.loadUI(resourcePath(f"UI/RASTrainer{kind.__name__}.ui"))
             layout.insertWidget(place, widget)
-            # Nodes can be chosen only from a scene.
-            widget.setMRMLScene(slicer.mrmlScene)
+            # Only the next step stands apart.
+            widget.layout().setContentsMargins(0, 0, 0, 0 if place else 4)
             named = vars(slicer.util.childWidgetVariables(widget))
             configureWidgets(named.values())
+            # Nodes can be chosen only from a scene; a box must know before that it may be empty.
+            widget.setMRMLScene(slicer.mrmlScene)
             vars(self.ui).update(named)
             yield
         panels: dict[type, Any] = {}

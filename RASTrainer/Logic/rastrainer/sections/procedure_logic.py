@@ -10,8 +10,8 @@ from rastrainer.procedure.errors import TrueLine, true_lines
 from rastrainer.procedure.record import ProcedureRecord
 from rastrainer.protocol import Phase
 from rastrainer.scenario.scenario import Scenario
+from rastrainer.sections.training_logic import TrialStatus, readStatus
 from rastrainer.sections.trial_services import Question, Steps, TrialServices
-from rastrainer.sections.trial_status import TrialStatus, readStatus
 from rastrainer.slicer.scene.procedure_lines import showPlannedLines, showProcedureErrors
 from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
@@ -35,9 +35,7 @@ class ProcedureLogic(Listening):
     """
 
     def __init__(self, services: TrialServices) -> None:
-        self.changed = Signal()
-        self.outcomeChanged = Signal()
-        self.answered = Signal()
+        self.changed, self.outcomeChanged, self.answered = Signal(), Signal(), Signal()
         self.status = TrialStatus()
         self.outcome: ProcedureOutcome | None = None
         self.lines: list[TrueLine] = []

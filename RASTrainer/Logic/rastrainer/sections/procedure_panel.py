@@ -11,7 +11,7 @@ from rastrainer.procedure.errors import TrajectoryErrors
 from rastrainer.protocol import Phase
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, connectClick
-from rastrainer.sections.trial_status import TrialStatus
+from rastrainer.sections.training_logic import TrialStatus
 from rastrainer.slicer.settings import SLICES_LIE_ALONG
 from rastrainer.slicer.translation import _
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
@@ -19,8 +19,6 @@ from rastrainer.widgets.controls import bind, fillTable, numberOrDash, setEnable
 
 FEED_MM, FEED_MM_S = 1.0, 2.0
 """How far one press of a button feeds drill or instrument, and how fast."""
-
-
 _VERIFY, _ALIGN = (Phase.VERIFYING,), (Phase.ALIGNING,)
 _DRILL, _INSERT = (Phase.DRILLING,), (Phase.INSERTING,)
 _FEED = {"velocityMmS": FEED_MM_S, "durationS": FEED_MM / FEED_MM_S}
@@ -158,8 +156,8 @@ def scoreText(outcome: ProcedureOutcome) -> str:
     score, analysis = outcome.score, outcome.analysis
     text = _("Score of the procedure: {score} of 100 (version {version}).")
     said = [text.format(score=fixed(score.score, 1), version=score.version)]
-    text = _("{trajectory} hit {structure}.")
-    said += [text.format(trajectory=line, structure=hit) for line, hit in analysis.hits]
+    hit = _("{trajectory} hit {structure}.")
+    said += [hit.format(trajectory=line, structure=name) for line, name in analysis.hits]
     if analysis.self_aligned:
         text = _("The robot aligned {count} of {lines} lines: only their depth is by hand.")
         said.append(text.format(count=analysis.self_aligned, lines=len(analysis.trajectories)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import tempfile
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -39,104 +40,94 @@ from rastrainer.slicer.scene.nodes import labelsOf, setValues, worldPoints
 from rastrainer.slicer.scene.plan_points import ENDS, placedPoints
 from rastrainer.slicer.scene.procedure_lines import instrumentOf, noGoNodes, planLines, showPlan
 from rastrainer.slicer.translation import _
-from rastrainer.work_progress import Progress, no_progress
-
-FILE = "procedure.json"
+from rastrainer.work_progress import Progress
 
 Plan = tuple[Procedure, dict[str, HeadMesh]]
 """A procedure, and the meshes of its no-go structures by file name."""
 
 
-class ProcedurePlanLogic:
-    """Shows, reads, checks and saves the plan of a procedure."""
-
-    def __init__(self, scene: Any, files: ScenarioFiles) -> None:
-        self._scene = scene
-        self._files = files
-
-    def edit(self, scenario: Scenario, name: str) -> Procedure | None:
-        """Show a procedure in the scene, to be changed; an empty one without a name."""
-        procedure = scenario.procedure(name) if name else None
-        meshes = procedure and read_procedure_meshes(procedure, scenario.skull_path)
-        showPlan(self._scene, procedure, meshes.no_go if meshes else {})
-        return procedure
-
-    def read(
-        self, title: str, kind: str, source: str = "", name: str = "", checkpoints: Any = None
-    ) -> Plan:
-        """Return the plan of the scene.
-
-        `name` is empty for a new procedure, whose name its title gives; without a `source`, the
-        coordinates were placed in Slicer. `checkpoints` is a list of points on the skin, or None.
-        """
-        title = title.strip()
-        if not title:
-            raise InputError(_("Enter a title for the procedure."))
-        trajectories = self._trajectories()
-        noGo = noGoMeshes(noGoNodes(self._scene))
-        files = [f"structure-{number}.ply" for number in range(1, len(noGo) + 1)]
-        if len(files) > MAX_NO_GO:
-            text = _("The plan has {count} no-go structures; it may have {most}.")
-            raise InputError(text.format(count=len(files), most=MAX_NO_GO))
-        name = name or identifier_of(title)
-        if not name:
-            text = _("{title} cannot be a procedure's title: it needs a Latin letter or digit.")
-            raise InputError(text.format(title=title))
-        places = () if checkpoints is None else worldPoints(checkpoints)
-        labels = () if checkpoints is None else labelsOf(checkpoints)
-        structures = zip(noGo, files, strict=True)
-        procedure = Procedure(
-            name,
-            title[:80],
-            ProcedureKind(kind),
-            source.strip() or _("Planned in 3D Slicer."),
-            trajectories,
-            tuple(NoGoStructure(each[:60], Path(NO_GO_FOLDER, file)) for each, file in structures),
-            tuple(map(Checkpoint, labels, places)),
-        )
-        return procedure, dict(zip(files, noGo.values(), strict=True))
-
-    def check(
-        self, scenario: Scenario, plan: Plan, progress: Progress = no_progress
-    ) -> MeasuredProcedure:
-        """Measure the plan on the head of a scenario; nothing is changed."""
-        with tempfile.TemporaryDirectory() as temporary:
-            path = _write(Path(temporary), *plan)
-            measures = path.with_name("lines.json")
-            words = ["lines", str(scenario.folder), "--procedure", str(path)]
-            words += ["--json", str(measures)]
-            refusal = self._files.run(words, progress, mayFail=True)
-            if not measures.is_file():
-                raise InputError(refusal)
-            (measured,) = json.loads(measures.read_text(encoding="utf-8"))
-        return record_from_json(MeasuredProcedure, measured)
-
-    def save(
-        self, scenario: Scenario, title: str, plan: Plan, progress: Progress = no_progress
-    ) -> Scenario:
-        with tempfile.TemporaryDirectory() as temporary:
-            words = ["--procedure", str(_write(Path(temporary), *plan))]
-            return self._files.saveWith(words, scenario.name, title, progress)
-
-    def _trajectories(self) -> tuple[ProcedureTrajectory, ...]:
-        lines = planLines(self._scene)
-        if not 1 <= len(lines) <= MAX_TRAJECTORIES:
-            text = _("A procedure has 1 to {most} lines; the plan has {count}. Place a line.")
-            raise InputError(text.format(most=MAX_TRAJECTORIES, count=len(lines)))
-        names = [line.GetName() for line in lines]
-        for name in names:
-            if names.count(name) > 1:
-                text = _("Two lines are named {name}: give each its own name.")
-                raise InputError(text.format(name=name))
-        return tuple(_trajectory(line) for line in lines)
+def editPlan(scene: Any, scenario: Scenario, name: str) -> Procedure | None:
+    """Show a procedure in the scene, to be changed; an empty one without a name."""
+    procedure = scenario.procedure(name) if name else None
+    meshes = procedure and read_procedure_meshes(procedure, scenario.skull_path)
+    showPlan(scene, procedure, meshes.no_go if meshes else {})
+    return procedure
 
 
-def _write(folder: Path, procedure: Procedure, meshes: dict[str, HeadMesh]) -> Path:
-    (folder / NO_GO_FOLDER).mkdir()
-    for name, mesh in meshes.items():
-        write_head_mesh(folder / NO_GO_FOLDER / name, mesh)
-    write_json(folder / FILE, procedure_json(procedure))
-    return folder / FILE
+def readPlan(
+    scene: Any, title: str, kind: str, source: str = "", name: str = "", checkpoints: Any = None
+) -> Plan:
+    """Return the plan of the scene.
+
+    `name` is empty for a new procedure, whose name its title gives; without a `source`, the
+    coordinates were placed in Slicer. `checkpoints` is a list of points on the skin, or None.
+    """
+    title = title.strip()
+    if not title:
+        raise InputError(_("Enter a title for the procedure."))
+    trajectories = _trajectories(scene)
+    noGo = noGoMeshes(noGoNodes(scene))
+    files = [f"structure-{number}.ply" for number in range(1, len(noGo) + 1)]
+    if len(files) > MAX_NO_GO:
+        text = _("The plan has {count} no-go structures; it may have {most}.")
+        raise InputError(text.format(count=len(files), most=MAX_NO_GO))
+    name = name or identifier_of(title)
+    if not name:
+        text = _("{title} cannot be a procedure's title: it needs a Latin letter or digit.")
+        raise InputError(text.format(title=title))
+    places = () if checkpoints is None else worldPoints(checkpoints)
+    labels = () if checkpoints is None else labelsOf(checkpoints)
+    structures = zip(noGo, files, strict=True)
+    procedure = Procedure(
+        name,
+        title[:80],
+        ProcedureKind(kind),
+        source.strip() or _("Planned in 3D Slicer."),
+        trajectories,
+        tuple(NoGoStructure(each[:60], Path(NO_GO_FOLDER, file)) for each, file in structures),
+        tuple(map(Checkpoint, labels, places)),
+    )
+    return procedure, dict(zip(files, noGo.values(), strict=True))
+
+
+def checkPlan(
+    files: ScenarioFiles, scenario: Scenario, plan: Plan, progress: Progress
+) -> MeasuredProcedure:
+    """Measure the plan on the head of a scenario; nothing is changed."""
+    with planFile(*plan) as path:
+        measures = path.with_name("lines.json")
+        words = ["lines", str(scenario.folder), "--procedure", str(path)]
+        words += ["--json", str(measures)]
+        refusal = files.run(words, progress, mayFail=True)
+        if not measures.is_file():
+            raise InputError(refusal)
+        (measured,) = json.loads(measures.read_text(encoding="utf-8"))
+    return record_from_json(MeasuredProcedure, measured)
+
+
+def _trajectories(scene: Any) -> tuple[ProcedureTrajectory, ...]:
+    lines = planLines(scene)
+    if not 1 <= len(lines) <= MAX_TRAJECTORIES:
+        text = _("A procedure has 1 to {most} lines; the plan has {count}. Place a line.")
+        raise InputError(text.format(most=MAX_TRAJECTORIES, count=len(lines)))
+    names = [line.GetName() for line in lines]
+    for name in names:
+        if names.count(name) > 1:
+            text = _("Two lines are named {name}: give each its own name.")
+            raise InputError(text.format(name=name))
+    return tuple(_trajectory(line) for line in lines)
+
+
+@contextmanager
+def planFile(procedure: Procedure, meshes: dict[str, HeadMesh]) -> Iterator[Path]:
+    """Yield a file of the plan, next to the meshes of its no-go structures."""
+    with tempfile.TemporaryDirectory() as temporary:
+        path = Path(temporary, "procedure.json")
+        (path.parent / NO_GO_FOLDER).mkdir()
+        for name, mesh in meshes.items():
+            write_head_mesh(path.parent / NO_GO_FOLDER / name, mesh)
+        write_json(path, procedure_json(procedure))
+        yield path
 
 
 def _trajectory(line: Any) -> ProcedureTrajectory:

@@ -12,7 +12,7 @@ from rastrainer.procedure.checks import LineMeasures, MeasuredProcedure
 from rastrainer.procedure.plan import ProcedureKind
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, chosenScenario, connectClick
-from rastrainer.sections.procedure_plan_logic import Plan
+from rastrainer.sections.procedure_plan_logic import Plan, checkPlan, editPlan, planFile, readPlan
 from rastrainer.slicer.scene.nodes import Role, worldPoints
 from rastrainer.slicer.scene.plan_points import startPlacing, unfinishedLine
 from rastrainer.slicer.scene.procedure_lines import (
@@ -54,7 +54,6 @@ class ProcedurePlanPanel(Panel):
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
-        self._logic = session.procedurePlan
         self._name = ""
         self._checked: tuple[tuple, MeasuredProcedure] | None = None
         self._problem = ""
@@ -67,15 +66,18 @@ class ProcedurePlanPanel(Panel):
         connectClick(ui.editProcedureButton, self.edit, _("The procedure cannot be edited."))
         connectClick(ui.placeLineButton, self.placeLine, _("No line can be placed."))
         ui.removeLineButton.connect("clicked()", self.removeLine)
-        ui.restoreLineButton.connect("clicked()", self.restoreLine)
+        restore = ui.restoreLineButton
+        restore.connect("clicked()", lambda: placeLine(slicer.mrmlScene, *self._removed.pop()))
         ui.raiseLineButton.connect("clicked()", self.raiseLine)
+        ui.noGoButton.connect("clicked()", self.toggleNoGo)
+        for button in (ui.removeLineButton, restore, ui.raiseLineButton, ui.noGoButton):
+            button.connect("clicked()", self.showState)
         noPoint = _("No checkpoint can be placed.")
         connectClick(ui.placeCheckpointButton, self.placeCheckpoint, noPoint)
         ui.linesTable.connect("itemSelectionChanged()", self._showLine)
         ui.lineNameLineEdit.connect("editingFinished()", self._renameLine)
         for box in (ui.lineDiameterSpinBox, ui.lineSafetySpinBox):
             box.connect("valueChanged(double)", self._changeInstrument)
-        ui.noGoButton.connect("clicked()", self.toggleNoGo)
         ui.noGoComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self.showState)
         connectClick(ui.saveProcedureButton, self.save, _("The procedure was not saved."))
         self.listen((session.taskChosen, self._showProcedures))
@@ -87,7 +89,7 @@ class ProcedurePlanPanel(Panel):
         """Load the chosen procedure into the scene, in place of the plan there."""
         ui = self._ui
         scenario = chosenScenario(ui, self._session)
-        procedure = self._logic.edit(scenario, chosenData(ui.procedurePlanComboBox))
+        procedure = editPlan(slicer.mrmlScene, scenario, chosenData(ui.procedurePlanComboBox))
         self._checked, self._problem, self._removed = None, "", []
         self._name = "" if procedure is None else procedure.name
         if procedure is not None:
@@ -95,8 +97,7 @@ class ProcedurePlanPanel(Panel):
             ui.procedureSourceLineEdit.text = procedure.source
             ui.procedureSourceLineEdit.cursorPosition = 0
             fillComboBox(ui.procedureKindComboBox, KINDS, procedure.kind.value)
-        checkpoints = Role.CHECKPOINTS.find(slicer.mrmlScene)
-        ui.checkpointsComboBox.setCurrentNode(checkpoints)
+        ui.checkpointsComboBox.setCurrentNode(Role.CHECKPOINTS.find(slicer.mrmlScene))
         self.showState()
 
     def placeLine(self) -> None:
@@ -105,17 +106,10 @@ class ProcedurePlanPanel(Panel):
         self.showState()
 
     def removeLine(self) -> None:
-        """Remove the chosen line; it can be restored."""
         line = self._line()
         if line is not None:
             self._removed.append((line, self._ui.linesTable.currentRow()))
             slicer.mrmlScene.RemoveNode(line)
-        self.showState()
-
-    def restoreLine(self) -> None:
-        if self._removed:
-            placeLine(slicer.mrmlScene, *self._removed.pop())
-        self.showState()
 
     def raiseLine(self) -> None:
         """Move the chosen line up in the order of the procedure; it stays chosen."""
@@ -124,7 +118,6 @@ class ProcedurePlanPanel(Panel):
             place = max(table.currentRow() - 1, 0)
             placeLine(slicer.mrmlScene, line, place)
             table.selectRow(place)
-        self.showState()
 
     def placeCheckpoint(self) -> None:
         """Let the next click place a checkpoint, in the chosen list or in the plan's own."""
@@ -134,29 +127,23 @@ class ProcedurePlanPanel(Panel):
         startPlacing(slicer.mrmlScene, node)
 
     def toggleNoGo(self) -> None:
-        """Make the chosen model or segmentation a no-go structure, or no longer."""
         node = self._ui.noGoComboBox.currentNode()
         if node is not None:
             setNoGo(node, not isNoGo(node))
-            self.showState()
 
     def check(self) -> None:
-        """Measure all lines on the head of the chosen scenario."""
         self._problem = ""
         scenario = chosenScenario(self._ui, self._session)
         plan, snapshot = self._read(), self._snapshot()
-        found = self._work.run(lambda report: self._logic.check(scenario, plan, report))
+        found = self._work.run(partial(checkPlan, self._session.scenarioFiles, scenario, plan))
         if found is not None:
             self._checked = snapshot, found
             self.showState()
 
     def save(self) -> None:
-        """Copy the chosen scenario with this procedure and use the copy."""
-        title = self._ui.procedureScenarioLineEdit.text.strip()
-        scenario, plan = chosenScenario(self._ui, self._session), self._read()
-        saved = self._work.run(lambda report: self._logic.save(scenario, title, plan, report))
-        if saved is not None:
-            self._session.scenarioMade.emit(saved.name)
+        with planFile(*self._read()) as path:
+            title = self._ui.procedureScenarioLineEdit.text
+            self.saveCopy(self._work, title, ["--procedure", str(path)])
 
     def showState(self, *_arguments: Any) -> None:
         ui, isAtWork = self._ui, self._work.isUnderWay
@@ -237,9 +224,8 @@ class ProcedurePlanPanel(Panel):
     def _read(self) -> Plan:
         ui, kind = self._ui, chosenData(self._ui.procedureKindComboBox)
         title, source = ui.procedureTitleLineEdit.text, ui.procedureSourceLineEdit.text
-        return self._logic.read(
-            title, kind, source, self._name, ui.checkpointsComboBox.currentNode()
-        )
+        checkpoints = ui.checkpointsComboBox.currentNode()
+        return readPlan(slicer.mrmlScene, title, kind, source, self._name, checkpoints)
 
     def _showProcedures(self) -> None:
         entries = [(title, name) for name, title in self._session.procedures]

@@ -23,7 +23,7 @@ from rastrainer.slicer.scene.error_colors import (
     removeHeadColors,
     showResidualArrows,
 )
-from rastrainer.slicer.scene.nodes import Role, surfaceOf, worldPoints
+from rastrainer.slicer.scene.nodes import TASK_ATTRIBUTE, Role, surfaceOf, worldPoints
 from rastrainer.slicer.scene.registration_input import (
     Choices,
     Pairs,
@@ -34,7 +34,6 @@ from rastrainer.slicer.scene.registration_input import (
     remedyOf,
     snapshot,
 )
-from rastrainer.slicer.scene.scenario_nodes import TASK_ATTRIBUTE
 from rastrainer.slicer.scene.tables import showFits, showResiduals
 from rastrainer.slicer.scene.trial_scene import checkSameTask, placeWorld
 from rastrainer.slicer.signal import Signal
@@ -46,13 +45,10 @@ class Comparison:
 
     Attributes:
         shown: the fit of the wanted kind; the rigid one where the pairs do not allow that kind.
-        localizations: the error of the touches along and across the skin; None if only an isotropic
-            error is known.
-        errors: what to expect at the target; those that are known.
-        leaveOneOut: (n,) float, mm, how far each touch lies from where the other pairs put it;
-            those for which the pairs are enough.
-        headErrors: (v,) float, mm, expected at each point of the head with the shown fit; None if
-            the head is not colored, or nothing is known.
+        localizations: along and across the skin; None if only an isotropic error is known.
+        errors: what to expect at the target.
+        leaveOneOut: (n,) float, mm, how far each touch lies from where the other pairs put it.
+        headErrors: (v,) float, mm, expected at each point of a head that is to be colored.
     """
 
     pairs: Pairs
@@ -106,7 +102,6 @@ def compareFits(
 
 
 Request = Callable[[], Comparison]
-LISTS = (Role.CAPTURED_POINTS, Role.FIXED_FIDUCIALS, Role.TARGET)
 
 
 @dataclass(eq=False)
@@ -139,7 +134,6 @@ class RegistrationLogic:
 
     @property
     def choices(self) -> Choices:
-        """The user's changes to the pairs."""
         return self._history[-1]
 
     @property
@@ -148,7 +142,6 @@ class RegistrationLogic:
 
     @property
     def transform(self) -> Any | None:
-        """The transform node of the result, if there is one."""
         return Role.WORLD_TO_HEAD.find(self.scene)
 
     def lists(self) -> list[Any | None]:
@@ -157,28 +150,24 @@ class RegistrationLogic:
         The lists of the trial and its task stand in for lists that are not chosen.
         """
         chosen = [self.scene.GetNodeByID(each) if each else None for each in self._chosen]
-        pairs = zip(chosen, LISTS, strict=True)
-        return [node or kind.find(self.scene) for node, kind in pairs]
+        others = Role.CAPTURED_POINTS, Role.FIXED_FIDUCIALS, Role.TARGET
+        return [node or kind.find(self.scene) for node, kind in zip(chosen, others, strict=True)]
 
     def chooseLists(self, *lists: Any | None) -> None:
-        """Choose `lists`; None means the list of the trial or its task."""
         former = self._chosen
         self._chosen = tuple(node.GetID() if node else "" for node in lists)
         if self._chosen[:2] != former[:2]:
             self.reset()
 
     def chooseKind(self, kind: str) -> None:
-        """Choose which fit the transform and the arrows show."""
         self.kind = kind
         self._compute()
 
     def setHeadColored(self, colored: bool) -> None:
-        """Color the head by the target error to expect, or not."""
         self.isHeadColored = colored
         self._compute() if colored else self._colorHead(None)
 
     def change(self, choices: Choices) -> None:
-        """Register the pairs with these changes."""
         if choices != self.choices:
             self._history += (choices,)
             self._compute()
@@ -208,8 +197,8 @@ class RegistrationLogic:
         moving, fixed, target = self.lists()
         tasks = [node and node.GetAttribute(TASK_ATTRIBUTE) for node in (moving, fixed)]
         movingList = snapshot(moving, slicer.util.arrayFromMarkupsControlPoints)
-        lists = movingList, snapshot(fixed), snapshot(target)
-        return *lists, *tasks, surfaceOf(Role.HEAD_MODEL.find(self.scene))
+        head = surfaceOf(Role.HEAD_MODEL.find(self.scene))
+        return movingList, snapshot(fixed), snapshot(target), *tasks, head
 
     def _compute(self) -> None:
         """Register the lists as they are now; a running computation is outdated."""
@@ -276,11 +265,8 @@ class RegistrationLogic:
             self.work.later(partial(showIfWanted, show))
 
     def _colorHead(self, errors: np.ndarray | None) -> None:
-        """Color the head by errors at its points, or show its own color where there are none."""
         head = Role.HEAD_MODEL.find(self.scene)
-        if head is None:
-            return
-        if errors is None or not self.isHeadColored:
-            removeHeadColors(head)
-        else:
+        if head is not None and errors is not None and self.isHeadColored:
             colorHead(head, errors)
+        elif head is not None:
+            removeHeadColors(head)

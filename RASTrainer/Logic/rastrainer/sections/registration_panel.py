@@ -60,12 +60,10 @@ class RegistrationPanel(Panel):
         self._show()
 
     def excludeChosen(self) -> None:
-        """Register again without the chosen fiducial."""
         if self._chosen() >= 0:
             self._logic.change(self._logic.choices.without((self._labels[self._chosen()],)))
 
     def localizeChosen(self) -> None:
-        """Register again with the stated localization error of the chosen fiducial."""
         if self._chosen() >= 0:
             label, fleMm = self._labels[self._chosen()], self._ui.fleSpinBox.value
             self._logic.change(self._logic.choices.localized(label, fleMm))
@@ -106,13 +104,12 @@ class RegistrationPanel(Panel):
         table, row = self._ui.residualsTable, self._chosen()
         chosen = self._labels[row] if row >= 0 else ""
         rows: list[tuple[str, ...]] = []
-        self._labels = ()
+        self._labels = () if comparison is None else comparison.shown.labels
         if comparison is not None:
             shown, sizes = comparison.shown, self._logic.choices.fle
-            self._labels = shown.labels
-            without = comparison.leaveOneOut.get(shown.kind, [None] * len(shown.labels))
-            for row, label in enumerate(shown.labels):
-                lengths = shown.residuals_mm[row], without[row], sizes.get(label)
+            without = comparison.leaveOneOut.get(shown.kind, [None] * len(self._labels))
+            for label, *lengths in zip(self._labels, shown.residuals_mm, without, strict=True):
+                lengths.append(sizes.get(label))
                 rows.append((label, *(numberOrDash(each, 2) for each in lengths)))
         with blockedSignals(table):
             fillTable(table, rows)
@@ -161,16 +158,17 @@ class RegistrationPanel(Panel):
 
 def _summary(comparison: Comparison) -> str:
     pairs = comparison.pairs
-    sentence = _("{count} pairs are registered.").format(count=len(pairs.labels))
+    said = [_("{count} pairs are registered.").format(count=len(pairs.labels))]
     if pairs.missing:
-        sentence += " " + _("Not touched yet: {labels}.").format(labels=", ".join(pairs.missing))
+        said.append(_("Not touched yet: {labels}.").format(labels=", ".join(pairs.missing)))
     if pairs.excluded:
         leftOut = _("Left out: {labels}; the score of the trial still uses all pairs.")
-        sentence += " " + leftOut.format(labels=", ".join(pairs.excluded))
+        said.append(leftOut.format(labels=", ".join(pairs.excluded)))
     if comparison.fits[RIGID].weights is not None:
-        weighted = _("The rigid fit is weighted by the stated FLE; the score of the trial is not.")
-        sentence += " " + weighted
-    return sentence
+        said.append(
+            _("The rigid fit is weighted by the stated FLE; the score of the trial is not.")
+        )
+    return " ".join(said)
 
 
 def _treText(comparison: Comparison) -> str:
@@ -188,11 +186,8 @@ def _fitRows(comparison: Comparison) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = []
     for kind, title in TITLES.items():
         fit, error = comparison.fits.get(kind), comparison.errors.get(kind)
-        if fit is None:
-            rows.append((title, "–", "–", "–", "–"))
-            continue
         interval = "–" if error is None else "{:.2f}–{:.2f}".format(*error.interval_mm)
-        expected = None if error is None else error.expected_mm
-        lengths = (fit.fre_mm, fit.residuals_mm.max(), expected)
+        fre, largest = (None, None) if fit is None else (fit.fre_mm, fit.residuals_mm.max())
+        lengths = fre, largest, None if error is None else error.expected_mm
         rows.append((title, *(numberOrDash(each, 2) for each in lengths), interval))
     return rows

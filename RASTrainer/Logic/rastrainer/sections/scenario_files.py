@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -92,7 +91,6 @@ class ScenarioCache:
 
 
 def _stamp(path: Path) -> tuple[int, int]:
-    """Return a value that changes with a file."""
     with contextlib.suppress(OSError):
         status = path.stat()
         return status.st_mtime_ns, status.st_size
@@ -120,32 +118,12 @@ class ScenarioFiles:
         unpacked = inBackground(lambda report: unpack(package, self.library, report), progress)
         return load_scenario(unpacked)
 
-    def drawFaceRemoval(self, name: str, picture: Path, progress: Progress = no_progress) -> str:
-        """Draw a head before and after its face is removed; return a sentence on the picture."""
-        folder = str(self.cache.find(name).folder)
-        return self.run(["pack", folder, os.devnull, "--picture", str(picture)], progress)
-
-    def exportScenario(
-        self,
-        name: str,
-        package: Path,
-        keepsFace: bool = False,
-        keepsNames: bool = False,
-        progress: Progress = no_progress,
-    ) -> str:
-        """Write a scenario as a zip file; return a sentence about removed parts.
-
-        Unless the head keeps its face and skull, the user has seen what `drawFaceRemoval` has
-        drawn. Title, name and source may be the patient's name.
-        """
-        words = ["pack", str(self.cache.find(name).folder), str(package)]
-        words += ["--keep-face"] if keepsFace else ["--yes"]
-        words += ["--keep-names"] if keepsNames else []
+    def pack(self, name: str, package: str, options: list[str], progress: Progress) -> str:
+        """Write a scenario as a zip file; return a sentence about removed parts."""
+        words = ["pack", str(self.cache.find(name).folder), package, *options]
         return self.run(words, progress)
 
-    def saveWith(
-        self, plan: list[str], name: str, title: str, progress: Progress = no_progress
-    ) -> Scenario:
+    def saveWith(self, plan: list[str], name: str, title: str, progress: Progress) -> Scenario:
         """Copy a scenario with a part replaced, and return the copy.
 
         `plan` are arguments of `rastrainer scenario plan`, such as `--landmarks` with a file.
@@ -176,28 +154,22 @@ def planArguments(*planned: Any | None) -> list[str]:
 
 
 LIMIT_BYTES = 1 << 20
-
-
 KEYS = ("residual_mm", "true_tre_mm", "expected_tre_mm", "interval_holds_share")
 
 
 def compareMethods(
-    simulator: SimulatorLogic,
-    scenario: Scenario,
-    trials: int,
-    skinShiftMm: float,
-    progress: Progress = no_progress,
+    simulator: SimulatorLogic, scenario: Scenario, trials: int, shiftMm: float, progress: Progress
 ) -> dict[str, tuple[float, ...]]:
     """Return how each method for which a head has the points registers simulated trials.
 
-    `skinShiftMm` is the RMS shift between imaging and operation. The numbers of a method are root
-    mean squares over trials of residual, true and expected target error, mm; the share of the 95 %
-    intervals that hold the true error; and medians of the interval's ends, mm.
+    `shiftMm` is the skin's RMS shift between imaging and operation. The numbers of a method are
+    root mean squares over trials of residual, true and expected target error, mm; the share of the
+    95 % intervals that hold the true error; and medians of the interval's ends, mm.
     """
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary) / "methods"
         words = ["compare-methods", "--scenario", str(scenario.folder), "-o", str(folder)]
-        words += ["--trials", str(trials), "--skin-shift", str(skinShiftMm)]
+        words += ["--trials", str(trials), "--skin-shift", str(shiftMm)]
         simulator.run(words, progress)
         compared = read_json(folder / "methods.json", LIMIT_BYTES)
     try:

@@ -14,7 +14,7 @@ from rastrainer.sections.scenario_files import ScenarioCache
 from rastrainer.slicer.background_work import BackgroundWork, inBackground
 from rastrainer.slicer.polydata import meshPolyData
 from rastrainer.slicer.program.child_process import Run
-from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, SKIN_COLOR, Role
+from rastrainer.slicer.scene.nodes import SKIN_COLOR, Role, releaseNode
 from rastrainer.slicer.scene.robot import addLink, missingLinks, setRobotVisible
 from rastrainer.slicer.scene.robot_description import READ_LINKS, LinkMesh
 from rastrainer.slicer.scene.scenario_nodes import showImages, showScenario, showTask
@@ -88,8 +88,7 @@ class ScenarioLogic:
             model.SetAndObservePolyData(meshPolyData(mesh))
             model.GetDisplayNode().SetColor(SKIN_COLOR)
         if former is not None and former is not model:
-            former.RemoveAttribute(ROLE_ATTRIBUTE)
-            former.SetDisplayVisibility(False)
+            releaseNode(former)
         Role.HEAD_MODEL.dress(model).SetDisplayVisibility(True)
         return model, warnings
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import tempfile
 from functools import partial
 from pathlib import Path
@@ -61,6 +62,10 @@ class ScenarioPanel(Panel):
         ui.loadScenarioButton.connect("clicked()", self.loadIntoSimulator)
         ui.robotCheckBox.connect("toggled(bool)", self._logic.setRobotShown)
         ui.headModelComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._showUsable)
+
+        def showRobot() -> None:
+            setSilently(ui.robotCheckBox, "checked", self._logic.isRobotShown)
+
         self.listen(
             (session.link.statusChanged, self._showUsable),
             (session.training.answered, self._showMessage),
@@ -69,12 +74,9 @@ class ScenarioPanel(Panel):
             (session.files.problemFound, self._showMessage),
             (self._logic.robotShown, fitThreeDViews),
             (self._logic.problemFound, self._showMessage),
-            (session.sceneChanged, self._showRobot),
+            (session.sceneChanged, showRobot),
         )
         self._fill(session.settings.get(SCENARIO))
-
-    def _showRobot(self) -> None:
-        setSilently(self._ui.robotCheckBox, "checked", self._logic.isRobotShown)
 
     def show(self) -> None:
         def showTarget() -> None:
@@ -105,7 +107,6 @@ class ScenarioPanel(Panel):
             self._showHeadMessage(" ".join([text.format(name=model.GetName()), *warnings]))
 
     def importScenario(self) -> None:
-        """Add a scenario that comes as a zip file, and choose it."""
         window, caption = slicer.util.mainWindow(), _("Add a scenario")
         path = qt.QFileDialog.getOpenFileName(window, caption, "", "Zip (*.zip)")
         if not path:
@@ -116,28 +117,30 @@ class ScenarioPanel(Panel):
             self._showMessage(_("{title} was added.").format(title=added.title))
 
     def exportScenario(self) -> None:
-        name, files = chosenData(self._ui.scenarioComboBox), self._files
-        keepsFace = not self._ui.removeFaceCheckBox.checked
+        """Write a scenario; one without its face and skull only once the user has seen it."""
+        name = chosenData(self._ui.scenarioComboBox)
         keepsNames = not self._ui.removeNamesCheckBox.checked
-        # A file named after the patient would reveal the name, too.
+        # Title, name, source and a file named after them may be the patient's name.
         proposed = f"{name}.zip" if keepsNames else "head.zip"
         path = askWhereToSave(_("Save the scenario"), proposed, "Zip (*.zip)")
-        if path is None or not (keepsFace or self._isFaceGone(name)):
+        removesFace = self._ui.removeFaceCheckBox.checked
+        if path is None or (removesFace and not self._isFaceGone(name)):
             return
-        write = partial(files.exportScenario, name, path, keepsFace, keepsNames)
-        taken = self._writing.run(write)
+        options = ["--yes" if removesFace else "--keep-face", *["--keep-names"] * keepsNames]
+        taken = self._writing.run(partial(self._files.pack, name, str(path), options))
         if taken is not None:
             self._showMessage(_("{path} was written.").format(path=path) + f" {taken}")
 
     def _isFaceGone(self, name: str) -> bool:
         """Show a scenario's head before and after its face is removed, and ask the user."""
         with tempfile.TemporaryDirectory() as temporary:
-            picture = Path(temporary) / "before-and-after.png"
-            drawn = self._writing.run(partial(self._files.drawFaceRemoval, name, picture))
+            picture = str(Path(temporary, "before-and-after.png"))
+            options = ["--picture", picture]
+            drawn = self._writing.run(partial(self._files.pack, name, os.devnull, options))
             if drawn is None:
                 return False
             text, title = _("Is the face gone?"), _("Save the scenario without its face")
-            ask, shown = slicer.util.confirmYesNoDisplay, qt.QPixmap(str(picture))
+            ask, shown = slicer.util.confirmYesNoDisplay, qt.QPixmap(picture)
             return bool(ask(toolTip(f"{drawn} {text}"), title, iconPixmap=shown))
 
     def continueWith(self, name: str) -> None:
@@ -175,9 +178,10 @@ class ScenarioPanel(Panel):
         ui = self._ui
         name = chosenData(ui.scenarioComboBox)
         entry = next((each for each in self._scenarios.listed() if each.name == name), None)
-        ui.scenarioPicture.visible = entry is not None and entry.preview is not None
-        if entry is not None and entry.preview is not None:
-            picture = qt.QPixmap(str(entry.preview)).scaledToHeight(PICTURE_HEIGHT)
+        preview = entry and entry.preview
+        ui.scenarioPicture.visible = preview is not None
+        if preview is not None:
+            picture = qt.QPixmap(str(preview)).scaledToHeight(PICTURE_HEIGHT)
             ui.scenarioPicture.setPixmap(picture)
         ui.taskComboBox.enabled = isUsable = entry is not None and not entry.problem
         self._showUsable()
@@ -195,16 +199,14 @@ class ScenarioPanel(Panel):
     def _chooseTask(self, _index: int = 0) -> None:
         scenario = chosenScenario(self._ui, self._session)
         name = chosenData(self._ui.taskComboBox)
-        if name == DECIDE:
-            self._session.chooseTask(None, scenario)
-            text = _("Twenty registrations of this head: proceed, register again or stop?")
-            self._showMessage(text)
-            return
-        task = scenario.task(name)
+        task = None if name == DECIDE else scenario.task(name)
         self._session.chooseTask(task, scenario)
-        text = _("{count} fiducials, complexity {complexity:.2f}; target: {target}.")
-        count, target = len(task.labels), scenario.target.name
-        self._showMessage(text.format(count=count, complexity=task.complexity, target=target))
+        text = _("Twenty registrations of this head: proceed, register again or stop?")
+        if task is not None:
+            text = _("{count} fiducials, complexity {complexity:.2f}; target: {target}.").format(
+                count=len(task.labels), complexity=task.complexity, target=scenario.target.name
+            )
+        self._showMessage(text)
 
     def _keepChoice(self, _index: int = 0) -> None:
         settings, ui = self._session.settings, self._ui
@@ -214,11 +216,10 @@ class ScenarioPanel(Panel):
     def _showUsable(self, *_arguments: Any) -> None:
         ui = self._ui
         isConnected = self._session.link.status.isConnected
-        isUsable = ui.taskComboBox.enabled
+        isUsable, reason = ui.taskComboBox.enabled, _("Connect to the simulator first.")
         ui.showScenarioButton.enabled = ui.exportScenarioButton.enabled = isUsable
-        reason = _("Choose a scenario that can be used.")
-        if isUsable:
-            reason = _("Connect to the simulator first.")
+        if not isUsable:
+            reason = _("Choose a scenario that can be used.")
         setEnabled(ui.loadScenarioButton, isConnected and isUsable, reason)
         mayUse = ui.headModelComboBox.currentNode() is not None or self._work.isUnderWay
         reason = _("Choose a model or a volume of the scene first.")
@@ -247,7 +248,6 @@ class MethodsPanel(Panel):
         self._showMessage("")
 
     def compare(self) -> None:
-        """Simulate trials on the chosen head, and show how each method registers them."""
         ui, simulator = self._ui, self._session.simulator
         scenario = chosenScenario(ui, self._session)
         trials, shift = ui.methodTrialsSpinBox.value, ui.methodShiftSpinBox.value
@@ -266,7 +266,5 @@ class MethodsPanel(Panel):
                 "Residuals of different methods are of different points: they do not show which "
                 "is better. The true error does."
             )
-            if len(found) < len(METHOD_NAMES):
-                few = _("The head has too few landmarks for the other methods.")
-                text = f"{text} {few}"
-            self._showMessage(text)
+            few = _("The head has too few landmarks for the other methods.")
+            self._showMessage(text if len(found) == len(METHOD_NAMES) else f"{text} {few}")

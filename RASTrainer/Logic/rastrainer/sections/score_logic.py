@@ -43,9 +43,10 @@ SLICES_A_TURN = 4
 class ReplayLogic:
     """Feedback on stored trials, and their replay, for which the journals must be here.
 
+    `robot` is the folder of the URDF. A trial that `isBeingScored` gets its feedback with its
+    score.
+
     Attributes:
-        robot: the folder of the URDF.
-        isBeingScored: whether a trial will get its feedback with its score.
         feedbackFound: emits nothing, whenever the feedback on another trial is known.
         shown: emits nothing, whenever another trial is shown, with its touches to be registered.
         procedureShown: emits `ProcedureOutcome`, `ProcedureRecord` and `RevealedTruth` of that
@@ -201,7 +202,6 @@ class ReplayLogic:
 
     def _play(self, until: float | None) -> None:
         self._until = until
-        browser = findReplay(self.services.scene)
-        if browser is not None:
+        if (browser := findReplay(self.services.scene)) is not None:
             browser.SetPlaybackLooped(False)
             browser.SetPlaybackActive(True)

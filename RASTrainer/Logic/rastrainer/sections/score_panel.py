@@ -18,6 +18,7 @@ from rastrainer.sections.panel import Panel, connectClick
 from rastrainer.sections.trainees_logic import recordOf
 from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.score_tables import (
+    GroupComparison,
     ctpsRows,
     drillRows,
     motionRows,
@@ -38,7 +39,6 @@ from rastrainer.widgets.controls import (
     fillTable,
     offerEntries,
     setEnabled,
-    setSilently,
     setText,
     showPercent,
 )
@@ -60,10 +60,11 @@ class ScorePanel(Panel):
         self._worst = ""
         self._named: str | None = None
         ui.trialComboBox.connect("activated(int)", self._showTrial)
-        connectClick(ui.showTablesButton, self.showTables, _("The tables cannot be shown."))
+        tables, section = ui.showTablesButton, ui.scoreCollapsibleButton
+        failure = _("The tables cannot be shown.")
+        self.borrowLayout(tables, section, TABLES, self.showTables, failure)
         connectClick(ui.exportScoresButton, self.exportScores, _("The trials were not exported."))
         connectClick(ui.reportButton, self.writeReport, _("The report was not written."))
-        ui.scoreCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
         replayTouch = partial(self.replay, isWorstTouch=True)
         connectClick(ui.worstTouchButton, replayTouch, _("The touch is not shown."))
         self.listen(
@@ -76,10 +77,7 @@ class ScorePanel(Panel):
         self._show()
 
     def showTables(self) -> None:
-        """Show the section's content as tables of the scene, or restore the user's layout."""
-        if not self._ui.showTablesButton.checked:
-            self._session.layout.giveBack(TABLES)
-            return
+        """Show the section's content as tables of the scene."""
         trial, cohort, scene = self._trial, self._session.cohort, slicer.mrmlScene
         if trial is None:
             return
@@ -130,16 +128,11 @@ class ScorePanel(Panel):
                 fitThreeDViews()
 
     def _showReplay(self) -> None:
-        setSilently(self._ui.showTablesButton, "checked", self._session.layout.purpose == TABLES)
         if not self._work.isUnderWay:
             now = moment(slicer.mrmlScene)
             text = _("{time:.1f} s, clearance {clearance}")
             shown = "" if now is None else text.format(time=now[0], clearance=now[1])
             setText(self._ui.replayText, shown)
-
-    def _fold(self, isFolded: bool) -> None:
-        if isFolded:
-            self._session.layout.giveBack(TABLES)
 
     def _noteNew(self, record: TrialRecord | DrillRecord) -> None:
         if record.trainee == self._trainees.chosen:
@@ -176,24 +169,17 @@ class ScorePanel(Panel):
             self._named = None
             self._showMessage(str(error))
             return
-        scores = [] if trial is None else scoreRows(trial)
-        if drill is not None:
+        scores, ctps, motion = [], [], []
+        if trial is not None:
+            scores, ctps, motion = scoreRows(trial), ctpsRows(trial, cohort), motionRows(trial)
+        elif drill is not None:
             scores = drillRows(drill)
         rows = ((row.title, row.text, row.note) for row in scores)
         fillTable(ui.scoreTable, rows, [row.tip for row in scores])
-        ctps = [] if trial is None else ctpsRows(trial, cohort)
-        motion = [] if trial is None else motionRows(trial)
         for table, parts in ((ui.ctpsTable, ctps), (ui.motionTable, motion)):
             fillTable(table, [(row.title, row.text) for row in parts], [row.note for row in parts])
         setText(ui.ctpsText, CTPS_WARNING if ctps else "")
-        comparisons = []
-        for each in beside:
-            title = f"{each.title} ({each.unit})" if each.unit else each.title
-            group = each.group, str(each.count), fixed(each.median, 2)
-            comparisons.append(
-                (title, fixed(each.value, 2), *group, f"{100 * each.betterThan:.0f} %")
-            )
-        fillTable(ui.standingsTable, comparisons)
+        fillTable(ui.standingsTable, map(_comparisonRow, beside))
         # Once for each trial, so that messages about an export or a report stay.
         if trialId != self._named:
             self._named = trialId
@@ -236,6 +222,12 @@ class ScorePanel(Panel):
         isUsable = bool(self._worst) and not isAtWork
         setEnabled(ui.worstTouchButton, isUsable, busy if isAtWork else reason, tip)
         self._showReplay()
+
+
+def _comparisonRow(found: GroupComparison) -> tuple[str, ...]:
+    title = f"{found.title} ({found.unit})" if found.unit else found.title
+    group = found.group, str(found.count), fixed(found.median, 2)
+    return title, fixed(found.value, 2), *group, f"{100 * found.betterThan:.0f} %"
 
 
 def _title(record: TrialRecord | DrillRecord | None) -> str:

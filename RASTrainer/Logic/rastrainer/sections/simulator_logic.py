@@ -205,7 +205,6 @@ class SimulatorLogic:
         self.setup.remove()
 
     def process(self) -> None:
-        """Forward the output of pip and the simulator."""
         self.setup.process()
         self.program.process()
         self.running.process()

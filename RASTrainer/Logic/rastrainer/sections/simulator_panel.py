@@ -227,11 +227,9 @@ class SimulatorPanel(Panel):
 
     def _showStatus(self, status: LinkStatus) -> None:
         self._showWords(status)
-        isOff = status.state is LinkState.OFF
-        ui = self._ui
+        ui, isOff = self._ui, status.state is LinkState.OFF
         ui.connectButton.text = _("Connect") if isOff else _("Disconnect")
-        ui.hostLineEdit.enabled = isOff
-        ui.portSpinBox.enabled = isOff
+        ui.hostLineEdit.enabled = ui.portSpinBox.enabled = isOff
         why = _("Disconnect first: the state of the connection is shown below.")
         setEnabled(ui.probeButton, isOff, why)
         if not status.isConnected:

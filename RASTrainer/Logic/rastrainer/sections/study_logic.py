@@ -15,8 +15,7 @@ from rastrainer.errors import InputError
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import FREE, TRIAL_RUN, StepKind
 from rastrainer.sections.trainees_logic import TraineeLogic
-from rastrainer.sections.training_logic import TrainingLogic
-from rastrainer.sections.trial_status import TrialStatus
+from rastrainer.sections.training_logic import TrainingLogic, TrialStatus
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
@@ -39,7 +38,10 @@ CLOCK_STEP_S = 0.001
 
 
 class PracticeMonitor(Listening):
-    """Counts by the simulator's time of the trial, which the trainee sees; it stops in pauses."""
+    """Counts by the simulator's time of the trial, which the trainee sees; it stops in pauses.
+
+    `changed` is called with the trainee whose trial run has ended or was abandoned.
+    """
 
     def __init__(
         self,
@@ -48,10 +50,7 @@ class PracticeMonitor(Listening):
         link: Link,
         changed: Callable[[str], None],
     ) -> None:
-        """`changed` is called with the trainee whose trial run has ended or was abandoned."""
-        self._trainees = trainees
-        self._training = training
-        self._changed = changed
+        self._trainees, self._training, self._changed = trainees, training, changed
         self._run: TrialStatus | None = None
         self._kept, self._left = 0.0, KEPT_EVERY_S
         self._isFirstSight = True
@@ -79,13 +78,12 @@ class PracticeMonitor(Listening):
         if run is None:
             return
         seconds, self._kept = run.elapsedS - self._kept, run.elapsedS
-        requested = self._requestedStep(run)
-        if requested is None:
+        progress = self._requesting(run)
+        if progress is None:
             self._left = KEPT_EVERY_S
             return
-        progress, step = requested
         try:
-            study = StudyProgress(self._trainees.study)
+            study, step = StudyProgress(self._trainees.study), progress.due()
             study.practice(run.trainee, step.name, seconds)
             progress = replace(progress, practiced_s=progress.practiced_s + seconds)
             self._left = progress.practice_left_s
@@ -113,20 +111,17 @@ class PracticeMonitor(Listening):
             if isPracticed:
                 # A previous Slicer may have counted the practice before this one started.
                 self._run, self._kept = trial, trial.elapsedS if self._isFirstSight else 0.0
-                requested = self._requestedStep(trial)
-                self._left = KEPT_EVERY_S if requested is None else requested[0].practice_left_s
+                progress = self._requesting(trial)
+                self._left = KEPT_EVERY_S if progress is None else progress.practice_left_s
         self._isFirstSight = False
 
-    def _requestedStep(self, run: TrialStatus) -> tuple[StepProgress, StudyStep] | None:
-        """Return the progress of the practicing trainee, and the trial run that the study requests.
-
-        None if it requests no such run.
-        """
+    def _requesting(self, run: TrialStatus) -> StepProgress | None:
+        """Return the progress of the practicing trainee, if its next step is this trial run."""
         with contextlib.suppress(InputError):
             progress = StudyProgress(self._trainees.study).progress(run.trainee)
             step = progress.next_step
             if step is not None and (step.kind, step.mode) == (StepKind.TRIAL_RUN, run.mode):
-                return progress, step
+                return progress
         return None
 
 
@@ -148,22 +143,20 @@ class StudyLogic(Listening):
         now: Callable[[], datetime] = lambda: datetime.now(timezone.utc),
     ) -> None:
         self.changed = Signal()
-        self._trainees = trainees
-        self._training = training
-        self._link = link
-        self._now = now
+        self._trainees, self._training, self._link, self._now = trainees, training, link, now
         self._sentSteps: dict[str, StudyStep] = {}
         self._ledStudy: Study | None = None
         self._breaks: dict[str, datetime] = {}
         self._watch = PracticeMonitor(trainees, training, link, self.leadAgain)
         super().__init__(
             (trainees.changed, self._followTrainees),
-            (link.opened, self._sendAll),
+            # The simulator may know nothing yet.
+            (link.opened, self._sentSteps.clear),
+            (link.opened, self._followTrainees),
             (link.stepAnswered, self._takeAnswers),
         )
 
     def close(self) -> None:
-        """Stop listening, and store the last practice time."""
         super().close()
         self._watch.close()
 
@@ -195,9 +188,7 @@ class StudyLogic(Listening):
 
     def enroll(self) -> int:
         """Give the chosen trainee the first free number in the study's order, from 0."""
-        if not self._trainees.chosen:
-            raise InputError(_("Choose a trainee in the section Trainees first."))
-        place = self.study.enroll(self._trainees.chosen)
+        place = self.study.enroll(self._trainees.required())
         self.leadOn(self._trainees.chosen)
         return place
 
@@ -237,11 +228,12 @@ class StudyLogic(Listening):
         trial = self._training.status
         if not trial.isOpen or trial.trainee not in self.study.enrolled():
             return ""
+        procedure = trial.procedure.name
         text = _(
             "{trainee} is doing {task} by {method} in the mode {mode}, which the study does not "
             "ask for now: it will not count."
         )
-        if trial.procedure.name:
+        if procedure:
             text = _(
                 "{trainee} is doing {task} by {method} with the procedure {procedure} in the mode "
                 "{mode}, which the study does not ask for now: it will not count."
@@ -254,9 +246,9 @@ class StudyLogic(Listening):
                 )
             else:
                 step = progress.check_start(trial.mode, trial.task)
-                if (step.procedure, step.method) == (trial.procedure.name, trial.method):
+                if (step.procedure, step.method) == (procedure, trial.method):
                     return ""
-        return text.format(**(vars(trial) | {"procedure": trial.procedure.name}))
+        return text.format(**{**vars(trial), "procedure": procedure})
 
     def uncountedSentence(self) -> str:
         """Say why the last trial of the kind that comes next did not count; empty if none is so."""
@@ -283,14 +275,15 @@ class StudyLogic(Listening):
         return ""
 
     def startStep(self) -> None:
-        step = self._next()
+        step = self._progress().due()
         if not step.is_played:
             raise InputError(_("No trial comes next. {step}").format(step=instruction(step)))
         self.startTrial(step.task, step.mode)
 
     def answer(self, answers: Sequence[int]) -> None:
-        self.study.finish(self._trainees.chosen, self._next().name, {"answers": list(answers)})
-        self.leadOn(self._trainees.chosen)
+        name, step = self._trainees.chosen, self._progress().due()
+        self.study.finish(name, step.name, {"answers": list(answers)})
+        self.leadOn(name)
 
     def skipStep(self, stepName: str, reason: str) -> None:
         self._watch.keep()
@@ -307,12 +300,6 @@ class StudyLogic(Listening):
         if progress is None:
             raise InputError(_("Enroll the trainee in the study first."))
         return progress
-
-    def _next(self) -> StudyStep:
-        step = self._progress().next_step
-        if step is None:
-            raise InputError(_("All steps of the study are done."))
-        return step
 
     def _takeAnswers(self, value: Mapping[str, Any]) -> None:
         """Store answers given at the simulator, which repeats them until another step is sent."""
@@ -358,11 +345,6 @@ class StudyLogic(Listening):
                 with contextlib.suppress(InputError):
                     self._lead(name)
         self.changed.emit()
-
-    def _sendAll(self) -> None:
-        """Send everybody's next step to the simulator, which may know nothing yet."""
-        self._sentSteps.clear()
-        self._followTrainees()
 
     def _lead(self, name: str) -> None:
         """Count the trials of a trainee that have arrived, and send the next step if it is new."""

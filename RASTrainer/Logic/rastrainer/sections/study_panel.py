@@ -15,6 +15,7 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import StepKind
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, connectClick
+from rastrainer.sections.trainees_logic import NOBODY
 from rastrainer.slicer.translation import _
 from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.standing import (
@@ -26,6 +27,7 @@ from rastrainer.study.curriculum.standing import (
 )
 from rastrainer.study.protocol.questionnaires import Questionnaire, find_questionnaire
 from rastrainer.study.protocol.steps import SKIPPED, StepProgress, instruction
+from rastrainer.study_messages import StudyStep
 from rastrainer.widgets.controls import (
     chosenData,
     fillTable,
@@ -47,6 +49,7 @@ class StudyPanel(Panel):
         self._logic = session.study
         self._form = QuestionnaireForm(ui.questionnaireWidget)
         self._progress: StepProgress | None = None
+        self._step: StudyStep | None = None
         connectClick(ui.beginStudyButton, self.begin, _("The study was not started."))
         connectClick(ui.enrollButton, self._logic.enroll, _("The trainee was not enrolled."))
         failure = _("The step was not started.")
@@ -80,10 +83,9 @@ class StudyPanel(Panel):
 
     def skipStep(self) -> None:
         question = _("Why is it skipped? The reason goes into the report.")
-        step = None if self._progress is None else self._progress.next_step
-        if step is not None:
+        if self._step is not None:
             # The step may be done while the dialog is open.
-            skip = partial(self._logic.skipStep, step.name)
+            skip = partial(self._logic.skipStep, self._step.name)
             self._withReason(_("Skip the step"), question, skip)
 
     def _withReason(self, title: str, question: str, do: Callable[[str], None]) -> None:
@@ -103,10 +105,9 @@ class StudyPanel(Panel):
                 return
 
     def _showTime(self) -> None:
-        progress, text = self._progress, ""
-        step = None if progress is None else progress.next_step
-        if progress is not None and step is not None and step.kind in TIMED:
-            minutes, seconds = divmod(int(60.0 * self._logic.minutesElapsed(progress)), 60)
+        step, text = self._step, ""
+        if self._progress is not None and step is not None and step.kind in TIMED:
+            minutes, seconds = divmod(int(60.0 * self._logic.minutesElapsed(self._progress)), 60)
             text = _("{over} of {minutes:g} min have passed.").format(
                 over=f"{minutes}:{seconds:02d}", minutes=step.minutes
             )
@@ -127,6 +128,7 @@ class StudyPanel(Panel):
             title = str(error)
         setText(ui.protocolText, title if protocol is None else protocol.title)
         self._progress = progress
+        self._step = step = None if progress is None else progress.next_step
         ui.protocolPathLineEdit.visible = ui.beginStudyButton.visible = protocol is None
         ui.enrollButton.visible = protocol is not None and progress is None
         ui.stepGroupBox.visible = progress is not None
@@ -138,7 +140,6 @@ class StudyPanel(Panel):
             ui.stepsProgressBar.maximum = len(progress.steps)
             ui.stepsProgressBar.value = len(progress.entries)
             fillTable(ui.stepsTable, [_row(progress, n) for n in range(len(progress.steps))])
-        step = None if progress is None else progress.next_step
         isAsked = step is not None and step.kind is StepKind.QUESTIONNAIRE
         ui.questionnaireWidget.visible = ui.saveAnswersButton.visible = isAsked
         if step is not None and isAsked:
@@ -157,12 +158,10 @@ class StudyPanel(Panel):
         ui = self._ui
         hasProtocol = bool(ui.protocolPathLineEdit.currentPath)
         setEnabled(ui.beginStudyButton, hasProtocol, _("Choose the file of a protocol first."))
-        nobody = _("Choose a trainee in the section Trainees first.")
-        setEnabled(ui.enrollButton, bool(self._session.trainees.chosen), nobody)
-        if self._progress is not None and self._progress.next_step is not None:
+        setEnabled(ui.enrollButton, bool(self._session.trainees.chosen), NOBODY)
+        if self._step is not None:
             reason = self._session.training.obstacle
-            tip = instruction(self._progress.next_step)
-            setEnabled(ui.startStepButton, not reason, reason, tip)
+            setEnabled(ui.startStepButton, not reason, reason, instruction(self._step))
 
 
 def _row(progress: StepProgress, number: int) -> tuple[str, str, str]:
@@ -282,12 +281,11 @@ class CurriculumPanel(Panel):
     def _showButtons(self, *_arguments: Any) -> None:
         ui = self._ui
         isSomebody = ui.everybodyCheckBox.checked or bool(self._session.trainees.chosen)
-        nobody = _("Choose a trainee in the section Trainees first.")
-        reason = _("Choose the file of a curriculum first.") if isSomebody else nobody
+        reason = _("Choose the file of a curriculum first.") if isSomebody else NOBODY
         hasFile = bool(ui.curriculumPathLineEdit.currentPath)
         setEnabled(ui.setCurriculumButton, isSomebody and hasFile, reason)
         hasOne = bool(self._logic.standings()) and isSomebody
         if not ui.everybodyCheckBox.checked:
             hasOne = self._logic.standing() is not None
-        reason = _("There is no curriculum to end.") if isSomebody else nobody
+        reason = _("There is no curriculum to end.") if isSomebody else NOBODY
         setEnabled(ui.endCurriculumButton, hasOne, reason)

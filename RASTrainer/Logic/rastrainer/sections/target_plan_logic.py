@@ -16,7 +16,7 @@ from rastrainer.registration.target_error import TargetError
 from rastrainer.sections.registration_logic import RegistrationLogic
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.scene.nodes import LINE
-from rastrainer.slicer.scene.plan_points import PlanPoints, placedPoints
+from rastrainer.slicer.scene.plan_points import UndoablePoints, placedPoints
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.trial.analysis import TrialAnalysis
@@ -55,7 +55,7 @@ class PlanLogic:
     def __init__(self, scene: Any, link: Link, registration: RegistrationLogic) -> None:
         self.changed = Signal()
         self.sentence = ""
-        self.points = PlanPoints(scene)
+        self.points = UndoablePoints(scene)
         self._link = link
         self._registration = registration
         self._headToWorld: np.ndarray | None = None
@@ -89,11 +89,9 @@ class PlanLogic:
         points = np.array([point.position for point in placed])
         comparison = self._registration.comparison
         if comparison is None:
-            raise InputError(
-                _("There is no registration to map the plan with: {problem}").format(
-                    problem=self._registration.problem or _("register the touches first.")
-                )
-            )
+            problem = self._registration.problem or _("register the touches first.")
+            text = _("There is no registration to map the plan with: {problem}")
+            raise InputError(text.format(problem=problem))
         ends = points[[0, -1]] if node.IsA(LINE) and len(points) > 1 else points[[row]]
         expected = None
         with contextlib.suppress(InputError):

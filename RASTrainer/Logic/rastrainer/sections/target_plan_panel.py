@@ -43,40 +43,35 @@ class PlanPanel(Panel):
         self._keeping = CancelableWork(
             ui.keepPlanButton, self.save, failure, lambda _sentence: None, self.showState
         )
-        noTarget, noLine = _("No target can be placed."), _("No trajectory can be placed.")
-        connectClick(ui.placeTargetButton, partial(self._place, Role.PLAN_TARGET), noTarget)
-        placeLine = partial(self._place, Role.PLAN_TRAJECTORY)
-        connectClick(ui.placeTrajectoryButton, placeLine, noLine)
-        connectClick(ui.removePlanPointButton, self.removePoint, _("The point was not removed."))
-        connectClick(ui.undoPlanButton, self.undo, _("Nothing was undone."))
-        connectClick(ui.sendPlanButton, self.send, _("The plan was not sent."))
-        ui.planComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._chooseNode)
+        for button, kind, failure in (
+            (ui.placeTargetButton, Role.PLAN_TARGET, _("No target can be placed.")),
+            (ui.placeTrajectoryButton, Role.PLAN_TRAJECTORY, _("No trajectory can be placed.")),
+        ):
+            connectClick(button, partial(self._place, kind), failure)
+        logic, failure = self._logic, _("The point was not removed.")
+        remove = ui.removePlanPointButton
+        connectClick(remove, lambda: logic.points.removePoint(*self._chosen()), failure)
+        connectClick(ui.undoPlanButton, logic.points.undo, _("Nothing was undone."))
+        for button in (remove, ui.undoPlanButton):
+            button.connect("clicked()", self.showState)
+        notSent = _("The plan was not sent.")
+        connectClick(ui.sendPlanButton, lambda: logic.send(*self._chosen()), notSent)
+        for show in (self._offerTargets, self.showState):
+            ui.planComboBox.connect("currentNodeChanged(vtkMRMLNode*)", show)
         ui.planTargetComboBox.connect("activated(int)", self._chooseTarget)
         changes = self._logic.changed, session.registration.changed, session.link.statusChanged
         section = ui.planCollapsibleButton
         self.showWhileOpen(section, self.showState, *changes, session.sceneChanged)
         self.showState()
 
-    def removePoint(self) -> None:
-        """Remove the chosen target, or the last point of a trajectory."""
-        self._logic.points.remove(self._ui.planComboBox.currentNode(), self._row())
-        self.showState()
-
-    def undo(self) -> None:
-        self._logic.points.undo()
-        self.showState()
-
-    def send(self) -> None:
-        self._logic.send(self._ui.planComboBox.currentNode(), self._row())
+    def _chosen(self) -> tuple[Any | None, int]:
+        """Return the chosen list or line, and the row of its target, −1 for a line."""
+        row = int(chosenData(self._ui.planTargetComboBox) or -1)
+        return self._ui.planComboBox.currentNode(), row
 
     def save(self) -> None:
-        """Copy the scenario chosen above with this plan and use the copy."""
-        ui, files = self._ui, self._session.scenarioFiles
-        name, title = chosenData(ui.scenarioComboBox), ui.planTitleLineEdit.text.strip()
-        plan = planArguments(ui.planComboBox.currentNode())
-        scenario = self._keeping.run(lambda report: files.saveWith(plan, name, title, report))
-        if scenario is not None:
-            self._session.scenarioMade.emit(scenario.name)
+        plan = planArguments(self._ui.planComboBox.currentNode())
+        self.saveCopy(self._keeping, self._ui.planTitleLineEdit.text, plan)
 
     def showState(self, *_arguments: Any) -> None:
         plan, problem = self._read()
@@ -95,8 +90,7 @@ class PlanPanel(Panel):
         setEnabled(ui.keepPlanButton, self._keeping.isUnderWay or node is not None, none)
         setLight(ui.reachableLight, {None: GRAY, True: GREEN, False: RED}[logic.isReachable])
         setText(ui.reachableText, logic.sentence or "–")
-        unknown = _("known once the trial is scored and the plan is shown")
-        true = logic.trueErrorMm
+        true, unknown = logic.trueErrorMm, _("known once the trial is scored and the plan is shown")
         setText(ui.planTrueText, unknown if true is None else numberOrDash(true, 2, "mm"))
 
     def _read(self) -> tuple[PlanOnImages | None, str]:
@@ -105,13 +99,9 @@ class PlanPanel(Panel):
         if not isFilled(self._ui.planTargetComboBox, _entries(node)):
             self._offerTargets(node)
         try:
-            return self._logic.read(node, self._row()), ""
+            return self._logic.read(*self._chosen()), ""
         except InputError as error:
             return None, str(error)
-
-    def _chooseNode(self, node: Any | None = None) -> None:
-        self._offerTargets(node)
-        self.showState()
 
     def _offerTargets(self, node: Any | None, row: int = -1) -> None:
         entries, box = _entries(node), self._ui.planTargetComboBox
@@ -120,17 +110,13 @@ class PlanPanel(Panel):
 
     def _chooseTarget(self, _index: int = 0) -> None:
         """Keep the user's choice, though a point was placed or removed while the list was open."""
-        node, row = self._ui.planComboBox.currentNode(), self._row()
+        node, row = self._chosen()
         chosen = self._ui.planTargetComboBox.currentText
         labels = [shortName(label) for label in targetsOf(node)]
         if chosen in labels:
             isSameRow = labels[row : row + 1] == [chosen]
             self._offerTargets(node, row if isSameRow else labels.index(chosen))
         self.showState()
-
-    def _row(self) -> int:
-        """Return which point of the chosen list is the target; the last of a line."""
-        return int(chosenData(self._ui.planTargetComboBox) or -1)
 
     def _place(self, kind: NodeKind) -> None:
         node = self._logic.points.ready(kind)

@@ -16,8 +16,8 @@ from rastrainer.head.mesh import read_head_mesh
 from rastrainer.protocol import Phase
 from rastrainer.registration.surface_error import TraceGuide
 from rastrainer.scenario.scenario import Scenario
+from rastrainer.sections.training_logic import TraceStatus, readStatus
 from rastrainer.sections.trial_services import Question, Steps, TrialServices
-from rastrainer.sections.trial_status import TraceStatus, readStatus
 from rastrainer.slicer.polydata import pointCloud
 from rastrainer.slicer.scene.error_colors import colorSkin, removeHeadColors
 from rastrainer.slicer.scene.nodes import Role, setPoints, surfaceOf
@@ -34,10 +34,9 @@ from rastrainer.trial.touch_registration import (
 PERIOD_S = 1.0
 """Each time, the whole trace is requested, and the head is redrawn."""
 _TRACED_PHASES = (Phase.RUNNING.value, Phase.PAUSED.value, Phase.COMPLETE.value)
-
-
-Wanted = tuple[str, TraceStatus]
-"""A trial and the state of its trace; another one is to be shown."""
+DISTANCE_SCALARS = "distance to the trace (mm)"
+FARTHEST_MM = 20.0
+"""Skin farther from the trace has the color of this distance."""
 
 
 class TraceLogic(Listening):
@@ -54,8 +53,8 @@ class TraceLogic(Listening):
         self._clock = clock
         self._scenario: Scenario | None = None
         self._guide: TraceGuide | None = None
-        self._wanted: Wanted | None = None
-        self._shown: Wanted | None = None
+        self._wanted: tuple[str, TraceStatus] | None = None
+        self._shown: tuple[str, TraceStatus] | None = None
         self._isAsking = False
         self._asked = -PERIOD_S
         super().__init__(
@@ -93,7 +92,7 @@ class TraceLogic(Listening):
     def _beginAgain(self) -> None:
         self._isAsking, self._shown = False, None
 
-    def _updating(self, scenario: Scenario, wanted: Wanted) -> Steps:
+    def _updating(self, scenario: Scenario, wanted: tuple[str, TraceStatus]) -> Steps:
         trialId, trace = wanted
         try:
             answer = yield Question(CommandName.GET_TRIAL, {"trialId": trialId})
@@ -115,11 +114,6 @@ class TraceLogic(Listening):
                 showTrace(self._services.scene, followed, trace.isGuided)
         finally:
             self._isAsking = False
-
-
-DISTANCE_SCALARS = "distance to the trace (mm)"
-FARTHEST_MM = 20.0
-"""Skin farther from the trace has the color of this distance."""
 
 
 def showTrace(scene: Any, trace: FollowedTrace, isGuided: bool) -> None:

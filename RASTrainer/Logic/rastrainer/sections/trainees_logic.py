@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 LOOK_EVERY_S = 1.0
+NOBODY = _("Choose a trainee in the section Trainees first.")
 
 
 class TraineeLogic:
@@ -89,6 +90,12 @@ class TraineeLogic:
         version, before = self._study.database.version(), self._version
         self._version = version or before
         return version is not None and version != before
+
+    def required(self) -> str:
+        """Return the pseudonym of the chosen trainee; refuse to go on if none is chosen."""
+        if not self.chosen:
+            raise InputError(NOBODY)
+        return self.chosen
 
     def trainees(self, archived: bool = False) -> tuple[Trainee, ...]:
         others = self.study.trainees(archived=True) if archived else ()
@@ -191,7 +198,10 @@ class CurriculumLogic(Listening):
         self._standings: dict[str, CurriculumStanding | None] = {}
         self._stamps: dict[str, tuple[Study, tuple[int | None, ...] | None]] = {}
         super().__init__(
-            (trainees.changed, self._followTrainees), (link.opened, self._sendEverybody)
+            (trainees.changed, self._followTrainees),
+            # The simulator may know nothing yet.
+            (link.opened, self._sent.clear),
+            (link.opened, self._followTrainees),
         )
 
     def standing(self) -> CurriculumStanding | None:
@@ -203,15 +213,8 @@ class CurriculumLogic(Listening):
 
     def choose(self, curriculum: Curriculum | None, isForEverybody: bool) -> None:
         """Have the chosen trainee, or everybody, follow a curriculum, or none, from now on."""
-        name = "" if isForEverybody else self._trainees.chosen
-        if not name and not isForEverybody:
-            raise InputError(_("Choose a trainee in the section Trainees first."))
+        name = "" if isForEverybody else self._trainees.required()
         CurriculumStore(self._trainees.study).choose(curriculum, name)
-        self._followTrainees()
-
-    def _sendEverybody(self) -> None:
-        """Send the simulator, which may know nothing yet, everybody's standing."""
-        self._sent.clear()
         self._followTrainees()
 
     def _followTrainees(self) -> None:

@@ -61,22 +61,18 @@ class TraineesPanel(Panel):
         ui.archivedCheckBox.connect("toggled(bool)", self._show)
         ui.consentCheckBox.connect("toggled(bool)", self.setConsent)
         ui.createTraineeButton.connect("clicked()", self.createTrainee)
-        ui.traineesCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
         connectAsPressed(
             ui.archiveButton,
             lambda: partial(self.setArchived, not (self._trainee and self._trainee.archived)),
         )
-        curve, target = ui.learningCurveButton, ui.calibrationButton
-        self._plots = {CURVE: (curve, self._curve), CALIBRATION: (target, self._calibration)}
-        plotCurve, plotTarget = (partial(self._plot, purpose) for purpose in self._plots)
-        for button, action, failure in (
-            (ui.exportTraineeButton, self.exportTrainee, _("The trainee was not exported.")),
-            (ui.exportHistoryButton, self.exportHistory, _("The history was not exported.")),
-            (curve, plotCurve, _("The learning curve cannot be shown.")),
-            (target, plotTarget, _("The target errors cannot be shown.")),
-        ):
-            connectClick(button, action, failure)
-        self.listen((self._logic.changed, self._show), (session.sceneChanged, self._showPlots))
+        failure = _("The trainee was not exported.")
+        connectClick(ui.exportTraineeButton, self.exportTrainee, failure)
+        connectClick(ui.exportHistoryButton, self.exportHistory, _("The history was not exported."))
+        section, failure = ui.traineesCollapsibleButton, _("The learning curve cannot be shown.")
+        self.borrowLayout(ui.learningCurveButton, section, CURVE, self._plotCurve, failure)
+        plot, failure = self._plotCalibration, _("The target errors cannot be shown.")
+        self.borrowLayout(ui.calibrationButton, section, CALIBRATION, plot, failure)
+        self.listen((self._logic.changed, self._show))
         self._show()
 
     def chooseStudy(self, path: str) -> None:
@@ -217,30 +213,15 @@ class TraineesPanel(Panel):
             reason = _("Choose a trainee first.")
             setEnabled(ui.deleteTraineeButton, self._trainee is not None, reason)
 
-    def _plot(self, purpose: str) -> None:
-        """Show the plot of a pressed button, or the user's layout."""
-        button, chart = self._plots[purpose]
-        if button.checked:
-            showChart(self._session.layout, chart(), purpose)
-        else:
-            self._session.layout.giveBack(purpose)
+    def _plotCurve(self) -> None:
+        chart = showLearningCurve(slicer.mrmlScene, self._logic.chosen, self._logic.history())
+        showChart(self._session.layout, chart)
 
-    def _curve(self) -> Any:
-        return showLearningCurve(slicer.mrmlScene, self._logic.chosen, self._logic.history())
-
-    def _calibration(self) -> Any:
-        """Return a plot of true over expected TRE of the study's trials."""
+    def _plotCalibration(self) -> None:
+        """Plot true over expected TRE of all trials of the study."""
         found = self._logic.inStudy(calibration)
         self._showMessage(" ".join(found.sentences()))
-        return showCalibration(slicer.mrmlScene, found)
-
-    def _showPlots(self) -> None:
-        for purpose, (button, _chart) in self._plots.items():
-            setSilently(button, "checked", self._session.layout.purpose == purpose)
-
-    def _fold(self, isFolded: bool) -> None:
-        for purpose in self._plots if isFolded else ():
-            self._session.layout.giveBack(purpose)
+        showChart(self._session.layout, showCalibration(slicer.mrmlScene, found), CALIBRATION)
 
     def _show(self, *_arguments: Any) -> None:
         ui = self._ui

@@ -1,19 +1,28 @@
-"""Starts and controls trials from Slicer, and shows the scene of the trial that is being played."""
+"""Starts and controls trials from Slicer, and shows the state and the scene of the open trial."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, field, fields, replace
 from functools import partial
-from typing import Any
+from typing import Any, TypeVar, cast
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
-from rastrainer.protocol import DECIDE, FIDUCIAL_COUNT, TRIAL_RUN, Phase, RegistrationMethod
+from rastrainer.json_checks import is_number
+from rastrainer.protocol import (
+    DECIDE,
+    FIDUCIAL_COUNT,
+    OPEN_PHASES,
+    PROCEDURE_PHASES,
+    TRIAL_RUN,
+    Phase,
+    RegistrationMethod,
+)
 from rastrainer.scenario.scenario import Scenario, method_of
-from rastrainer.sections.trial_status import TrialStatus, readStatus
+from rastrainer.sections.trainees_logic import NOBODY
 from rastrainer.slicer.background_work import CallLater, callNow
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.scene.nodes import Role
@@ -29,6 +38,93 @@ from rastrainer.slicer.translation import _
 LOADING = _("The simulator is still loading a scenario: wait until it says that it uses it.")
 LOADING_S = 30.0
 """How long the simulator may take to load a scenario."""
+
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class ProcedureStatus:
+    """State of the trial's procedure, everything by the registration in use.
+
+    The `name` is empty without a procedure; its lines (`trajectory`) are counted from 0. The guide
+    is `entryDistanceMm` and `angleDeg` off the planned line, and its tip is `standOffMm` before the
+    entry; drill or instrument is `feedMm` beyond the tip.
+    """
+
+    name: str = ""
+    trajectory: int = 0
+    trajectories: int = 0
+    registrationInUse: bool = False
+    entryDistanceMm: float | None = None
+    angleDeg: float | None = None
+    standOffMm: float | None = None
+    feedMm: float = 0.0
+    lastCheckMm: float | None = None
+
+
+@dataclass(frozen=True)
+class TraceStatus:
+    """State of the trace over the skin: the number of its points, and whether it is being drawn."""
+
+    kept: int = 0
+    strokes: int = 0
+    on: bool = False
+    isGuided: bool = False
+
+
+@dataclass(frozen=True)
+class TrialStatus:
+    """State of the simulator's trial; without one, its phase is `idle`.
+
+    `touched` of `total` points are kept; the trainee reads `instruction`.
+    """
+
+    trialId: str = ""
+    phase: str = Phase.IDLE.value
+    trainee: str = ""
+    task: str = ""
+    mode: str = ""
+    nextPoint: str = ""
+    touched: int = 0
+    total: int = FIDUCIAL_COUNT
+    elapsedS: float = 0.0
+    proximity: str = ""
+    instruction: str = ""
+    method: str = RegistrationMethod.FIDUCIALS.value
+    procedure: ProcedureStatus = field(default_factory=ProcedureStatus)
+    trace: TraceStatus | None = None
+
+    @property
+    def isOpen(self) -> bool:
+        """Whether a trial is being played, paused, or waits to be registered."""
+        return self.phase in OPEN_PHASES
+
+    @property
+    def isProcedureUnderWay(self) -> bool:
+        return bool(self.procedure.name) and self.phase in PROCEDURE_PHASES
+
+
+def readStatus(state: Mapping[str, Any]) -> TrialStatus:
+    """Return what a message about the trial says; values of the wrong kind count as missing."""
+    trace = state.get("trace")
+    return replace(
+        _known(TrialStatus, state),
+        procedure=_known(ProcedureStatus, state.get("procedure")),
+        trace=_known(TraceStatus, trace) if isinstance(trace, Mapping) else None,
+    )
+
+
+def _known(kind: type[T], given: Any) -> T:
+    """Return the texts, truth values and numbers of a peer that have their field's kind."""
+    values: dict[str, Any] = {}
+    for each in fields(cast(Any, kind)):
+        value: Any = given.get(each.name) if isinstance(given, Mapping) else None
+        if str(each.type).startswith(("int", "float")) and is_number(value):
+            values[each.name] = int(value) if each.type == "int" else float(value)
+        elif each.type in ("str", "bool") and type(value).__name__ == each.type:
+            values[each.name] = value
+    return kind(**values)
 
 
 class TrainingLogic(Listening):
@@ -51,17 +147,11 @@ class TrainingLogic(Listening):
         later: CallLater = callNow,
     ) -> None:
         """`later` changes the scene, one part after the other."""
-        self.changed = Signal()
-        self.answered = Signal()
-        self.sceneShown = Signal()
+        self.changed, self.answered, self.sceneShown = Signal(), Signal(), Signal()
         self.learner = ""
-        self._scene = scene
-        self._link = link
-        self._findScenario = findScenario
-        self._clock = clock
-        self._later = later
-        self._said = TrialStatus()
-        self._saidAt = 0.0
+        self._scene, self._link, self._findScenario = scene, link, findScenario
+        self._clock, self._later = clock, later
+        self._said, self._saidAt = TrialStatus(), 0.0
         self._shownTrial = ""
         self._total = FIDUCIAL_COUNT
         self.loadings = 0
@@ -94,7 +184,7 @@ class TrainingLogic(Listening):
         simulator may open the tutorial instead of a trial run, which can be started after it.
         """
         if not trainee:
-            raise InputError(_("Choose a trainee in the section Trainees first."))
+            raise InputError(NOBODY)
         if not task:
             raise InputError(_("Choose a task first."))
         who = {"trainee": trainee, "mode": mode}

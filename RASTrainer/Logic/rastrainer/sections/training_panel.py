@@ -18,6 +18,7 @@ from rastrainer.protocol import (
 )
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, connectClick
+from rastrainer.sections.trainees_logic import NOBODY
 from rastrainer.sections.training_logic import TrialStatus
 from rastrainer.slicer.settings import (
     IS_TUTORIAL_FIRST,
@@ -179,8 +180,7 @@ class TrainingPanel(Panel):
 
     def _showButtons(self, trial: TrialStatus) -> None:
         ui, isConnected = self._ui, self._session.link.status.isConnected
-        nobody = _("Choose a trainee in the section Trainees first.")
-        reason = self._logic.obstacle or ("" if self._session.trainees.chosen else nobody)
+        reason = self._logic.obstacle or ("" if self._session.trainees.chosen else NOBODY)
         for button in (ui.startTrialRunButton, ui.startTaskButton):
             setEnabled(button, not reason, reason)
         isPaused = trial.phase == Phase.PAUSED.value

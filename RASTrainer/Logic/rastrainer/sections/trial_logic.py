@@ -27,8 +27,8 @@ from rastrainer.decision.drill_record import DrillRecord
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_from_json
 from rastrainer.protocol import MAX_JOURNAL_BYTES
+from rastrainer.sections.training_logic import TrialStatus, readStatus
 from rastrainer.sections.trial_services import Question, Steps, TrialServices
-from rastrainer.sections.trial_status import TrialStatus, readStatus
 from rastrainer.slicer.scene.trial_scene import showTrial
 from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
@@ -51,8 +51,6 @@ Delivery = Mapping[str, Any]
 
 MAX_WAITING = 32
 """Most trials waiting to be stored; a simulator that has more offers them again."""
-
-
 REFUSAL = _("A trial could not be stored: {error}")
 ABORTED_REFUSAL = _("An aborted trial could not be stored: {error}")
 TOO_MANY = _("Trials arrive faster than they can be scored; they will be offered again later.")
@@ -80,7 +78,6 @@ class TrialLogic(Listening):
     """
 
     def __init__(self, services: TrialServices, cohort: Sequence[TrialRow] = ()) -> None:
-        """Begin to listen; `cohort` are the trials that CTPS compares with."""
         link = services.link
         super().__init__(
             (link.trialCompleted, self._receive),
@@ -88,25 +85,20 @@ class TrialLogic(Listening):
             (link.stateChanged, self._followTraining),
             (link.opened, self._resumeAll),
         )
-        self.problemFound = Signal()
-        self.trialKept = Signal()
-        self.abortedKept = Signal()
-        self.drillKept = Signal()
-        self.trialScored = Signal()
+        self.problemFound, self.trialScored = Signal(), Signal()
+        self.trialKept, self.abortedKept, self.drillKept = Signal(), Signal(), Signal()
         self.received: list[str] = []
-        self._services = services
-        self._cohort = cohort
+        self._services, self._cohort = services, cohort
         self._waiting: deque[Delivery] = deque()
         self._underWay: list[Delivery] = []
         self._aborted: list[Delivery] = []
         self._lastProblems: dict[str, str] = {}
-        self._beingScored: set[str] = set()
-        self._scored: set[str] = set()
         self._unscored: deque[TrialRecord] = deque()
-        self._playing = TrialStatus()
-        self._retryAt: float | None = None
+        self._beingScored, self._scored = set[str](), set[str]()
         # Trials that this simulator has refused, such as trials of another simulator.
         self._refused: set[str] = set()
+        self._playing = TrialStatus()
+        self._retryAt: float | None = None
 
     def close(self) -> None:
         super().close()
@@ -260,9 +252,9 @@ class TrialLogic(Listening):
         try:
             scored = yield from self._revealing(analysis)
         except Exception as error:
+            self._beingScored.discard(trialId)
             if not self._noteBusy(error):
                 self._refused.add(trialId)
-            self._beingScored.discard(trialId)
             report(_("The trial was not scored: {error}").format(error=error))
         else:
             self._beingScored.discard(trialId)
@@ -271,9 +263,10 @@ class TrialLogic(Listening):
 
     def _noteBusy(self, error: Exception) -> bool:
         """Return whether the study was only locked or unreachable; it is tried again then."""
-        if isinstance(error, StudyBusyError):
+        isBusy = isinstance(error, StudyBusyError)
+        if isBusy:
             self._retryAt = time.monotonic() + RETRY_S
-        return isinstance(error, StudyBusyError)
+        return isBusy
 
     def _revealing(self, analysis: TrialAnalysis) -> Steps:
         """Have a registered trial that is in the study revealed and scored; return it scored.

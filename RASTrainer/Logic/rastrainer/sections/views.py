@@ -16,15 +16,8 @@ from rastrainer import transforms
 from rastrainer.protocol import DeviceName, Phase
 from rastrainer.sections.training_logic import TrainingLogic
 from rastrainer.slicer.background_work import CallLater, callNow
-from rastrainer.slicer.scene.nodes import (
-    CONTENT_ATTRIBUTE,
-    TASK_ATTRIBUTE,
-    Role,
-    labelsOf,
-    nodesOfClass,
-    poseKind,
-    worldPoints,
-)
+from rastrainer.slicer.scene import nodes
+from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.settings import (
     SLICES_FOLLOW_TOOL,
     SLICES_LIE_ALONG,
@@ -39,7 +32,7 @@ WITH_PLOT = slicer.vtkMRMLLayoutNode.SlicerLayoutConventionalPlotView
 
 def jumpTo(scene: Any, position: Sequence[float], later: CallLater = callNow) -> None:
     """Move all slice views to a point, RAS mm, each by `later`: it cuts the images and surfaces."""
-    for view in nodesOfClass(scene, "vtkMRMLSliceNode"):
+    for view in nodes.nodesOfClass(scene, "vtkMRMLSliceNode"):
         later(partial(view.JumpSliceByOffsetting, *position))
 
 
@@ -190,7 +183,7 @@ class SliceFollower:
             IN_LINE: (across, outward, upward),
             ACROSS: (-upward, outward, across),
         }
-        for view in nodesOfClass(self.scene, "vtkMRMLSliceNode"):
+        for view in nodes.nodesOfClass(self.scene, "vtkMRMLSliceNode"):
             if view.GetName() in axes:
                 matrix = view.GetSliceToRAS()
                 self._unaligned.setdefault(view.GetID(), slicer.util.arrayFromVTKMatrix(matrix))
@@ -210,15 +203,15 @@ class SliceFollower:
         status = self.training.status
         fixed = Role.FIXED_FIDUCIALS.find(self.scene)
         point: tuple[str, ...] = ()
-        task = "" if fixed is None else fixed.GetAttribute(TASK_ATTRIBUTE) or ""
+        task = "" if fixed is None else fixed.GetAttribute(nodes.TASK_ATTRIBUTE) or ""
         # The fiducials of a trial that has just started come a moment later than its first point.
         if fixed and status.isOpen and status.nextPoint and task.endswith(f"/{status.task}"):
-            point = (task, fixed.GetAttribute(CONTENT_ATTRIBUTE) or "", status.nextPoint)
+            point = (task, fixed.GetAttribute(nodes.CONTENT_ATTRIBUTE) or "", status.nextPoint)
         if point == self._shownPoint:
             return
         self._shownPoint = point
-        if point and status.nextPoint in labelsOf(fixed):
-            self.show(worldPoints(fixed)[labelsOf(fixed).index(status.nextPoint)])
+        if point and status.nextPoint in nodes.labelsOf(fixed):
+            self.show(nodes.worldPoints(fixed)[nodes.labelsOf(fixed).index(status.nextPoint)])
 
 
 def _distance(point: np.ndarray, other: np.ndarray | None) -> float:
@@ -230,7 +223,7 @@ def poseOnHead(scene: Any, device: str) -> np.ndarray | None:
 
     None if its pose, or the pose of the head, is not known.
     """
-    pose = poseKind(device).find(scene)
+    pose = nodes.poseKind(device).find(scene)
     toHead = Role.WORLD_TO_HEAD.find(scene)
     if pose is None or toHead is None:
         return None

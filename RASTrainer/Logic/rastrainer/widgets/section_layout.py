@@ -14,6 +14,8 @@ import qt
 
 HIGHEST_TABLE = 270
 """Pixels; a longer table scrolls."""
+NARROWEST_BOX = 120
+"""Pixels; a box of nodes would be as wide as the longest name of a node."""
 
 
 def configureWidgets(widgets: Iterable[Any]) -> None:
@@ -26,6 +28,13 @@ def configureWidgets(widgets: Iterable[Any]) -> None:
             # Narrow when it is open, and its header alone when not.
             widget.setSizePolicy(qt.QSizePolicy.Preferred, qt.QSizePolicy.Preferred)
             widget.collapsedHeight = 0
+        elif kind == "QComboBox":
+            # Not as wide as its longest entry.
+            widget.sizeAdjustPolicy = qt.QComboBox.AdjustToMinimumContentsLengthWithIcon
+        elif kind == "qMRMLNodeComboBox":
+            widget.minimumWidth = NARROWEST_BOX
+            widget.showChildNodeTypes = widget.addEnabled = widget.removeEnabled = False
+            widget.noneEnabled = True
         elif kind == "QPushButton":
             # Its tool tip also says why it is disabled.
             widget.whatsThis = widget.toolTip

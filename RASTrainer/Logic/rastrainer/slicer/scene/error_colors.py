@@ -20,9 +20,8 @@ CLASS_NAME = "vtkMRMLColorLegendDisplayNode"
 RANK_ATTRIBUTE = "RASTrainer.legendRank"
 """On a legend of ours: which is shown where several are wanted; the highest, never 0."""
 ARROWS_RANK, HEAD_RANK = 1, 2
-SIZE = (0.1, 0.35)
-"""Width and height as shares of the view."""
-PLACE = (0.98, 0.5)
+LEGEND = {"Size": (0.1, 0.35), "Position": (0.98, 0.5), "Visibility2D": False}
+"""Width, height and place as shares of the view."""
 TRE_SCALARS = "expected TRE (mm)"
 OPACITY_ATTRIBUTE = "RASTrainer.opacity"
 """On a colored head: its opacity before it was colored. Colors are readable only at opacity 1."""
@@ -38,35 +37,30 @@ def _showColors(model: Any, name: str, ends: tuple[float, float], title: str, ra
         display.SetScalarRange(*ends)
         display.SetScalarVisibility(True)
     # Only Slicer's module Colors has legends.
-    if not model.GetScene().IsNodeClassRegistered(CLASS_NAME):
+    if model.GetScene().IsNodeClassRegistered(CLASS_NAME):
+        logic = slicer.vtkSlicerColorLogic
+        if logic.GetColorLegendDisplayNode(model) is None:
+            legend = logic.AddDefaultColorLegendDisplayNode(model)
+            setValues(legend, LabelFormat="%.2f", **LEGEND)
+        logic.GetColorLegendDisplayNode(model).SetTitleText(title)
+        _rankLegend(model, rank)
+
+
+def _rankLegend(model: Any, rank: int) -> None:
+    """Rank the legend of a model, if any, and show the legend of the highest rank."""
+    changed = slicer.vtkSlicerColorLogic.GetColorLegendDisplayNode(model)
+    if changed is None:
         return
-    legend = slicer.vtkSlicerColorLogic.GetColorLegendDisplayNode(model)
-    if legend is None:
-        legend = slicer.vtkSlicerColorLogic.AddDefaultColorLegendDisplayNode(model)
-        setValues(legend, Visibility2D=False, Size=SIZE, Position=PLACE, LabelFormat="%.2f")
-    legend.SetTitleText(title)
-    _rank(legend, rank)
-
-
-def _hideLegend(node: Any) -> None:
-    """Hide the legend of a node, if it has one; another requested one takes its place."""
-    legend = slicer.vtkSlicerColorLogic.GetColorLegendDisplayNode(node)
-    if legend is not None:
-        _rank(legend, 0)
-
-
-def _rank(changed: Any, rank: int) -> None:
-    """Give a legend its rank, and show the one of the highest rank."""
     changed.SetAttribute(RANK_ATTRIBUTE, str(rank))
-    found = nodesOfClass(changed.GetScene(), CLASS_NAME)
-    # A legend without a rank is not ours; one of ours may have outlived its model.
-    ours = [legend for legend in found if legend.GetAttribute(RANK_ATTRIBUTE) is not None]
-    ranks = {legend: int(legend.GetAttribute(RANK_ATTRIBUTE)) for legend in ours}
-    nodes = {legend: legend.GetDisplayableNode() for legend in ours if ranks[legend]}
-    wanted = [legend for legend, node in nodes.items() if node and node.GetDisplayVisibility()]
-    highest = max(wanted, key=ranks.__getitem__, default=None)
-    for legend in ours:
-        legend.SetVisibility(legend is highest)
+    ranks = {}
+    for legend in nodesOfClass(model.GetScene(), CLASS_NAME):
+        # A legend without a rank is not ours; one of ours may have outlived its model.
+        if legend.GetAttribute(RANK_ATTRIBUTE) is not None:
+            node, rank = legend.GetDisplayableNode(), int(legend.GetAttribute(RANK_ATTRIBUTE))
+            ranks[legend] = rank if node is not None and node.GetDisplayVisibility() else 0
+    highest = max(ranks, key=ranks.__getitem__)
+    for legend in ranks:
+        legend.SetVisibility(legend is highest and ranks[legend] > 0)
 
 
 def colorHead(model: Any, errors: np.ndarray) -> None:
@@ -103,7 +97,7 @@ def removeHeadColors(model: Any, name: str = TRE_SCALARS) -> None:
         if former:
             display.SetOpacity(float(former))
             model.RemoveAttribute(OPACITY_ATTRIBUTE)
-        _hideLegend(model)
+        _rankLegend(model, 0)
 
 
 LONGEST_ARROW_MM = 40.0
@@ -121,9 +115,7 @@ def arrowTips(registration: Registration) -> np.ndarray:
     return registration.fixed_mm + magnification(registration) * registration.residual_vectors_mm
 
 
-def glyphsPolyData(
-    registration: Registration, rows: Iterable[int] | None = None
-) -> vtk.vtkPolyData:
+def glyphsPolyData(registration: Registration, rows: Iterable[int] | None = None) -> Any:
     """Return a ball on each fiducial, or on those in `rows`, with an arrow along its residual.
 
     In RAS mm; its scalars are the residual in mm.
@@ -156,7 +148,7 @@ def clearResidualArrows(scene: Any) -> None:
     node = Role.RESIDUAL_ARROWS.find(scene)
     if node is not None and node.GetPolyData() and node.GetPolyData().GetNumberOfPoints():
         node.SetAndObservePolyData(vtk.vtkPolyData())
-        _hideLegend(node)
+        _rankLegend(node, 0)
 
 
 def residualRange(registration: Registration) -> tuple[float, float]:

@@ -21,8 +21,6 @@ MODEL, SEGMENTATION = "vtkMRMLModelNode", "vtkMRMLSegmentationNode"
 VOLUME, TABLE = "vtkMRMLScalarVolumeNode", "vtkMRMLTableNode"
 LIST, LINE = "vtkMRMLMarkupsFiducialNode", "vtkMRMLMarkupsLineNode"
 TRANSFORM, TEXT = "vtkMRMLLinearTransformNode", "vtkMRMLTextNode"
-SELECTION = "vtkMRMLSelectionNodeSingleton"
-INTERACTION = "vtkMRMLInteractionNodeSingleton"
 
 ROLE_ATTRIBUTE = "RASTrainer.role"
 TASK_ATTRIBUTE = "RASTrainer.task"
@@ -34,13 +32,9 @@ ORIGINAL_NAME = "OriginalNodeName"
 
 @dataclass(frozen=True, eq=False)
 class NodeKind:
-    """Our nodes of one purpose.
+    """Our nodes of one purpose, with the values that they and their displays (`look`) have.
 
-    Attributes:
-        role: marks them; it survives renaming, saving and loading.
-        name: of a node without another name.
-        look: values of the display.
-        values: values of the node.
+    The role marks them; it survives renaming, saving and loading.
     """
 
     className: str
@@ -67,7 +61,7 @@ class NodeKind:
         Slicer has the next click place a point of the newest list; while the user is placing
         points, they still go into the user's list.
         """
-        selection, interaction = scene.GetNodeByID(SELECTION), scene.GetNodeByID(INTERACTION)
+        selection, interaction = placingNodes(scene)
         isPlacing = interaction and interaction.GetCurrentInteractionMode() == interaction.Place
         active = scene.GetNodeByID(selection.GetActivePlaceNodeID() or "") if isPlacing else None
         node = scene.AddNewNodeByClass(self.className, name or self.name)
@@ -103,12 +97,24 @@ class LinkedKind(NodeKind):
         return super().find(scene) or super().make(scene, name)
 
 
+def placingNodes(scene: Any) -> tuple[Any, Any]:
+    """Return the selection and the interaction node, which say what a click places."""
+    selection = scene.GetNodeByID("vtkMRMLSelectionNodeSingleton")
+    return selection, scene.GetNodeByID("vtkMRMLInteractionNodeSingleton")
+
+
 def removeNode(node: Any) -> None:
     """Remove a node from its scene, and its display, which would stay and be saved."""
     scene = node.GetScene()
     display = node.GetDisplayNode() if node.IsA("vtkMRMLDisplayableNode") else None
     for each in filter(None, (display, node)):
         scene.RemoveNode(each)
+
+
+def releaseNode(node: Any) -> None:
+    """Hide a node, which is none of ours from now on, but the user's own."""
+    node.RemoveAttribute(ROLE_ATTRIBUTE)
+    node.SetDisplayVisibility(False)
 
 
 def nodesOfClass(scene: Any, className: str) -> list[Any]:
@@ -128,7 +134,6 @@ TRACE_LOOK = {
     "Color": TOUCH_COLOR,
     "Lighting": False,
 }
-
 
 TOUCH_LOOK = {"SelectedColor": TOUCH_COLOR, "GlyphScale": 2.5, "TextScale": 3.5}
 FIDUCIAL_LOOK = {"SelectedColor": (0.25, 0.55, 0.95), "GlyphScale": 2.0, "TextScale": 3.5}
@@ -156,12 +161,6 @@ def _procedureLine(role: str, name: str, color: Color, isLabeled: bool = False) 
 
 def _solid(role: str, name: str, color: Color) -> NodeKind:
     return NodeKind(MODEL, f"procedure {role}", name, {"Color": color, "Visibility2D": True})
-
-
-def _link(number: int) -> NodeKind:
-    """Return the kind of a robot's link: rebuilt from the module's files, and never saved."""
-    name = f"Robot link {number}"
-    return NodeKind(MODEL, name.lower(), name, LINK_LOOK, {**UNSAVED, **UNSELECTABLE})
 
 
 def _chart(role: str, name: str, xTitle: str, yTitle: str) -> NodeKind:
@@ -220,8 +219,13 @@ class Role:
     LANDMARKS = NodeKind(LIST, "landmarks", _("Landmarks"), LANDMARK_LOOK)
     TRACED_POINTS = NodeKind(MODEL, "traced points", _("Traced points"), TRACE_LOOK, UNSELECTABLE)
     NEXT_PLACE = NodeKind(LIST, "next place of the trace", _("Draw here next"), NEXT_LOOK, LOCKED)
-    LINKS = tuple(_link(number) for number in range(len(DeviceName.LINK_TO_WORLD)))
-    """Of the robot; the tool belongs to the last one."""
+    LINKS = tuple(
+        NodeKind(
+            MODEL, f"robot link {n}", f"Robot link {n}", LINK_LOOK, {**UNSAVED, **UNSELECTABLE}
+        )
+        for n in range(len(DeviceName.LINK_TO_WORLD))
+    )
+    """The robot's links, rebuilt from the module's files; the tool belongs to the last link."""
 
 
 TOOLS = DeviceName.TOOL_TIP_TO_WORLD, DeviceName.INSTRUMENT_TIP_TO_WORLD
@@ -249,7 +253,6 @@ def setValues(thing: Any, **values: Any) -> Any:
 
 
 def setDisplay(node: Any, **values: Any) -> Any:
-    """Call `Set…` of a node's display for each value; return the display."""
     return setValues(node.GetDisplayNode(), **values)
 
 
@@ -261,12 +264,10 @@ def surfaceOf(model: Any | None) -> tuple:
 
 
 def labelsOf(node: Any) -> tuple[str, ...]:
-    return tuple(labelOf(node, i) for i in range(node.GetNumberOfControlPoints()))
-
-
-def labelOf(node: Any, index: int) -> str:
-    """Return a point's label; a peer may have sent bytes that are not UTF-8."""
-    return shownText(node.GetNthControlPointLabel(index))
+    return tuple(
+        shownText(node.GetNthControlPointLabel(row))
+        for row in range(node.GetNumberOfControlPoints())
+    )
 
 
 def isUsed(node: Any, index: int) -> bool:
@@ -279,8 +280,12 @@ def worldPoints(node: Any) -> np.ndarray:
     return slicer.util.arrayFromMarkupsControlPoints(node, world=True)
 
 
-def usedPoints(node: Any, points: np.ndarray, labels: tuple[str, ...]) -> PointList:
-    """Return the points, of (n, 3) mm, that Slicer would use, with their labels."""
+def usedPoints(
+    node: Any, points: np.ndarray | None = None, labels: tuple[str, ...] | None = None
+) -> PointList:
+    """Return the points, of (n, 3) mm or the node's own in RAS, that Slicer would use."""
+    points = worldPoints(node) if points is None else points
+    labels = labelsOf(node) if labels is None else labels
     unused = {row: label for row, label in enumerate(labels) if not isUsed(node, row)}
     rows = [row for row in range(len(labels)) if row not in unused]
     return PointList(tuple(labels[row] for row in rows), points[rows], unused)
@@ -304,5 +309,5 @@ def decodedText(text: str | bytes | None) -> str:
 
 
 def shownText(text: str | bytes | None) -> str:
-    """Return a text for display, such as a label, with bytes that are not UTF-8 replaced."""
+    """Return a text, such as a label by a peer, with bytes that are not UTF-8 replaced."""
     return text.decode("utf-8", "replace") if isinstance(text, bytes) else text or ""

@@ -9,19 +9,12 @@ from typing import Any, NamedTuple
 import slicer
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.scene.nodes import (
-    INTERACTION,
-    LINE,
-    SELECTION,
-    NodeKind,
-    labelOf,
-    setPoints,
-)
+from rastrainer.slicer.scene.nodes import LINE, NodeKind, labelsOf, placingNodes, setPoints
 from rastrainer.slicer.translation import _
 
 
 def startPlacing(scene: Any, node: Any) -> None:
-    selection, interaction = scene.GetNodeByID(SELECTION), scene.GetNodeByID(INTERACTION)
+    selection, interaction = placingNodes(scene)
     selection.SetReferenceActivePlaceNodeClassName(node.GetClassName())
     selection.SetActivePlaceNodeID(node.GetID())
     interaction.SetPlaceModePersistence(False)
@@ -30,7 +23,7 @@ def startPlacing(scene: Any, node: Any) -> None:
 
 def stopPlacing(scene: Any) -> None:
     """Stop placing points by clicks; a point that only follows the mouse is removed."""
-    interaction = scene.GetNodeByID(INTERACTION)
+    _selection, interaction = placingNodes(scene)
     if interaction.GetCurrentInteractionMode() == interaction.Place:
         interaction.SetCurrentInteractionMode(interaction.ViewTransform)
 
@@ -53,8 +46,8 @@ def placedPoints(node: Any | None, inRas: bool = False) -> list[PlacedPoint]:
         return []
     place = node.GetNthControlPointPositionWorld if inRas else node.GetNthControlPointPosition
     return [
-        PlacedPoint(labelOf(node, row), place(row), bool(node.GetNthControlPointSelected(row)))
-        for row in range(node.GetNumberOfControlPoints())
+        PlacedPoint(label, place(row), bool(node.GetNthControlPointSelected(row)))
+        for row, label in enumerate(labelsOf(node))
         if node.GetNthControlPointPositionStatus(row) == node.PositionDefined
     ]
 
@@ -73,7 +66,10 @@ def putPoints(node: Any, points: Sequence[PlacedPoint]) -> None:
 
 
 class UndoablePoints:
-    """Places and removes points; each change can be undone, the last one first."""
+    """Places and removes points; each change can be undone, the last one first.
+
+    Placing more never erases any.
+    """
 
     def __init__(self, scene: Any) -> None:
         self._scene = scene
@@ -92,6 +88,22 @@ class UndoablePoints:
     def canUndo(self) -> bool:
         return any(starmap(_isChanged, self._before))
 
+    def ready(self, kind: NodeKind) -> Any:
+        """Return the list of a kind, or its line that lacks its entry or target, to be placed."""
+        isLine = kind.className == LINE
+        node = unfinishedLine(self._scene, kind) if isLine else kind.make(self._scene)
+        self.remember(node)
+        return node
+
+    def removePoint(self, node: Any | None, row: int = -1) -> None:
+        """Remove one of a node's placed points, the last where left out."""
+        problem = whyNotRemoved(node)
+        if node is None or problem:
+            raise InputError(problem)
+        points = self.remember(node)
+        del points[row]
+        putPoints(node, points)
+
     def undo(self) -> None:
         """Undo the last change whose list or line still exists."""
         stopPlacing(self._scene)
@@ -104,26 +116,6 @@ class UndoablePoints:
 
 def _isChanged(node: Any, before: list[PlacedPoint]) -> bool:
     return node.GetScene() is not None and placedPoints(node) != before
-
-
-class PlanPoints(UndoablePoints):
-    """The points of targets and trajectories; placing more never erases any."""
-
-    def ready(self, kind: NodeKind) -> Any:
-        """Return the list of a kind, or its line that lacks its entry or target, to be placed."""
-        isLine = kind.className == LINE
-        node = unfinishedLine(self._scene, kind) if isLine else kind.make(self._scene)
-        self.remember(node)
-        return node
-
-    def remove(self, node: Any | None, row: int = -1) -> None:
-        """Remove one of a node's placed points, the last where left out."""
-        problem = whyNotRemoved(node)
-        if node is None or problem:
-            raise InputError(problem)
-        points = self.remember(node)
-        del points[row]
-        putPoints(node, points)
 
 
 def whyNotRemoved(node: Any | None) -> str:

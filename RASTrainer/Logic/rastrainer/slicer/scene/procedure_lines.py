@@ -13,25 +13,12 @@ import numpy as np
 import vtk
 
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.procedure.errors import (
-    ProcedureAnalysis,
-    SplitError,
-    TrajectoryErrors,
-    TrueLine,
-)
+from rastrainer.procedure.errors import ProcedureAnalysis, SplitError, TrajectoryErrors, TrueLine
 from rastrainer.procedure.plan import Procedure
 from rastrainer.slicer.polydata import meshPolyData
+from rastrainer.slicer.scene import nodes
 from rastrainer.slicer.scene.error_colors import arrowPolyData
-from rastrainer.slicer.scene.nodes import (
-    MODEL,
-    ROLE_ATTRIBUTE,
-    SEGMENTATION,
-    NodeKind,
-    Role,
-    nodesOfClass,
-    removeNode,
-    setPoints,
-)
+from rastrainer.slicer.scene.nodes import NodeKind, Role
 from rastrainer.slicer.scene.plan_points import ENDS, placedPoints
 from rastrainer.slicer.scene.tables import Columns, showTable
 from rastrainer.slicer.translation import _
@@ -77,16 +64,16 @@ def lengthMm(line: Any) -> float | None:
 def showPlan(scene: Any, procedure: Procedure | None, noGo: Mapping[str, HeadMesh]) -> None:
     """Replace the plan in the scene by another one, or an empty one, to be changed there."""
     for line in planLines(scene):
-        removeNode(line)
+        nodes.removeNode(line)
     for node in noGoNodes(scene):
         setNoGo(node, False)
-        if node.GetAttribute(ROLE_ATTRIBUTE) == Role.NO_GO.role:
-            removeNode(node)
+        if node.GetAttribute(nodes.ROLE_ATTRIBUTE) == Role.NO_GO.role:
+            nodes.removeNode(node)
     for trajectory in () if procedure is None else procedure.trajectories:
         line = Role.PLAN_LINE.add(scene, trajectory.name)
         setInstrument(line, trajectory.diameter_mm, trajectory.safety_mm)
         ends = trajectory.entry_ras, trajectory.target_ras
-        setPoints(line, (_("Entry"), _("Target")), ends)
+        nodes.setPoints(line, (_("Entry"), _("Target")), ends)
     for name, mesh in noGo.items():
         model = Role.NO_GO.add(scene, name)
         model.SetAndObservePolyData(meshPolyData(mesh))
@@ -94,12 +81,12 @@ def showPlan(scene: Any, procedure: Procedure | None, noGo: Mapping[str, HeadMes
     checkpoints = () if procedure is None else procedure.checkpoints
     places = [checkpoint.position_ras for checkpoint in checkpoints]
     names = [checkpoint.name for checkpoint in checkpoints]
-    setPoints(Role.CHECKPOINTS.make(scene), names, places)
+    nodes.setPoints(Role.CHECKPOINTS.make(scene), names, places)
 
 
 def noGoNodes(scene: Any) -> list[Any]:
-    nodes = [*nodesOfClass(scene, MODEL), *nodesOfClass(scene, SEGMENTATION)]
-    return [node for node in nodes if isNoGo(node)]
+    found = nodes.nodesOfClass(scene, nodes.MODEL) + nodes.nodesOfClass(scene, nodes.SEGMENTATION)
+    return [node for node in found if isNoGo(node)]
 
 
 def isNoGo(node: Any) -> bool:
@@ -119,13 +106,8 @@ def showPlannedLines(scene: Any, procedure: Procedure | None) -> None:
 
     The errors of an earlier procedure are removed. None removes all lines.
     """
-    for kind in (
-        Role.REGISTERED_LINE,
-        Role.TRUE_LINE,
-        Role.ERRORS_BY_REGISTRATION,
-        Role.ERRORS_BY_HAND,
-        Role.PROCEDURE_ERRORS,
-    ):
+    former = Role.REGISTERED_LINE, Role.TRUE_LINE, Role.PROCEDURE_ERRORS
+    for kind in (*former, Role.ERRORS_BY_REGISTRATION, Role.ERRORS_BY_HAND):
         kind.remove(scene)
     planned = [] if procedure is None else procedure.trajectories
     lines = {each.name: (each.entry_ras, each.target_ras) for each in planned}
@@ -162,7 +144,7 @@ def _showLines(scene: Any, kind: NodeKind, lines: Mapping[str, Any]) -> None:
     kind.remove(scene)
     for name, ends in lines.items():
         # Only the planned lines show a label, at their entries.
-        setPoints(kind.add(scene, kind.name.format(name)), (name, ""), ends)
+        nodes.setPoints(kind.add(scene, kind.name.format(name)), (name, ""), ends)
 
 
 def _columns(each: Sequence[TrajectoryErrors]) -> Columns:

@@ -5,6 +5,7 @@ The user may change the pairs. Touches on the skin have different errors along a
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import compress
@@ -62,12 +63,10 @@ class Choices:
 
 @dataclass(frozen=True)
 class Pairs:
-    """Paired points, (n, 3) float, mm: moving in the list's own frame, fixed in RAS.
+    """Paired points, (n, 3) float, mm: moving in the list's own frame and order, fixed in RAS.
 
-    Attributes:
-        labels: one for each pair, in the order of the moving list.
-        missing: labels of fixed points that have no partner yet.
-        excluded: labels of left out pairs, by choice or because Slicer would not use a point.
+    Fixed points are `missing` until they have a partner; pairs are `excluded` by choice, or because
+    Slicer would not use a point.
     """
 
     labels: tuple[str, ...]
@@ -90,7 +89,7 @@ def readPairs(moving: Any, fixed: Any, choices: Choices) -> Pairs:
     movingLabels = tuple(choices.renamed.get(label, label) for label in labelsOf(moving))
     movingPoints = slicer.util.arrayFromMarkupsControlPoints(moving)
     movingList = usedPoints(moving, movingPoints, movingLabels)
-    fixedList = usedPoints(fixed, worldPoints(fixed), labelsOf(fixed))
+    fixedList = usedPoints(fixed)
     leftOut = (*movingList.left_out_names, *fixedList.left_out_names)
     missing: tuple[str, ...] = ()
     if movingList.labels and fixedList.labels:
@@ -186,12 +185,10 @@ class SkinNormals:
         """
         self.findNormals(registration.fixed_mm)
         normals = [self._known[point.tobytes()] for point in registration.fixed_mm]
-        if any(normal is None for normal in normals):
-            return None
-        try:
-            return error_along_surface(registration, np.array(normals))
-        except InputError:
-            return None
+        if not any(normal is None for normal in normals):
+            with contextlib.suppress(InputError):
+                return error_along_surface(registration, np.array(normals))
+        return None
 
 
 def readSkin(model: Any | None) -> SkinNormals | None:

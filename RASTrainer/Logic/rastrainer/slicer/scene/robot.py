@@ -8,29 +8,21 @@ import slicer
 
 from rastrainer.protocol import DeviceName
 from rastrainer.slicer.polydata import trianglesPolyData, vtkArray
-from rastrainer.slicer.scene.nodes import (
-    COLORS,
-    MODEL,
-    ROLE_ATTRIBUTE,
-    TRANSFORM,
-    Role,
-    nodesOfClass,
-    poseKind,
-    setValues,
-)
+from rastrainer.slicer.scene import nodes
+from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.robot_description import LinkMesh
 
-_POSES = tuple(map(poseKind, DeviceName.LINK_TO_WORLD))
+_POSES = tuple(map(nodes.poseKind, DeviceName.LINK_TO_WORLD))
 
 
 def _byRole(scene: Any, className: str) -> dict[str, Any]:
     """Return our nodes of a class by their roles, in one look at the scene."""
-    nodes = reversed(nodesOfClass(scene, className))
-    return {node.GetAttribute(ROLE_ATTRIBUTE): node for node in nodes}
+    found = reversed(nodes.nodesOfClass(scene, className))
+    return {node.GetAttribute(nodes.ROLE_ATTRIBUTE): node for node in found}
 
 
 def missingLinks(scene: Any) -> list[int]:
-    links = _byRole(scene, MODEL)
+    links = _byRole(scene, nodes.MODEL)
     return [number for number, kind in enumerate(Role.LINKS) if kind.role not in links]
 
 
@@ -38,13 +30,13 @@ def addLink(scene: Any, number: int, mesh: LinkMesh) -> None:
     """Show a link of the robot, transformed by the node that the connection fills."""
     _POSES[number].make(scene)
     surface = trianglesPolyData(mesh.points, mesh.triangles, mesh.normals)
-    surface.GetPointData().SetScalars(vtkArray(mesh.colors, COLORS))
+    surface.GetPointData().SetScalars(vtkArray(mesh.colors, nodes.COLORS))
     # Everything is set before the node is added, so that each view draws it once.
     kind = Role.LINKS[number]
-    display = setValues(slicer.vtkMRMLModelDisplayNode(), **kind.look)
+    display = nodes.setValues(slicer.vtkMRMLModelDisplayNode(), **kind.look)
     scene.AddNode(display)
-    node = setValues(slicer.vtkMRMLModelNode(), Name=kind.name, **kind.values)
-    node.SetAttribute(ROLE_ATTRIBUTE, kind.role)
+    node = nodes.setValues(slicer.vtkMRMLModelNode(), Name=kind.name, **kind.values)
+    node.SetAttribute(nodes.ROLE_ATTRIBUTE, kind.role)
     node.SetAndObservePolyData(surface)
     node.SetAndObserveDisplayNodeID(display.GetID())
     scene.AddNode(node)
@@ -52,7 +44,7 @@ def addLink(scene: Any, number: int, mesh: LinkMesh) -> None:
 
 def placeRobot(scene: Any, worldTransform: Any | None) -> None:
     """Let the robot follow its poses, with World placed by `worldTransform`."""
-    links, poses = _byRole(scene, MODEL), _byRole(scene, TRANSFORM)
+    links, poses = _byRole(scene, nodes.MODEL), _byRole(scene, nodes.TRANSFORM)
     wanted = None if worldTransform is None else worldTransform.GetID()
     for link, kind in zip(Role.LINKS, _POSES, strict=True):
         node, pose = links.get(link.role), poses.get(kind.role)

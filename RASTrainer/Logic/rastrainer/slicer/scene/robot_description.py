@@ -36,14 +36,7 @@ def toolPoses(urdf: Path, q: np.ndarray) -> np.ndarray:
 
 
 class LinkMesh(NamedTuple):
-    """The surface of a link, in mm.
-
-    Attributes:
-        points: (n, 3) float32.
-        normals: (n, 3) float32, unit.
-        colors: (n, 3) uint8, RGB.
-        triangles: (m, 3) int64, rows of the points.
-    """
+    """The surface of a link, mm: (n, 3) float32, with RGB as uint8; triangles (m, 3) int64."""
 
     points: np.ndarray
     normals: np.ndarray
@@ -63,16 +56,13 @@ def readLinkMeshes(folder: Path, progress: Progress = no_progress) -> tuple[Link
 
     robot = read_urdf(folder / URDF)
     links = {link.name: link for link in robot.links}
-    shells: list[list[tuple[MeshPart, np.ndarray]]] = [[] for _ in DeviceName.LINK_TO_WORLD]
-    for part in robot.meshes:
-        link = links[part.link]
-        shells[link.joint].append((part, link.offset @ part.origin))
     meshes: list[LinkMesh] = []
-    for ofLink in shells:
-        progress("", len(meshes) / len(shells))
+    for number in range(len(DeviceName.LINK_TO_WORLD)):
+        progress("", number / len(DeviceName.LINK_TO_WORLD))
         append = vtk.vtkAppendPolyData()
-        for shell in ofLink:
-            append.AddInputData(_surface(*shell))
+        for part in robot.meshes:
+            if links[part.link].joint == number:
+                append.AddInputData(_surface(part, links[part.link].offset @ part.origin))
         append.Update()
         data = append.GetOutput()
         arrays = (
@@ -93,9 +83,8 @@ def _surface(part: MeshPart, pose: np.ndarray) -> vtk.vtkPolyData:
     """
     if not part.path.is_file():
         raise InputError(f"The robot's mesh {part.path} is missing.")
-    reader = vtk.vtkSTLReader()
+    reader, transform = vtk.vtkSTLReader(), vtk.vtkTransform()
     reader.SetFileName(str(part.path))
-    transform = vtk.vtkTransform()
     transform.Scale(MM_PER_M, MM_PER_M, MM_PER_M)
     transform.Concatenate(pose.ravel())
     placed = vtk.vtkTransformPolyDataFilter()

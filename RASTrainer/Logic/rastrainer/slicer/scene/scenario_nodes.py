@@ -19,21 +19,12 @@ from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import Scenario, SkullKind, task_by_method
 from rastrainer.slicer.background_work import BackgroundWork, CallLater, callNow
 from rastrainer.slicer.polydata import meshPolyData
-from rastrainer.slicer.scene.nodes import (
-    CONTENT_ATTRIBUTE,
-    SKIN_COLOR,
-    TASK_ATTRIBUTE,
-    VOLUME,
-    NodeKind,
-    Role,
-    nodesOfClass,
-    removeNode,
-    setDisplay,
-    setPoints,
-)
+from rastrainer.slicer.scene import nodes
+from rastrainer.slicer.scene.nodes import NodeKind, Role
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 
+FIDUCIALS = RegistrationMethod.FIDUCIALS
 SKULL_COLOR = (0.95, 0.92, 0.82)
 SKIN_OPACITY_OVER_SKULL = 0.5
 OUTLINE = {"Visibility2D": True, "SliceIntersectionThickness": 2}
@@ -41,29 +32,31 @@ OUTLINE = {"Visibility2D": True, "SliceIntersectionThickness": 2}
 
 
 def showScenario(scene: Any, scenario: Scenario, later: CallLater = callNow) -> None:
-    """Show head, skull, targets and trajectory, one after the other by `later`.
+    """Show head, skull, plan and images, one after the other by `later`.
 
-    Called again, nothing is made twice. Meshes and images come still later, by a `SceneFileLoader`.
+    Called again, nothing is made or read twice: window, level and what the views show stay as they
+    are. Meshes and images come still later, by a `SceneFileLoader`.
     """
-    skull, opacity, showSurface = scenario.skull, 1.0, partial(_showSurface, scene, scenario)
-    showSkull = partial(Role.SKULL.remove, scene)
-    if skull is not None:
-        opacity, bone = SKIN_OPACITY_OVER_SKULL, {"Color": SKULL_COLOR, "Opacity": 1.0}
-        isApproximate = skull.kind is SkullKind.APPROXIMATION
-        name = "Skull (approximation)" if isApproximate else "Skull"
-        showSkull = partial(showSurface, Role.SKULL, name, skull.file, bone)
-    skin = {"Color": SKIN_COLOR, "Opacity": opacity}
-    later(partial(showSurface, Role.HEAD_MODEL, "Head", scenario.head, skin))
-    later(showSkull)
+    skull, volume = scenario.skull, scenario.volume
+    opacity, bone = 1.0 if skull is None else SKIN_OPACITY_OVER_SKULL, "Skull"
+    if skull is not None and skull.kind is SkullKind.APPROXIMATION:
+        bone = "Skull (approximation)"
+    looks: list[dict[str, Any]] = [
+        {**OUTLINE, "Color": nodes.SKIN_COLOR, "Opacity": opacity},
+        {**OUTLINE, "Color": SKULL_COLOR, "Opacity": 1.0},
+        {"AutoWindowLevel": False},
+    ]
+    if volume is not None:
+        looks[-1] |= {"Window": volume.window, "Level": volume.level}
+    show = partial(_requestFile, scene, scenario.name)
+    later(partial(show, Role.HEAD_MODEL, "Head", scenario.head, looks[0]))
+    later(partial(show, Role.SKULL, bone, skull and skull.file, looks[1]))
     later(partial(_showPlan, scene, scenario))
-    later(partial(requestVolume, scene, scenario))
+    later(partial(show, Role.HEAD_VOLUME, scenario.title, volume and volume.file, looks[2]))
 
 
 def showTask(
-    scene: Any,
-    scenario: Scenario,
-    taskName: str,
-    method: RegistrationMethod = RegistrationMethod.FIDUCIALS,
+    scene: Any, scenario: Scenario, taskName: str, method: RegistrationMethod = FIDUCIALS
 ) -> Any:
     """Show the fiducials of a task, in RAS mm, and return their `vtkMRMLMarkupsFiducialNode`.
 
@@ -73,13 +66,13 @@ def showTask(
     node = Role.FIXED_FIDUCIALS.find(scene)
     name = taskKey(scenario.name, task.name)
     stamp = f"{name} {sha256(task.fiducials.tobytes()).hexdigest()}"
-    if node is None or node.GetAttribute(CONTENT_ATTRIBUTE) != stamp:
+    if node is None or node.GetAttribute(nodes.CONTENT_ATTRIBUTE) != stamp:
         node = Role.FIXED_FIDUCIALS.make(scene)
         with slicer.util.NodeModify(node):
             node.SetName(f"{task.title} fiducials")
-            setPoints(node, task.labels, task.fiducials)
-        node.SetAttribute(TASK_ATTRIBUTE, name)
-        node.SetAttribute(CONTENT_ATTRIBUTE, stamp)
+            nodes.setPoints(node, task.labels, task.fiducials)
+        node.SetAttribute(nodes.TASK_ATTRIBUTE, name)
+        node.SetAttribute(nodes.CONTENT_ATTRIBUTE, stamp)
     return node
 
 
@@ -87,49 +80,16 @@ def taskKey(scenarioName: str, taskName: str) -> str:
     return f"{scenarioName}/{taskName}"
 
 
-def _showSurface(
-    scene: Any, scenario: Scenario, kind: NodeKind, name: str, path: Path, look: dict[str, Any]
-) -> None:
-    node = kind.make(scene)
-    # Called before every trial: the file is read only if it is not shown yet.
-    if node.GetAttribute(CONTENT_ATTRIBUTE) == _stamp(scenario, path):
-        return
-    _requestFile(node, scenario, path)
-    node.SetName(name)
-    # Another scenario's head does not belong to these points.
-    node.SetAndObservePolyData(None)
-    # All at once, and before the surface comes: at each change every view would cut or redraw it.
-    setDisplay(node, **look, **OUTLINE)
-
-
 def _showPlan(scene: Any, scenario: Scenario) -> None:
     """Show the targets, the first of which is where the target error is reported, and the line."""
     targets, line = (scenario.target, *scenario.targets), scenario.trajectory
     names, places = [each.name for each in targets], [each.position_ras for each in targets]
-    setPoints(Role.TARGET.make(scene), names, places)
+    nodes.setPoints(Role.TARGET.make(scene), names, places)
     if line is None:
         Role.TRAJECTORY.remove(scene)
     else:
         ends = line.entry_ras, line.target_ras
-        setPoints(Role.TRAJECTORY.make(scene, line.name), ("Entry", "Target"), ends)
-
-
-def requestVolume(scene: Any, scenario: Scenario) -> None:
-    """Add a node for the images of a scenario, or remove it if the scenario has none.
-
-    Called again, nothing is read twice: window, level and what the views show stay as they are.
-    """
-    node, file = Role.HEAD_VOLUME.find(scene), scenario.volume
-    stamp = None if file is None else _stamp(scenario, file.file)
-    if node is not None and node.GetAttribute(CONTENT_ATTRIBUTE) == stamp:
-        return
-    Role.HEAD_VOLUME.remove(scene)
-    if file is None:
-        return
-    node = Role.HEAD_VOLUME.make(scene, scenario.title)
-    _requestFile(node, scenario, file.file)
-    display = setDisplay(node, AutoWindowLevel=False)
-    display.SetWindowLevel(file.window, file.level)
+        nodes.setPoints(Role.TRAJECTORY.make(scene, line.name), ("Entry", "Target"), ends)
 
 
 def showImages(scene: Any) -> None:
@@ -141,7 +101,7 @@ def showImages(scene: Any) -> None:
 
 def showAsBackground(scene: Any, volume: Any, later: CallLater = callNow) -> None:
     """Show a volume behind all else in each slice view, one view after the other by `later`."""
-    for composite in nodesOfClass(scene, "vtkMRMLSliceCompositeNode"):
+    for composite in nodes.nodesOfClass(scene, "vtkMRMLSliceCompositeNode"):
         later(partial(composite.SetBackgroundVolumeID, volume.GetID()))
 
 
@@ -149,22 +109,41 @@ FILE_ATTRIBUTE = "RASTrainer.file"
 """On a node without content yet: its file."""
 
 
-def _stamp(scenario: Scenario, path: Path) -> str:
-    """Return a stamp that changes with a file of a scenario, without reading it."""
+def _requestFile(
+    scene: Any, scenario: str, kind: NodeKind, name: str, path: Path | None, look: dict[str, Any]
+) -> None:
+    """Have a node wait for a file of a scenario unless it shows it; without a file, remove it."""
+    if path is None:
+        kind.remove(scene)
+        return
+    # The stamp changes with the file, which is not read for it: this is called before every trial.
     status = path.stat() if path.is_file() else None
-    return f"{scenario.name} {status and (status.st_mtime_ns, status.st_size)}"
-
-
-def _requestFile(node: Any, scenario: Scenario, path: Path) -> None:
-    node.SetAttribute(CONTENT_ATTRIBUTE, _stamp(scenario, path))
+    stamp = f"{scenario} {status and (status.st_mtime_ns, status.st_size)}"
+    node = kind.find(scene)
+    if node is not None and node.GetAttribute(nodes.CONTENT_ATTRIBUTE) is None:
+        # The user has made it the head.
+        nodes.releaseNode(node)
+    elif node is not None and kind.dress(node).GetAttribute(nodes.CONTENT_ATTRIBUTE) == stamp:
+        return
+    if kind is Role.HEAD_VOLUME:
+        kind.remove(scene)
+    node = kind.make(scene, name)
+    if node.IsA(nodes.MODEL):
+        # Another scenario's head does not belong to these points.
+        node.SetAndObservePolyData(None)
+    node.SetAttribute(nodes.CONTENT_ATTRIBUTE, stamp)
     node.SetAttribute(FILE_ATTRIBUTE, str(path))
+    # All at once, and before the surface comes: at each change every view would cut or redraw it.
+    nodes.setDisplay(node, **look)
 
 
 def requestedFile(node: Any | None) -> tuple[str, ...]:
     """Return the file that a node waits for; empty if there is no such node or it is filled."""
     if node is None or not node.GetAttribute(FILE_ATTRIBUTE):
         return ()
-    attributes = (node.GetAttribute(name) or "" for name in (CONTENT_ATTRIBUTE, FILE_ATTRIBUTE))
+    attributes = (
+        node.GetAttribute(name) or "" for name in (nodes.CONTENT_ATTRIBUTE, FILE_ATTRIBUTE)
+    )
     return (node.GetID(), *attributes)
 
 
@@ -200,13 +179,9 @@ class SceneFileLoader:
             requested = requestedFile(kind.find(self._scene))
             if requested and requested not in self._reading:
                 self._reading.add(requested)
-                self._work.do(
-                    partial(
-                        read_nrrd if kind is Role.HEAD_VOLUME else _readMesh, Path(requested[-1])
-                    ),
-                    partial(self._take, requested),
-                    partial(self._refuse, requested, problem),
-                )
+                read = read_nrrd if kind is Role.HEAD_VOLUME else _readMesh
+                take, refuse = partial(self._take, requested), partial(self._refuse, requested)
+                self._work.do(partial(read, Path(requested[-1])), take, partial(refuse, problem))
 
     def _take(self, requested: tuple[str, ...], found: Any) -> None:
         node = self._awaiting(requested)
@@ -219,18 +194,19 @@ class SceneFileLoader:
             values, ijkToRas = found
             node.SetIJKToRASMatrix(slicer.util.vtkMatrixFromArray(ijkToRas))
             slicer.util.updateVolumeFromArray(node, values.T)
-        self._work.later(partial(self._emitShown, node))
 
-    def _emitShown(self, node: Any) -> None:
-        if node.GetScene() is self._scene:
-            if node.IsA(VOLUME):
-                showAsBackground(self._scene, node, self._work.later)
-            self.shown.emit(node)
+        def show() -> None:
+            if node.GetScene() is self._scene:
+                if node.IsA(nodes.VOLUME):
+                    showAsBackground(self._scene, node, self._work.later)
+                self.shown.emit(node)
+
+        self._work.later(show)
 
     def _refuse(self, requested: tuple[str, ...], problem: str, error: Exception) -> None:
         node = self._awaiting(requested)
         if node is not None:
-            removeNode(node)
+            nodes.removeNode(node)
             if isinstance(error, InputError):
                 self.problemFound.emit(problem.format(problem=error))
 

@@ -68,7 +68,6 @@ class GroupComparison:
 
 
 def scoreRows(trial: StoredTrial) -> list[Row]:
-    """Return the score of a trial with its results, and its parts."""
     score, rigid = trial.score, trial.registrations.get(RIGID)
     rows = [] if score is None else _parts(score)
     paused = trial.record.motion.get("pause_time_s", 0.0)
@@ -232,14 +231,12 @@ def standings(
 
 
 def showStandings(scene: Any, found: Sequence[GroupComparison]) -> Any:
-    """Show comparisons in a `vtkMRMLTableNode` and return it."""
     titles = "measure", "unit", "value", "compared with", "trials", "median", "better than (share)"
     values = zip(*map(astuple, found), strict=True) if found else [()] * len(titles)
     return showTable(scene, Role.COMPARISON, dict(zip(titles, values, strict=True)))
 
 
 def showRows(scene: Any, kind: NodeKind, rows: Sequence[Row]) -> Any:
-    """Show scores with their parts, or motion metrics, in a `vtkMRMLTableNode`; return it."""
     parts = {"measure": "title", "value": "value", "unit": "unit", "note": "note"}
     columns = {title: [getattr(row, part) for row in rows] for title, part in parts.items()}
     return showTable(scene, kind, columns)

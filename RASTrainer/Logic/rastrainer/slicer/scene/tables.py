@@ -89,17 +89,11 @@ def showFits(
 BEST_SCORE = 100.0
 FEWEST_SHOWN = 5.0
 """Trials for which there is room in the plot from the first one on."""
-TRIAL_COLUMN = "trial"
-SCORE_COLUMN = "score"
-TIME_COLUMN = "completion time (s)"
-
-
+TRIAL_COLUMN, SCORE_COLUMN, TIME_COLUMN = "trial", "score", "completion time (s)"
 SERIES = slicer.vtkMRMLPlotSeriesNode
 INSIDE, OUTSIDE = "true TRE, inside (mm)", "true TRE, outside (mm)"
 ROOM = 1.5
 """Ratio of the plot's height to its content: the legend lies above and hides no trial."""
-
-
 _LINE = {"LineStyle": SERIES.LineStyleSolid, "MarkerStyle": SERIES.MarkerStyleCircle}
 _DASHES = {"LineStyle": SERIES.LineStyleDash, "MarkerStyle": SERIES.MarkerStyleNone}
 _DOTS = {"LineStyle": SERIES.LineStyleNone, "MarkerStyle": SERIES.MarkerStyleCircle}
@@ -108,7 +102,6 @@ _DOTS = {"LineStyle": SERIES.LineStyleNone, "MarkerStyle": SERIES.MarkerStyleCir
 def _series(
     chart: NodeKind, across: str, look: dict[str, int], column: str, title: str, color: Color
 ) -> NodeKind:
-    """Return a series that draws a column of a table over another one, `across`."""
     columns = {"XColumnName": across, "YColumnName": column, "Color": color}
     values = {"PlotType": SERIES.PlotTypeScatter, **look, **columns}
     return NodeKind("vtkMRMLPlotSeriesNode", f"{chart.role} {column}", title, {}, values)

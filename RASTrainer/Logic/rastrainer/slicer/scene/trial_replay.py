@@ -15,21 +15,8 @@ from rastrainer.errors import InputError
 from rastrainer.journal.recording import ReplayTrack
 from rastrainer.number_text import fixed
 from rastrainer.slicer.polydata import pointCloud
-from rastrainer.slicer.scene.nodes import (
-    LIST,
-    LOCKED,
-    MODEL,
-    ROLE_ATTRIBUTE,
-    TEXT,
-    TOUCH_LOOK,
-    TRACE_LOOK,
-    TRANSFORM,
-    UNSELECTABLE,
-    NodeKind,
-    nodesOfClass,
-    removeNode,
-    setValues,
-)
+from rastrainer.slicer.scene import nodes
+from rastrainer.slicer.scene.nodes import NodeKind
 from rastrainer.slicer.scene.robot_description import OTHER_ROBOT
 
 BROWSER, SEQUENCE = "vtkMRMLSequenceBrowserNode", "vtkMRMLSequenceNode"
@@ -46,12 +33,14 @@ REPLAY = "replay"
 _MODE = slicer.vtkMRMLSequenceBrowserNode.IndexDisplayAsIndexValue
 _PLAYED = {"IndexDisplayMode": _MODE, "PlaybackRateFps": SAMPLE_HZ}
 _BROWSER = NodeKind(BROWSER, f"{REPLAY} browser", values=_PLAYED)
-_PLACE = NodeKind(TRANSFORM, f"{REPLAY} WorldToHead")
-_TOOL = NodeKind(TRANSFORM, f"{REPLAY} tool")
-_TIP = NodeKind(MODEL, f"{REPLAY} tool model", look={"Color": (0.2, 0.45, 0.85)})
-_TOUCHES = NodeKind(LIST, f"{REPLAY} touches", "", TOUCH_LOOK, LOCKED)
-_TRACE = NodeKind(MODEL, f"{REPLAY} trace", "", TRACE_LOOK, UNSELECTABLE)
-_CLEARANCE = NodeKind(TEXT, f"{REPLAY} clearance")
+findReplay = _BROWSER.find
+"""Returns the `vtkMRMLSequenceBrowserNode` in a scene, or None."""
+_PLACE = NodeKind(nodes.TRANSFORM, f"{REPLAY} WorldToHead")
+_TOOL = NodeKind(nodes.TRANSFORM, f"{REPLAY} tool")
+_TIP = NodeKind(nodes.MODEL, f"{REPLAY} tool model", look={"Color": (0.2, 0.45, 0.85)})
+_TOUCHES = NodeKind(nodes.LIST, f"{REPLAY} touches", "", nodes.TOUCH_LOOK, nodes.LOCKED)
+_TRACE = NodeKind(nodes.MODEL, f"{REPLAY} trace", "", nodes.TRACE_LOOK, nodes.UNSELECTABLE)
+_CLEARANCE = NodeKind(nodes.TEXT, f"{REPLAY} clearance")
 POINTS_A_STATE = 10
 """Points of a trace that are added each time."""
 
@@ -86,52 +75,34 @@ def showReplay(
     def add(kind: NodeKind, under: Any | None = None) -> Any:
         rest(0.0)
         node = kind.make(scene, f"{name}: {kind.role.removeprefix(f'{REPLAY} ')}")
-        if under is not None:
+        if under is not None and node.IsA("vtkMRMLTransformableNode"):
             node.SetAndObserveTransformNodeID(under.GetID())
         return node
 
+    parts = _partsOf(track, rows, poses)
     with ExitStack() as undoing:
         undoing.callback(removeReplay, scene)
         placed = add(_PLACE)
         placed.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(worldToHead))
-        tool = add(_TOOL, placed)
-        add(_TIP, tool).SetAndObservePolyData(_needle())
-        touches, clearance = add(_TOUCHES, placed), add(_CLEARANCE)
+        proxies = [add(kind, placed) for kind, _times, _setState in parts]
+        add(_TIP, proxies[0]).SetAndObservePolyData(_needle())
         browser = _BROWSER.make(scene, f"Replay of {name}")
         rest(0.0)
-        _checkIsThere(placed, tool, touches, clearance, browser)
-        matrices = map(slicer.util.vtkMatrixFromArray, poses)
-        poseStates = (
-            setValues(slicer.vtkMRMLLinearTransformNode(), MatrixTransformToParent=matrix)
-            for matrix in matrices
-        )
-        distances = (f"{fixed(mm, 1)} mm" for mm in trajectory.clearance_mm[rows])
-        distanceStates = (setValues(slicer.vtkMRMLTextNode(), Text=text) for text in distances)
-        start, times = float(trajectory.times_s[0]), trajectory.times_s[rows]
-        made, traced = trajectory.touches, trajectory.traced
-        total, done = 2 * len(rows) + len(made) + 1, 0
-        shown = [
-            (tool, zip(times, poseStates, strict=True)),
-            (touches, _growing(made, 1, lambda count: _touchesState(made[:count]), start)),
-            (clearance, zip(times, distanceStates, strict=True)),
-        ]
-        if traced:
-            trace = add(_TRACE, placed)
-            places = np.array([point.position_mm for point in traced])
-            states = _growing(
-                traced, POINTS_A_STATE, lambda count: _traceState(places[:count]), start
-            )
-            shown.append((trace, states))
-            total += 1 + -(-len(traced) // POINTS_A_STATE)
-        for proxy, states in shown:
+        _checkIsThere(placed, browser, *proxies)
+        total, done = sum(len(times) for _kind, times, _setState in parts), 0
+        for proxy, (_kind, moments, setState) in zip(proxies, parts, strict=True):
             title = f"{proxy.GetName()} sequence"
             sequence = NodeKind(SEQUENCE, f"{REPLAY} {title}", title).make(scene)
-            setValues(sequence, IndexName="time", IndexUnit="s", IndexType=sequence.NumericIndex)
+            nodes.setValues(
+                sequence, IndexName="time", IndexUnit="s", IndexType=sequence.NumericIndex
+            )
             # Saving the states needs units from the scene that contains them.
             sequence.GetSequenceScene().AddNode(slicer.vtkMRMLSelectionNode())
-            for time, state in states:
+            for number, time in enumerate(moments):
                 # The proxy becomes what the state is, with all its attributes.
-                state.SetAttribute(ROLE_ATTRIBUTE, proxy.GetAttribute(ROLE_ATTRIBUTE))
+                state = getattr(slicer, proxy.GetClassName())()
+                setState(state, number)
+                state.SetAttribute(nodes.ROLE_ATTRIBUTE, proxy.GetAttribute(nodes.ROLE_ATTRIBUTE))
                 sequence.SetDataNodeAtValue(state, f"{time:.3f}")
                 done += 1
                 if done % STATES_A_SLICE == 0:
@@ -148,8 +119,42 @@ def showReplay(
     return browser
 
 
-def _checkIsThere(*nodes: Any) -> None:
-    if any(node.GetScene() is None for node in nodes):
+def _partsOf(
+    track: ReplayTrack, rows: np.ndarray, poses: np.ndarray
+) -> list[tuple[NodeKind, Sequence[float], Callable[[Any, int], object]]]:
+    """Return the moving parts, each with the times of its states, and what sets one of them."""
+    trajectory = track.trajectory
+    times, clearances = trajectory.times_s[rows], trajectory.clearance_mm[rows]
+    made, traced, start = trajectory.touches, trajectory.traced, float(trajectory.times_s[0])
+    counts = [*range(0, len(traced), POINTS_A_STATE), len(traced)]
+
+    def setPose(state: Any, row: int) -> None:
+        state.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(poses[row]))
+
+    def setTouches(state: Any, count: int) -> None:
+        labels = [each.label for each in made[:count]]
+        nodes.setPoints(
+            nodes.setValues(state, Locked=True), labels, [each.position_mm for each in made[:count]]
+        )
+
+    def setTrace(state: Any, number: int) -> None:
+        places = [point.position_mm for point in traced[: counts[number]]]
+        state.SetAndObservePolyData(pointCloud(np.reshape(places, (-1, 3))))
+
+    def setClearance(state: Any, row: int) -> None:
+        state.SetText(f"{fixed(clearances[row], 1)} mm")
+
+    trace = _TRACE, [start, *(traced[count - 1].time_s for count in counts[1:])], setTrace
+    return [
+        (_TOOL, times, setPose),
+        (_TOUCHES, [start, *(each.time_s for each in made)], setTouches),
+        (_CLEARANCE, times, setClearance),
+        *([trace] if traced else []),
+    ]
+
+
+def _checkIsThere(*parts: Any) -> None:
+    if any(part.GetScene() is None for part in parts):
         raise InputError("The scene was changed before the trial could be shown.")
 
 
@@ -177,10 +182,6 @@ def moment(scene: Any) -> tuple[float, str] | None:
     return float(value or 0.0), text.GetText()
 
 
-def findReplay(scene: Any) -> Any | None:
-    return _BROWSER.find(scene)
-
-
 def isReplayOf(scene: Any, trialId: str) -> bool:
     browser = findReplay(scene)
     return (
@@ -198,7 +199,7 @@ def removeReplay(scene: Any, rest: Callable[[float], None] = lambda _share: None
     for node in sorted(ours, key=lambda node: not node.IsA(BROWSER)):
         if node.GetScene() is None:
             continue
-        removeNode(node)
+        nodes.removeNode(node)
         if node.IsA(SEQUENCE):
             for _slice in _slicesOf(node):
                 rest(0.0)
@@ -213,8 +214,8 @@ def emptyReplay(scene: Any) -> Iterator[None]:
 
 
 def _nodesOfReplay(scene: Any, className: str) -> list[Any]:
-    nodes = nodesOfClass(scene, className)
-    return [n for n in nodes if (n.GetAttribute(ROLE_ATTRIBUTE) or "").startswith(REPLAY)]
+    found = nodes.nodesOfClass(scene, className)
+    return [n for n in found if (n.GetAttribute(nodes.ROLE_ATTRIBUTE) or "").startswith(REPLAY)]
 
 
 def _slicesOf(sequence: Any) -> Iterator[None]:
@@ -226,32 +227,11 @@ def _slicesOf(sequence: Any) -> Iterator[None]:
             yield
 
 
-def _growing(
-    made: Sequence[Any], step: int, stateOf: Callable[[int], Any], startS: float
-) -> Iterator[tuple[float, Any]]:
-    """Yield the state of each number of points, at the start and after every `step` points."""
-    for count in (*range(0, len(made), step), len(made)):
-        yield made[count - 1].time_s if count else startS, stateOf(count)
-
-
-def _touchesState(touches: Sequence[Any]) -> Any:
-    state = setValues(slicer.vtkMRMLMarkupsFiducialNode(), Locked=True)
-    for touch in touches:
-        state.AddControlPoint(vtk.vtkVector3d(*touch.position_mm), touch.label)
-    return state
-
-
-def _traceState(places: np.ndarray) -> Any:
-    state = slicer.vtkMRMLModelNode()
-    state.SetAndObservePolyData(pointCloud(places))
-    return state
-
-
 def _needle() -> vtk.vtkPolyData:
     """Return a needle whose tip is the tool's: its shaft lies along −z."""
-    line = setValues(
-        vtk.vtkLineSource(), Point1=(0.0, 0.0, 0.0), Point2=(0.0, 0.0, -TOOL_LENGTH_MM)
+    line = nodes.setValues(vtk.vtkLineSource(), Point1=(0, 0, 0), Point2=(0, 0, -TOOL_LENGTH_MM))
+    tube = nodes.setValues(
+        vtk.vtkTubeFilter(), Radius=TOOL_RADIUS_MM, NumberOfSides=16, Capping=True
     )
-    tube = setValues(vtk.vtkTubeFilter(), Radius=TOOL_RADIUS_MM, NumberOfSides=16, Capping=True)
-    setValues(tube, InputConnection=line.GetOutputPort()).Update()
+    nodes.setValues(tube, InputConnection=line.GetOutputPort()).Update()
     return tube.GetOutput()

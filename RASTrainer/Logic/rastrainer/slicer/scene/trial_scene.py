@@ -16,9 +16,9 @@ from rastrainer.registration.fits import MINIMUM_POINTS, RIGID
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import CallLater, callNow
 from rastrainer.slicer.scene.error_colors import showResidualArrows
-from rastrainer.slicer.scene.nodes import Role, labelsOf, setPoints
+from rastrainer.slicer.scene.nodes import TASK_ATTRIBUTE, Role, labelsOf, setPoints
 from rastrainer.slicer.scene.robot import placeRobot
-from rastrainer.slicer.scene.scenario_nodes import TASK_ATTRIBUTE, showScenario, showTask, taskKey
+from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask, taskKey
 from rastrainer.slicer.scene.tables import showFits, showResiduals
 from rastrainer.slicer.translation import _
 from rastrainer.trial.analysis import TrialAnalysis
@@ -86,10 +86,8 @@ def checkSameTask(moving: Any | None, fixed: Any | None) -> None:
 
 
 def _stamp(node: Any) -> str:
-    content = (
-        repr(labelsOf(node)).encode() + slicer.util.arrayFromMarkupsControlPoints(node).tobytes()
-    )
-    return sha256(content).hexdigest()
+    points = slicer.util.arrayFromMarkupsControlPoints(node).tobytes()
+    return sha256(repr(labelsOf(node)).encode() + points).hexdigest()
 
 
 MOVING_REFERENCE = "RASTrainer.moving"
