@@ -54,7 +54,7 @@ extension: .venv/installed
 
 # The repository that Slicer's Extensions Index registers: see docs/release.md.
 extension-repository: .venv/installed
-	$(BIN)/python tools/extension_repository.py
+	$(BIN)/python tools/simulator_wheel.py --repository
 
 page: .venv/installed
 	$(BIN)/python tools/page_types.py

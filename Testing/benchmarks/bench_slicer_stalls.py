@@ -27,6 +27,7 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import SAFETY_METRICS
 from rastrainer_simulator.assets import asset_path
 from Testing.benchmarks.row import row
+from Testing.domain.trial.trial_records import make_record
 from Testing.end_to_end.module.installed_simulator import write_program
 from Testing.slicer.head.debian_heads import COLIN27
 from Testing.slicer.head.phantoms import phantom
@@ -300,27 +301,14 @@ class _Steps:
 
     def _record(self, number: int) -> dict:
         points = [
-            {
-                "label": label,
-                "positionMm": position.tolist(),
-                "simTimeS": 6.0 * (place + 1),
-                "utc": f"2026-03-02T10:00:{place:02d}Z",
-            }
-            for place, (label, position) in enumerate(zip(LABELS, self._touches, strict=True))
+            {**point, "positionMm": position.tolist()}
+            for point, position in zip(make_record()["points"], self._touches, strict=True)
         ]
-        return {
-            "trialId": str(uuid.UUID(int=number + 1)),
-            "trainee": TRAINEE,
-            "task": TASK,
-            "mode": "desktop",
-            "scenario": self._colin.name,
-            "startedUtc": f"2026-03-02T{9 + number // 3600:02d}:{number // 60 % 60:02d}:00Z",
-            "completedUtc": "2026-03-02T12:00:20Z",
-            "completionTimeS": 90.0,
-            "touchRule": "on skin",
-            "points": points,
-            "rejectedTouches": 1,
-            "undoneTouches": 1,
-            "versions": {"simulator": "0.1.0"},
-            "motion": dict.fromkeys(SAFETY_METRICS, 0.0),
-        }
+        return make_record(
+            trialId=str(uuid.UUID(int=number + 1)),
+            startedUtc=f"2026-03-02T{9 + number // 3600:02d}:{number // 60 % 60:02d}:00Z",
+            completedUtc="2026-03-02T12:00:20Z",
+            points=points,
+            touchRule="on skin",
+            motion=dict.fromkeys(SAFETY_METRICS, 0.0),
+        )

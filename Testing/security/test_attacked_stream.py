@@ -19,6 +19,8 @@ def attack(folder, warm_up: int, count: int) -> None:
         ViewClient(thread, simulator.url, simulator.key) as view,
     ):
         view.join()
+        # A scene that is built, and what is imported after it, belong to no attack.
+        view.next("scene")
         slicer.wait_for("SimServer", timeout=60)
         attacked = StreamAttack(simulator.view_port, simulator.key, seed=7)
         attacked.run(warm_up)

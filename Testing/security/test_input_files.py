@@ -6,6 +6,7 @@ import shutil
 import sqlite3
 import zipfile
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -39,8 +40,6 @@ from Testing.security.hostile_content import HOSTILE_JSON, mutations
 
 SCENARIO = asset_path("scenarios", "colin27")
 STUDIES = asset_path("studies")
-ROBOT = asset_path("robots", "iiwa7")
-MESH = next((ROBOT / "meshes" / "visual").glob("*.stl"))
 TASK = SCENARIO / "tasks" / "task-1.mrk.json"
 
 
@@ -155,7 +154,7 @@ def test_a_damaged_file_is_read_or_refused_and_breaks_nothing(tmp_path, family):
     path.write_bytes(good)
     family.read(path)
     outcomes = set()
-    for content in mutations(good, 60, seed=9):
+    for content in mutations(good, 30, seed=9):
         path.write_bytes(content)
         try:
             family.read(path)
@@ -172,10 +171,11 @@ def _mesh(kind: str) -> bytes:
 
 @pytest.mark.parametrize("kind", ["stl", "ply", "obj"])
 def test_a_damaged_mesh_is_read_or_refused_and_breaks_nothing(tmp_path, kind):
-    robot = load_robot()
     path = tmp_path / f"link_7.{kind}"
     path.write_bytes(_mesh(kind))
-    robot = load_robot(mesh_folder=tmp_path)
+    whole = load_robot(mesh_folder=tmp_path)
+    # The other links' meshes are not damaged.
+    robot = replace(whole, meshes=tuple(part for part in whole.meshes if part.path == path))
     assert load_meshes(robot)
     for content in mutations(_mesh(kind), 40, seed=10):
         path.write_bytes(content)

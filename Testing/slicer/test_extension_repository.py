@@ -16,7 +16,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 NAMES = ("-c", "user.name=Release", "-c", "user.email=release@invalid")
 sys.path.insert(0, str(ROOT / "tools"))
-extension_repository = import_module("extension_repository")
+simulator_wheel = import_module("simulator_wheel")
 
 
 def size_mb(folder):
@@ -27,7 +27,7 @@ def size_mb(folder):
 def tree(built_wheel, tmp_path_factory):
     """The tree, which tests only read."""
     folder = tmp_path_factory.mktemp("registered") / "tree"
-    extension_repository.write_tree(built_wheel, folder)
+    simulator_wheel.write_tree(built_wheel, folder)
     return folder
 
 

@@ -17,7 +17,7 @@ STUB = Path(__file__).parent / "cmake"
 MODULES = Path("lib", "Slicer-5.13", "qt-scripted-modules")
 ASSETS = ("robots/iiwa7", "scenarios/colin27", "studies")
 sys.path.insert(0, str(ROOT / "tools"))
-extension_repository = import_module("extension_repository")
+simulator_wheel = import_module("simulator_wheel")
 
 LARGER_APPLICATION = """
 cmake_minimum_required(VERSION 3.20)
@@ -30,7 +30,7 @@ add_subdirectory("{source}" extension)
 def clone(built_wheel, tmp_path_factory):
     """The tree that Slicer's Extensions Index registers, which tests only read."""
     folder = tmp_path_factory.mktemp("registered") / "clone"
-    extension_repository.write_tree(built_wheel, folder)
+    simulator_wheel.write_tree(built_wheel, folder)
     return folder
 
 

@@ -29,6 +29,16 @@ def rigid(rotation: np.ndarray, translation: np.ndarray) -> np.ndarray:
     return matrix
 
 
+def in_meters(pose: np.ndarray) -> np.ndarray:
+    """Return a pose (4, 4) float with its translation in m, of one in mm."""
+    return rigid(pose[:3, :3], pose[:3, 3] / MM_PER_M)
+
+
+def in_millimeters(pose: np.ndarray) -> np.ndarray:
+    """Return a pose (4, 4) float with its translation in mm, of one in m."""
+    return rigid(pose[:3, :3], MM_PER_M * pose[:3, 3])
+
+
 def rotations(vectors: np.ndarray) -> np.ndarray:
     """Return the rotations (s, 3, 3) about vectors (s, 3) by their lengths in rad (Rodrigues)."""
     angles = np.linalg.norm(vectors, axis=1)

@@ -47,7 +47,7 @@ from rastrainer_simulator.authoring.scenario_check import (
     read_placed_tasks,
     start_clearance_mm,
 )
-from rastrainer_simulator.authoring.task_set import propose_tasks
+from rastrainer_simulator.authoring.task_proposal import propose_tasks
 from rastrainer_simulator.rendering.picture import draw_preview
 
 CENTER = "Center of the head"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import astuple, replace
 from functools import cached_property
 
 import numpy as np
@@ -11,23 +11,15 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.head.trial_head import Perturbation, perturbed_pose
+from rastrainer.scenario.points import Task, task_file
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.authoring.touch_order import SurfaceGraph
-from rastrainer_simulator.collision.collision import Collision, head_collision
+from rastrainer_simulator.authoring.touch_order import SurfaceGraph, complexity, shortest_path_mm
+from rastrainer_simulator.collision.collision import head_collision
 from rastrainer_simulator.collision.touch_planner import PlanReach, TouchPlanner
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.viewpoint.best_view import TouchViews
-
-
-def pose_head(collision: Collision, head_to_world: np.ndarray) -> np.ndarray:
-    """Set the head's pose, HeadToWorld (4, 4) float, mm, and return it in m."""
-    pose = np.array(head_to_world, dtype=float)
-    pose[:3, 3] /= MM_PER_M
-    collision.set_head_pose(pose)
-    return pose
-
 
 POSES_TRIED = 12
 """Poses of the head, besides the nominal one, in which what is planned must be reached."""
@@ -63,18 +55,28 @@ class PlanningSetup:
         to_head = transforms.inverse(self.scenario.head_to_world)
         return transforms.apply(to_head, self.scenario.cameras["close-up"].position_mm)
 
+    def measured(self, name: str, title: str, fiducials: np.ndarray) -> Task:
+        """Return a task with these fiducials, and its complexity and shortest path."""
+        index = complexity(fiducials, self.graph, self.eye).index
+        shortest = shortest_path_mm(fiducials, self.graph)
+        numbers = round(index, 2), round(shortest, 1)
+        return Task(name, title, task_file(name), *numbers, fiducials=fiducials)
+
     @cached_property
     def views(self) -> TouchViews:
         return TouchViews(self.setup, self.mesh)
 
+    def place_head(self, head_to_world: np.ndarray) -> np.ndarray:
+        """Set the head's pose, HeadToWorld (4, 4) float, mm, and return it in m."""
+        pose = transforms.in_meters(head_to_world)
+        self.collision.set_head_pose(pose)
+        return pose
+
     def poses(self, seeds: range, wider: float = 1.0) -> list[np.ndarray]:
         """Return the nominal HeadToWorld (4, 4), mm, and one for each seed."""
-        limits, scenario = self.scenario.perturbation, self.scenario
-        wide = Perturbation(
-            wider * limits.translation_mm, wider * limits.yaw_deg, wider * limits.tilt_deg
-        )
-        pivot = scenario.target.position_ras
-        nominal = scenario.head_to_world
+        limits = astuple(self.scenario.perturbation)
+        wide = Perturbation(*(wider * limit for limit in limits))
+        nominal, pivot = self.scenario.head_to_world, self.scenario.target.position_ras
         return [nominal, *(perturbed_pose(nominal, pivot, wide, seed) for seed in seeds)]
 
     def touchable(
@@ -89,7 +91,7 @@ class PlanningSetup:
         can_be = np.ones(len(positions), dtype=bool)
         likely = np.zeros(len(positions), dtype=int)
         for head_to_world in poses:
-            pose = pose_head(self.collision, head_to_world)
+            pose = self.place_head(head_to_world)
             for place in np.flatnonzero(can_be):
                 position = transforms.apply(pose, positions[place] / MM_PER_M)
                 normal = pose[:3, :3] @ normals[place]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
 from itertools import count
 from pathlib import Path
@@ -23,27 +22,11 @@ from rastrainer.procedure.plan import (
 from rastrainer.scenario.library import require_usable_lines
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.authoring.planning_setup import POSES_TRIED, PlanningSetup, pose_head
+from rastrainer_simulator.authoring.planning_setup import POSES_TRIED, PlanningSetup
 from rastrainer_simulator.core.setup import SimulationSetup
 
 STAND_OFFS_M = (0.01, 0.03, 0.05, 0.08)
 """Distances of the guide's tip from the entry: where it may be locked, and on the way there."""
-
-
-def is_guide_held(
-    planning: PlanningSetup, trajectory: ProcedureTrajectory, poses: Iterable[np.ndarray]
-) -> bool:
-    """Return whether the guide can be held along a line before the head in all its poses.
-
-    `poses` are HeadToWorld, (4, 4) float, mm, one after the other.
-    """
-    for head_to_world in poses:
-        pose = pose_head(planning.collision, head_to_world)
-        entry = transforms.apply(pose, trajectory.entry_ras / MM_PER_M).tolist()
-        direction = (pose[:3, :3] @ trajectory.direction).tolist()
-        if not planning.reach.can_hold_guide(entry, direction, STAND_OFFS_M):
-            return False
-    return True
 
 
 def check_procedures(planning: PlanningSetup) -> list[str]:
@@ -95,10 +78,15 @@ def _lines_held(
     held, wrong = [], []
     nominal, *others = planning.poses(range(poses_tried))
     for trajectory in procedure.trajectories:
-        where = ""
-        if not is_guide_held(planning, trajectory, [nominal]):
-            where = "where the head is"
-        elif not is_guide_held(planning, trajectory, others):
+
+        def is_held(head_to_world: np.ndarray, line: ProcedureTrajectory = trajectory) -> bool:
+            pose = planning.place_head(head_to_world)
+            entry = transforms.apply(pose, line.entry_ras / MM_PER_M).tolist()
+            direction = (pose[:3, :3] @ line.direction).tolist()
+            return planning.reach.can_hold_guide(entry, direction, STAND_OFFS_M)
+
+        where = "" if is_held(nominal) else "where the head is"
+        if not where and not all(map(is_held, others)):
             where = "in every trial"
         held.append(not where)
         if where:

@@ -14,14 +14,13 @@ from rastrainer.files.point_files import read_markups
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, outward_normals, read_head_mesh
 from rastrainer.procedure.checks import entry_fault
 from rastrainer.scenario.library import checked_scenario
-from rastrainer.scenario.points import LABELS, Task, task_file, touch_order
+from rastrainer.scenario.points import LABELS, Task, touch_order
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer.work_progress import Progress, Warn
-from rastrainer_simulator.authoring.planning_setup import POSES_TRIED, PlanningSetup, pose_head
+from rastrainer_simulator.authoring.planning_setup import POSES_TRIED, PlanningSetup
 from rastrainer_simulator.authoring.procedure_plan import check_procedures
 from rastrainer_simulator.authoring.task_proposal import PLANS, TaskPlan, target_spread
-from rastrainer_simulator.authoring.touch_order import complexity, shortest_path_mm
 from rastrainer_simulator.core.arm import start_joints
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.viewpoint.best_view import WIDEST_DEG
@@ -88,7 +87,7 @@ def check_plan(planning: PlanningSetup) -> list[str]:
         start_joints(planning.setup.robot, scenario, height)
     except InputError as error:
         wrong.append(str(error))
-    pose_head(planning.collision, scenario.head_to_world)
+    planning.place_head(scenario.head_to_world)
     targets = [(scenario.target.name, scenario.target.position_ras)]
     targets += [(target.name, target.position_ras) for target in scenario.targets]
     if scenario.trajectory is not None:
@@ -154,17 +153,6 @@ SHORTEST_PATH_TOLERANCE = 0.01
 """Tolerance, as a share of the path."""
 
 
-def measured(planning: PlanningSetup, task: TaskPlan | Task, fiducials: np.ndarray) -> Task:
-    """Return a task with these fiducials, and its complexity and shortest path."""
-    index = complexity(fiducials, planning.graph, planning.eye).index
-    shortest = shortest_path_mm(fiducials, planning.graph)
-    return Task(
-        *(task.name, task.title, task_file(task.name)),
-        *(round(index, 2), round(shortest, 1)),
-        fiducials=fiducials,
-    )
-
-
 def check_tasks(planning: PlanningSetup, tasks: Iterable[Task], first_seed: int = 0) -> list[str]:
     """Return a sentence for each error in tasks.
 
@@ -176,7 +164,7 @@ def check_tasks(planning: PlanningSetup, tasks: Iterable[Task], first_seed: int 
         wrong += _wrong_places(planning, task) or [
             *(_untouchable(planning, task, first_seed) or _unseen(planning, task)),
             *([] if planning.views.on_skin(task)[1].has_room else [f"{task.title}: {NO_ROOM}"]),
-            *_wrong_measures(task, measured(planning, task, task.fiducials)),
+            *_wrong_measures(task, planning.measured(task.name, task.title, task.fiducials)),
         ]
     for easier, harder in pairwise(tasks):
         if harder.complexity <= easier.complexity:
@@ -289,7 +277,7 @@ def read_placed_tasks(
         except InputError as error:
             wrong.append(f"{plan.title}: {error}")
         else:
-            tasks.append(measured(planning, plan, fiducials))
+            tasks.append(planning.measured(plan.name, plan.title, fiducials))
     return tuple(tasks), [*wrong, *check_tasks(planning, tasks)]
 
 

@@ -1,10 +1,11 @@
-"""`rastrainer simulate-cohort`: a study of virtual trainees with known skills."""
+"""Commands of virtual trainees: `rastrainer simulate-cohort` and `rastrainer calibrate`."""
 
 from __future__ import annotations
 
 import argparse
 import math
 import sys
+from dataclasses import asdict
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import significant
@@ -13,7 +14,9 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.protocol.study_protocol import StudyProtocol, mode_order
 from rastrainer.trial.score_reference import score_reference
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli.printing import picked, text_table
+from rastrainer_simulator.cli.printing import json_text, picked, text_table
+from rastrainer_simulator.core.setup import DEFAULT_SCENARIO, load_setup
+from rastrainer_simulator.virtual.calibration import calibrated
 from rastrainer_simulator.virtual.cohort import simulate_cohort
 from rastrainer_simulator.virtual.hand import Skill
 from rastrainer_simulator.virtual.outcome_model import OutcomeModel, rejection_rates
@@ -78,7 +81,7 @@ def _power(protocol: StudyProtocol, arguments: argparse.Namespace) -> str:
     if len(protocol.modes) != 2:
         raise InputError("Power needs a protocol with two modes.")
     population = _population(arguments)
-    scenario = load_scenario(arguments.scenario or asset_path("scenarios", "colin27"))
+    scenario = load_scenario(arguments.scenario or asset_path(*DEFAULT_SCENARIO))
     times_s = [score_reference(scenario, task).time_s for task in protocol.tasks]
     times_s *= protocol.repetitions
     model = OutcomeModel(
@@ -118,3 +121,24 @@ def _power(protocol: StudyProtocol, arguments: argparse.Namespace) -> str:
         f"drawn from a model of outcomes (not played)\norder of the modes {order}\n"
         + text_table(header, rows)
     )
+
+
+def calibrate(arguments: argparse.Namespace) -> int:
+    found = calibrated(load_setup(None), arguments.repeats)
+    outside = [one.name for one in found if not one.holds]
+    if arguments.json:
+        print(json_text({"quantities": [asdict(one) for one in found], "outside": outside}))
+    else:
+        rows = [
+            [
+                f"{one.name}, {one.unit}".removesuffix(", "),
+                significant(one.simulated),
+                f"{one.least:g} to {one.most:g}",
+                f"fitted by {one.fitted}" if one.fitted else "held out",
+                "yes" if one.holds else "NO",
+            ]
+            for one in found
+        ]
+        print(text_table(["quantity", "simulated", "published", "", "in the range"], rows))
+        print("\nPublished in:", *(f"  {one.name}: {one.source}" for one in found), sep="\n")
+    return 1 if outside else 0

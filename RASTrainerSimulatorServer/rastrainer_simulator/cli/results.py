@@ -8,12 +8,7 @@ from dataclasses import replace
 from rastrainer.errors import InputError
 from rastrainer.trial import ctps
 from rastrainer.work_progress import print_progress
-from rastrainer_simulator.cli.printing import (
-    json_text,
-    picked,
-    read_known_study,
-    text_table,
-)
+from rastrainer_simulator.cli.printing import json_text, picked, read_known_study, text_table
 
 
 def score(arguments: argparse.Namespace) -> int:

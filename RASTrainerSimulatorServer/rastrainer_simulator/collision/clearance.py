@@ -127,9 +127,7 @@ class HeadClearance:
         is_orthogonal = np.abs(rotation @ rotation.T - np.eye(3)).max() <= _RIGID
         if not is_orthogonal or np.linalg.det(rotation) < 0.0:
             raise InputError("HeadToWorld should be rigid: a rotation and a translation only.")
-        self._world_to_head = np.eye(4)
-        self._world_to_head[:3, :3] = rotation.T
-        self._world_to_head[:3, 3] = -rotation.T @ pose[:3, 3]
+        self._world_to_head = transforms.rigid(rotation.T, -rotation.T @ pose[:3, 3])
         self.base = rotation @ self._head.base + pose[:3, 3]
         """(3,) float: the center of the head's base, World, m."""
         self._middle = rotation @ self._head.middle + pose[:3, 3]

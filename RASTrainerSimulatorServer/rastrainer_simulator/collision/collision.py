@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 
+from rastrainer import transforms
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
@@ -26,9 +27,7 @@ from rastrainer_simulator.vectors import segment_distance
 
 def stand_pose(head_to_world: np.ndarray, base: np.ndarray) -> np.ndarray:
     """Return StandToWorld, (4, 4) float, m; `base` is the middle of the head's base, (3,) float."""
-    stand_to_world = np.eye(4)
-    stand_to_world[:3, 3] = head_to_world[:3, :3] @ base + head_to_world[:3, 3]
-    return stand_to_world
+    return transforms.rigid(np.eye(3), head_to_world[:3, :3] @ base + head_to_world[:3, 3])
 
 
 class TableClearance:

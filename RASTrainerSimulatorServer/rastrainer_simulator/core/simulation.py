@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
+from rastrainer import transforms
 from rastrainer.commands import CommandName
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.journal import entries
@@ -234,9 +233,7 @@ class Simulation:
     def _put_in_place(self, q: Joints | None = None) -> None:
         """Put the head where the trial has it, and the arm where trials start, or at `q`."""
         self._placed = self._training.truth
-        head_to_world = np.array(self._placed.head_to_world)
-        head_to_world[:3, 3] /= MM_PER_M
-        self._head_to_world = head_to_world
+        self._head_to_world = head_to_world = transforms.in_meters(self._placed.head_to_world)
         self._stand_to_world = stand_pose(head_to_world, self._head_base)
         self._collision.set_head_pose(head_to_world)
         self._contact.head_has_moved()

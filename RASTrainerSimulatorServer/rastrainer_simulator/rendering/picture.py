@@ -19,6 +19,7 @@ from vtkmodules.vtkRenderingCore import (
     vtkWindowToImageFilter,
 )
 
+from rastrainer import transforms
 from rastrainer.files.writing import write_bytes
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.protocol import Proximity
@@ -106,8 +107,7 @@ def posed(
     `head_to_world` is (4, 4) float, mm, from the MRI's RAS to World.
     """
     links = make_kinematics(robot).links(tuple(q))
-    pose = np.array(head_to_world, dtype=float)
-    pose[:3, 3] /= MM_PER_M
+    pose = transforms.in_meters(head_to_world)
     poses = {link_node_name(link.joint): links[link.name] for link in robot.moving_links}
     stand = stand_pose(pose, head.base / MM_PER_M)
     return {**poses, TOOL: links[robot.tip.name], "head": pose, "stand": stand}

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
+from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.number_text import clock
@@ -118,9 +119,7 @@ def _shots(
     head = read_head_mesh(scenario.head)
     nodes = scene_nodes(scenario, setup.robot, head, task)
     best_views, view, point_in_view = TouchViews(setup, head), ViewControl(), None
-    head_to_world = trial.state_at(0.0).head_to_world.copy()
-    head_to_world[:3, 3] *= MM_PER_M
-    best_views.begin(task, head_to_world)
+    best_views.begin(task, transforms.in_millimeters(trial.state_at(0.0).head_to_world))
     shown_looks: dict[str, Material] = {}
     actors: dict[str, list[vtkActor]] = {}
     for state in map(trial.state_at, times_s):

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
+from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import ReplayTrack, read_track
 from rastrainer.protocol import GhostRule, Phase
-from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.interrupted_trial import seed_of
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.net.views.outgoing import GHOST_LINKS
@@ -38,8 +38,7 @@ class Ghost:
         if other in ("scenario", "robot") or not touches:
             raise InputError("The trial cannot be a ghost: it has another head, or no touch.")
         then = setup.scenario.perturbed_head_to_world(seed_of(header))
-        self._moved = head_to_world @ np.linalg.inv(then)
-        self._moved[:3, 3] /= MM_PER_M
+        self._moved = transforms.in_meters(head_to_world @ np.linalg.inv(then))
         self._track = track
         self._kinematics = make_kinematics(setup.robot)
         self._links = tuple(setup.robot.moving_links[joint].name for joint in GHOST_LINKS)

@@ -11,6 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Generic, TypeVar
 
+from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.journal.entries import CameraChange, Line, ProximityChange, Registered
@@ -72,8 +73,8 @@ class RecordedTrial:
             self._kinematics = make_kinematics(setup.robot)
             self._links = tuple(link.name for link in setup.robot.moving_links)
             self._tip = setup.robot.tip.name
-            self._head_to_world = scenario.perturbed_head_to_world(seed_of(header))
-            self._head_to_world[:3, 3] /= MM_PER_M
+            head_to_world = scenario.perturbed_head_to_world(seed_of(header))
+            self._head_to_world = transforms.in_meters(head_to_world)
             base = read_head_mesh(scenario.head).base / MM_PER_M
             self._stand_to_world = stand_pose(self._head_to_world, base)
             self._event_times = [event.time_s for event in track.events]
@@ -81,8 +82,7 @@ class RecordedTrial:
             settings = record_from_json(SimulationSettings, header.settings, "The settings")
             task = task_by_method(scenario, self.task, header.registration_method)
             self._situations = _situations(track, scenario, settings)
-            places = self._head_to_world[:3, :3] @ (task.fiducials / MM_PER_M).T
-            places = (places + self._head_to_world[:3, 3:]).T
+            places = transforms.apply(self._head_to_world, task.fiducials / MM_PER_M)
             self._goals = dict(zip(task.labels, map(tuple, places.tolist()), strict=True))
             self._training_settings = settings.training
             self.worst = _worst(track, setup)

@@ -214,11 +214,7 @@ Roll = tuple[Vector, Vector] | None
 
 
 def joint_angles(
-    upper: Vector,
-    fore: Vector,
-    tool: Vector,
-    roll: Roll,
-    last: Angles,
+    upper: Vector, fore: Vector, tool: Vector, roll: Roll, last: Angles
 ) -> tuple[float, ...]:
     """Return θ of the branch whose tilts are positive, pans within ±π, in rad.
 

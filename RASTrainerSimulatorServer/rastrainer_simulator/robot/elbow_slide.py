@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 from math import inf, sqrt
+from operator import sub
 
 from rastrainer_simulator.robot.closure import (
     ElbowCircle,
@@ -47,22 +48,12 @@ def close(
         if nearest is None:
             return None
         elbow = nearest
-    l1, l2, l3, l4, l5, l6, l7 = last
     theta = None
     for place in itertools.chain((elbow,), elbows_at_limits(arm, circle, wrist, tool, roll)):
         found = _branch(arm, place, wrist, tool, roll, last)
         if found is None:
             continue
-        t1, t2, t3, t4, t5, t6, t7 = found
-        if (
-            -farthest <= t1 - l1 <= farthest
-            and -farthest <= t2 - l2 <= farthest
-            and -farthest <= t3 - l3 <= farthest
-            and -farthest <= t4 - l4 <= farthest
-            and -farthest <= t5 - l5 <= farthest
-            and -farthest <= t6 - l6 <= farthest
-            and -farthest <= t7 - l7 <= farthest
-        ):
+        if max(map(abs, map(sub, found, last))) <= farthest:
             return found
         theta = theta or found
     return theta

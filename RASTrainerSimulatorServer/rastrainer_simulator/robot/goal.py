@@ -9,12 +9,7 @@ from typing import Annotated, NamedTuple
 from rastrainer.errors import InputError
 from rastrainer.json_checks import Setting, whole_number
 from rastrainer_simulator.robot.closure import Roll
-from rastrainer_simulator.robot.srs_arm import (
-    Angles,
-    CanonicalArm,
-    Chain,
-    tip,
-)
+from rastrainer_simulator.robot.srs_arm import Angles, CanonicalArm, Chain, tip
 from rastrainer_simulator.vectors import Vector, add, length, scale
 
 OUT_OF_REACH = "The target is out of reach; the tool is as close to it as the arm can bring it."

@@ -79,9 +79,7 @@ def _load(part: MeshPart) -> trimesh.Trimesh:
 
 
 def _lie_in_base_frame(
-    model: RobotModel,
-    poses: dict[str, np.ndarray],
-    meshes: Iterable[tuple[str, trimesh.Trimesh]],
+    model: RobotModel, poses: dict[str, np.ndarray], meshes: Iterable[tuple[str, trimesh.Trimesh]]
 ) -> bool:
     """Return whether meshes are on the outstretched robot rather than around their links' origins.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -168,8 +169,9 @@ class Arrow:
         head = HEAD_WIDTH / 2.0 * np.clip(left / HEAD_LENGTH, 0.0, 1.0)
         return np.where(left <= HEAD_LENGTH, head, SHAFT_WIDTH / 2.0)
 
+    @cached_property
     def samples(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return places (k, 3) along the arrow, 1 mm apart, and its half widths (k,) there."""
+        """Places (k, 3) along the arrow, 1 mm apart, and its half widths (k,) there."""
         if self.end <= self.start:
             return np.empty((0, 3)), np.empty(0)
         along = np.linspace(self.start, self.end, max(2, round(self.end - self.start) + 1))
@@ -286,7 +288,7 @@ def _walk(
 
 
 def _distance(first: Arrow, second: Arrow) -> float:
-    (a, half_a), (b, half_b) = first.samples(), second.samples()
+    (a, half_a), (b, half_b) = first.samples, second.samples
     if len(a) == 0 or len(b) == 0:
         return np.inf
     apart = np.linalg.norm(a[:, None] - b[None], axis=2)
@@ -341,7 +343,7 @@ def _number_places(
     `points` (n, 3) float are the fiducials; `sizes` the width and height (2,) of each number, mm.
     If not all numbers can keep the margin, each goes where it has the most room, if any.
     """
-    samples = [arrow.samples() for arrow in arrows]
+    samples = [arrow.samples for arrow in arrows]
     obstacles = np.concatenate([points, *(places for places, _ in samples)])
     radii = np.concatenate([np.full(len(points), RIM_RADIUS), *(widths for _, widths in samples)])
     choices = [

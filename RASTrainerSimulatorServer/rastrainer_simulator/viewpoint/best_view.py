@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import logging
 import math
@@ -15,10 +16,11 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.errors import RASTrainerError
-from rastrainer.head.mesh import HeadMesh, outward_normals, read_head_mesh
+from rastrainer.head.mesh import HeadMesh, outward_normals
 from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
+from rastrainer.trial.score_reference import head_of
 from rastrainer_simulator.collision.clearance import LineOfSight
 from rastrainer_simulator.collision.collision import head_collision
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
@@ -236,19 +238,17 @@ class TouchViews:
 
     def __init__(self, setup: SimulationSetup, head: HeadMesh | None = None) -> None:
         self._scenario: Scenario = setup.scenario
-        self._head = head or read_head_mesh(setup.scenario.head)
+        self._head = head or head_of(setup.scenario)
         self._collision = head_collision(setup.shape, self._head, setup.scenario)
         self._kinematics = make_kinematics(setup.robot)
         self._robot = setup.robot
         self._planner = TouchPlanner(setup.robot, self._collision)
-        self._known: dict[bytes, tuple[np.ndarray, Placement]] = {}
         self._points: dict[str, tuple[Vector, Vector, tuple[Vector, Vector]]] = {}
         self._views: dict[str, PointViews] = {}
 
     def begin(self, task: Task, head_to_world: np.ndarray) -> None:
         """Put the head where a trial of a task has it; HeadToWorld is (4, 4) float, mm."""
-        pose = np.array(head_to_world, dtype=float)
-        pose[:3, 3] /= MM_PER_M
+        pose = transforms.in_meters(head_to_world)
         self._collision.set_head_pose(pose)
         in_head, placement = self.on_skin(task)
         normals = in_head @ pose[:3, :3].T
@@ -306,15 +306,18 @@ class TouchViews:
 
     def on_skin(self, task: Task) -> tuple[np.ndarray, Placement]:
         """Return the skin's normals at a task's fiducials, (n, 3), and where its marks are."""
-        key = task.fiducials.tobytes()
-        if key not in self._known:
-            # Here, since an idle simulator does without VTK.
-            from rastrainer_simulator.scene.skin_marks import Skin, place_marks
+        return _on_skin(self._head, task.fiducials.tobytes(), task.labels)
 
-            normals = outward_normals(self._head, task.fiducials)
-            placement = place_marks(Skin(self._head), task.fiducials, task.labels)
-            self._known[key] = normals, placement
-        return self._known[key]
+
+@functools.lru_cache(maxsize=12)
+def _on_skin(
+    head: HeadMesh, fiducials: bytes, labels: tuple[str, ...]
+) -> tuple[np.ndarray, Placement]:
+    # Here, since an idle simulator does without VTK.
+    from rastrainer_simulator.scene.skin_marks import Skin, place_marks
+
+    points = np.frombuffer(fiducials).reshape(-1, 3)
+    return outward_normals(head, points), place_marks(Skin(head), points, labels)
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from concurrent.futures import Future
 from dataclasses import replace
 
+from rastrainer import transforms
 from rastrainer.protocol import OPEN_PHASES
 from rastrainer.scenario.scenario import Camera, Scenario
-from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.state import NEUTRAL_STICKS, OperatorInput, SimulationState
 from rastrainer_simulator.teleoperation.steering import AxesChoice
@@ -61,8 +61,7 @@ class TrialView:
         training = state.training
         self._trial_id = training.trial_id
         if training.is_marked:
-            head_to_world = state.head_to_world.copy()
-            head_to_world[:3, 3] *= MM_PER_M
+            head_to_world = transforms.in_millimeters(state.head_to_world)
             self._best.look(setup, training.task, head_to_world)
 
     def close(self) -> None:

@@ -15,7 +15,7 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.scenario.writer import HeadDraft, write_scenario
 from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
-from rastrainer_simulator.authoring.task_set import propose_tasks
+from rastrainer_simulator.authoring.task_proposal import propose_tasks
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
 from Testing.simulator.authoring.heads import egg, small
 
@@ -36,8 +36,7 @@ def setup_of(name: str, folder: Path) -> SimulationSetup:
     head = HEADS[name]()
     tasks = tuple(
         Task(
-            **{**values, "fiducials": np.array(values["fiducials"])},
-            file=task_file(values["name"]),
+            **{**values, "fiducials": np.array(values["fiducials"])}, file=task_file(values["name"])
         )
         for values in json.loads(FILE.read_text(encoding="utf-8"))[name]
     )

@@ -86,7 +86,7 @@ def test_the_fiducials_locate_the_center_of_the_head_well(name):
     assert target_spread(fiducials, SCENARIO.target.position_ras) == pytest.approx(ratio**2)
 
 
-@pytest.mark.parametrize("count", [4, pytest.param(20, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("count", [1, pytest.param(20, marks=pytest.mark.soak)])
 def test_the_robot_can_touch_every_fiducial_in_other_poses_of_the_head(count):
     planning = PlanningSetup(SCENARIO, MESH)
     fiducials = np.concatenate([task.fiducials for task in SCENARIO.tasks])

@@ -23,6 +23,12 @@ def _few_poses(monkeypatch):
     monkeypatch.setattr("rastrainer_simulator.authoring.scenario_check.POSES_TRIED", 1)
 
 
+@pytest.fixture
+def unchecked(monkeypatch):
+    """Skip the check of tasks that were read."""
+    monkeypatch.setattr("rastrainer_simulator.authoring.scenario_check.check_tasks", lambda *_: [])
+
+
 @pytest.fixture(scope="module")
 def planning():
     head = egg()
@@ -47,12 +53,13 @@ def read(planning, folder, points, labels=LABELS, count=1):
     return *result, warnings
 
 
+@pytest.mark.usefixtures("unchecked")
 def test_clicks_within_five_millimeters_of_the_skin_are_moved_onto_it_and_that_is_reported(
     planning, on_skin, tmp_path
 ):
     lifted = on_skin + np.linspace(-4.5, 4.5, 15)[:, None] * outward_normals(planning.mesh, on_skin)
     (task,), wrong, warnings = read(planning, tmp_path, lifted)
-    assert not any("off the skin" in sentence for sentence in wrong)
+    assert wrong == []
     assert len(warnings) == 1
     assert warnings[0].startswith("Trial run: 14 fiducials were moved onto the skin, by at most 4.")
     away = [nearest_on_mesh(planning.mesh, point).distance for point in task.fiducials]
@@ -71,6 +78,7 @@ def test_clicks_farther_away_are_named_with_their_distance(planning, on_skin, tm
     assert "12 (" in sentence
 
 
+@pytest.mark.usefixtures("unchecked")
 def test_numbers_in_the_labels_give_the_touch_order(planning, on_skin, tmp_path):
     backward = [f"F-{number}" for number in range(15, 0, -1)]
     (task,), _, _ = read(planning, tmp_path, on_skin, backward)

@@ -12,10 +12,7 @@ from rastrainer.scenario.setup import USUAL_TABLE, HeadPlace, SetUp
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
-from rastrainer_simulator.authoring.scenario_check import (
-    check_standing,
-    lowest_in_trials_mm,
-)
+from rastrainer_simulator.authoring.scenario_check import check_standing, lowest_in_trials_mm
 from Testing.simulator.authoring.heads import colin27, egg
 
 
@@ -38,7 +35,6 @@ def scenario_of(setup):
             "robot's foot",
             id="robot beside it",
         ),
-        pytest.param(SetUp(robot_base_mm=(-300.0, 0.0)), "robot's foot", id="robot over its edge"),
         pytest.param(SetUp(HeadPlace((480.0, 700.0, 220.0))), "head's stand", id="head beside it"),
         pytest.param(
             SetUp(table=OperatingTable((0.0, 0.0), (1050.0, 1000.0, 40.0))),

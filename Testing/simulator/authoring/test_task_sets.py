@@ -14,12 +14,12 @@ from rastrainer.scenario.points import LABELS, PlannedTarget, PlannedTrajectory,
 from rastrainer.scenario.scenario import SkullKind
 from rastrainer.scenario.setup import HeadPlace, SetUp
 from rastrainer.scenario.writer import HeadDraft
-from rastrainer_simulator.authoring import scenario_check, task_set
+from rastrainer_simulator.authoring import scenario_check, task_proposal
 from rastrainer_simulator.authoring.face_removal import face_vertices
 from rastrainer_simulator.authoring.make import ScenarioOptions, make_scenario, without_tasks
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.scenario_check import check_plan, check_tasks
-from rastrainer_simulator.authoring.task_set import propose_tasks
+from rastrainer_simulator.authoring.task_proposal import propose_tasks
 from Testing.simulator.authoring.heads import HEADS, egg
 
 SEED = 5
@@ -45,8 +45,8 @@ def planning():
 def tasks(planning):
     """A set that is touchable in a few poses."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(task_set, "WIDE_SEEDS", range(1000, 1002))
-        patch.setattr(task_set, "TRIAL_SEEDS", range(2000, 2001))
+        patch.setattr(task_proposal, "WIDE_SEEDS", range(1000, 1002))
+        patch.setattr(task_proposal, "TRIAL_SEEDS", range(2000, 2001))
         return propose_tasks(planning, SEED)
 
 

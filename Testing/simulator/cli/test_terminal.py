@@ -15,7 +15,7 @@ CHECKS = (("font", lambda _arguments: ANSWERS, "Install one → it works…"),)
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252", "gbk", "utf-8"])
-@pytest.mark.parametrize("words", ["--help", "register --help", "scenario build --help", "doctor"])
+@pytest.mark.parametrize("words", ["scenario build --help", "doctor"])
 def test_a_terminal_that_lacks_characters_gets_the_others(monkeypatch, encoding, words):
     monkeypatch.setattr(doctor, "CHECKS", CHECKS)
     written = io.BytesIO()

@@ -193,11 +193,7 @@ def test_the_quick_clearance_check_agrees_with_the_computed_clearances(
 
 @pytest.mark.parametrize(
     "matrix",
-    [
-        np.diag([1.0, 1.0, 2.0, 1.0]),
-        np.diag([1.0, 1.0, -1.0, 1.0]),
-        np.full((4, 4), np.nan),
-    ],
+    [np.diag([1.0, 1.0, 2.0, 1.0]), np.diag([1.0, 1.0, -1.0, 1.0]), np.full((4, 4), np.nan)],
 )
 def test_a_head_pose_that_is_not_rigid_is_refused(collision, matrix):
     with pytest.raises(InputError, match="rigid"):

@@ -47,7 +47,7 @@ def distances(surface, points):
 
 def test_the_distance_of_a_point_matches_brute_force(bumpy):
     vertices, triangles = bumpy
-    points = np.concatenate([around(*bumpy[:1], 100, 2), near(*bumpy, 100, 3)])
+    points = np.concatenate([around(*bumpy[:1], 40, 2), near(*bumpy, 40, 3)])
     expected = [point_to_triangles(p, vertices[triangles]).min() for p in points]
     found = np.abs(distances(HeadSurface(*bumpy), points))
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
@@ -56,7 +56,7 @@ def test_the_distance_of_a_point_matches_brute_force(bumpy):
 def test_the_sign_is_right_on_the_default_head(scenario):
     mesh = read_head_mesh(scenario.head)
     head = mesh.vertices / MM_PER_M, mesh.triangles
-    points = np.concatenate([around(head[0], 300, 6), near(*head, 900, 7)])
+    points = np.concatenate([around(head[0], 100, 6), near(*head, 300, 7)])
     truth = np.array(list(map(vtk_distance(*head), points)))
     np.testing.assert_allclose(
         distances(HeadSurface(*head), points), truth, rtol=0, atol=MICROMETER
@@ -65,7 +65,7 @@ def test_the_sign_is_right_on_the_default_head(scenario):
 
 def test_the_normal_points_where_the_clearance_grows(bumpy):
     surface = HeadSurface(*bumpy)
-    for point in around(bumpy[0], 200, 8):
+    for point in around(bumpy[0], 60, 8):
         here = surface.nearest_to_point(tuple(point))
         farther = surface.nearest_to_point(tuple(point + 1e-7 * np.array(here.normal)))
         assert farther.distance_m - here.distance_m == pytest.approx(1e-7, abs=1e-12)

@@ -14,12 +14,7 @@ from rastrainer_simulator.collision.proximity import DEEPEST, Pressing
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.replay.resimulation import replay
-from rastrainer_simulator.state import (
-    NEUTRAL_STICKS,
-    Motion,
-    OperatorCommand,
-    OperatorInput,
-)
+from rastrainer_simulator.state import NEUTRAL_STICKS, Motion, OperatorCommand, OperatorInput
 from Testing.simulator.virtual.cheating_trainees import press
 
 DT = 0.004

@@ -8,11 +8,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.clearance import FAR, SHAFT_NEAR, Clearance
 from rastrainer_simulator.collision.contact import REST
 from rastrainer_simulator.collision.head_surface import Nearest
-from rastrainer_simulator.collision.proximity import (
-    Pressing,
-    ProximitySettings,
-    next_proximity,
-)
+from rastrainer_simulator.collision.proximity import Pressing, ProximitySettings, next_proximity
 from rastrainer_simulator.vectors import ZERO
 
 FREE, PROXIMITY, CONTACT = Proximity.FREE, Proximity.PROXIMITY, Proximity.CONTACT

@@ -2,26 +2,23 @@
 
     python -m Testing.simulator.robot.compare_meshes --official FOLDER [--samples N]
 
-FOLDER holds link_0.stl … link_7.stl, in meters, all in the base frame at q = 0 (or a folder
-`collision` with them). Points are drawn evenly over each robot's surface at q = 0 and kept where
-they can be seen from outside: not on the ground, and with at least one in twenty of the directions
-over the point open. The distance from each of these to the nearest point of the other robot is
-taken. The tool is left out: it is ours.
+FOLDER holds link_0.stl … link_7.stl, as of `--robot-meshes`. Points are drawn evenly over each
+robot's surface at q = 0 and kept where they can be seen from outside: not on the ground, and with
+at least one in twenty of the directions over the point open. The distance from each of these to the
+nearest point of the other robot is taken. The tool is left out: it is ours.
 """
 
 import argparse
-import sys
 from pathlib import Path
 
 import numpy as np
 import trimesh
 
 from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.robot.kinematics import make_kinematics
+from rastrainer_simulator.robot.meshes import load_meshes
+from rastrainer_simulator.robot.model import load_robot
 from Testing.sphere_directions import sphere_directions
-
-sys.path.insert(0, str(Path(__file__).parents[3] / "assets" / "robots"))
-from iiwa7_dimensions import JOINTS, LINK_NAMES
-from make_iiwa7 import visual_parts
 
 DIRECTIONS = 128
 OPEN_FRACTION = 0.05
@@ -34,38 +31,37 @@ def main() -> None:
     parser.add_argument("--official", type=Path, required=True)
     parser.add_argument("--samples", type=int, default=20_000)
     arguments = parser.parse_args()
-    folder = arguments.official
-    if (folder / "collision").is_dir():
-        folder = folder / "collision"
-    # Links 0 to 7 as they look, at q = 0, in the base frame, in meters.
-    parts = visual_parts()
-    origins = np.cumsum([(0.0, 0.0, 0.0), *(joint.origin for joint in JOINTS)], axis=0)
-    ours = [
-        trimesh.util.concatenate(list(parts[name].values())).apply_translation(origin)
-        for name, origin in zip(LINK_NAMES, origins, strict=False)
-    ]
-    official = [trimesh.load_mesh(folder / f"link_{number}.stl") for number in range(8)]
+    ours, official = outstretched(None), outstretched(arguments.official)
     for title, one, other in (
         ("ours to official", ours, official),
         ("official to ours", official, ours),
     ):
         distances, links = surface_distances(one, other, arguments.samples)
         print(f"{title}: {_summary(distances)}")
-        for link, name in enumerate(LINK_NAMES[:8]):
-            print(f"  {name}: {_summary(distances[links == link])}")
+        for link in range(len(one)):
+            print(f"  link {link}: {_summary(distances[links == link])}")
+
+
+def outstretched(mesh_folder: Path | None) -> list[trimesh.Trimesh]:
+    """Return links 0 to 7 as they look, at q = 0, in the base frame, m."""
+    robot = load_robot(mesh_folder=mesh_folder)
+    poses, meshes = make_kinematics(robot).links((0.0,) * 7), load_meshes(robot)
+    names = [link.name for link in robot.moving_links]
+    return [
+        trimesh.util.concatenate([mesh for mesh, _color in meshes[name]]).apply_transform(
+            poses[name]
+        )
+        for name in names
+    ]
 
 
 def surface_distances(
     one: list[trimesh.Trimesh], other: list[trimesh.Trimesh], samples: int, seed: int = 7
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return how far the visible surface of `one` is from `other`, and each point's link.
-
-    Distances (n,) float in mm; link numbers (n,) int.
-    """
+    """Return how far the visible surface of `one` is from `other`, mm, and each point's link."""
     whole, target = trimesh.util.concatenate(one), trimesh.util.concatenate(other)
     points, faces = trimesh.sample.sample_surface(whole, samples, seed=seed)
     links = np.repeat(np.arange(len(one)), [len(mesh.faces) for mesh in one])[faces]
-    # Seen are points that see the outside in enough of the directions above them.
     normals = whole.face_normals[faces]
     above, free = np.zeros(len(points)), np.zeros(len(points))
     for direction in sphere_directions(DIRECTIONS):

@@ -7,7 +7,8 @@ from rastrainer.slicer.scene.robot_description import toolPoses
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.robot.kinematics import make_kinematics
-from rastrainer_simulator.robot.model import load_robot
+
+URDF = asset_path("robots", "iiwa7", "iiwa7.urdf")
 
 
 @pytest.fixture(scope="module")
@@ -15,12 +16,12 @@ def postures(robot):
     return np.random.default_rng(20).uniform(*robot.limits, (10_000, 7))
 
 
-@pytest.mark.parametrize("count", [2_000, pytest.param(10_000, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("count", [300, pytest.param(10_000, marks=pytest.mark.soak)])
 def test_numpy_equals_pinocchio_to_1e_12_in_random_postures(robot, postures, count):
     ours, theirs = make_kinematics(robot, "numpy"), make_kinematics(robot, "pinocchio")
     for q in postures[:count]:
-        np.testing.assert_allclose(ours.tip(q), theirs.tip(q), rtol=0, atol=1e-12)
         links, expected = ours.links(q), theirs.links(q)
+        assert np.abs(ours.tip(q) - theirs.tip(q)).max() <= 1e-12
         assert links.keys() == expected.keys()
         difference = max(np.abs(links[n] - expected[n]).max() for n in links)
         assert difference <= 1e-12
@@ -29,9 +30,9 @@ def test_numpy_equals_pinocchio_to_1e_12_in_random_postures(robot, postures, cou
 @pytest.mark.parametrize("backend", ["numpy", "pinocchio"])
 def test_the_kinematics_agree_with_pinocchios_own_reading_of_the_urdf(robot, postures, backend):
     kinematics = make_kinematics(robot, backend)
-    model = pin.buildModelFromUrdf(str(asset_path("robots", "iiwa7", "iiwa7.urdf")))
+    model = pin.buildModelFromUrdf(str(URDF))
     data = model.createData()
-    for q in postures[:500]:
+    for q in postures[:50]:
         pin.framesForwardKinematics(model, data, q)
         for name, pose in kinematics.links(q).items():
             expected = data.oMf[model.getFrameId(name)].homogeneous
@@ -48,14 +49,9 @@ def test_the_environment_variable_chooses_the_backend(robot, monkeypatch):
         make_kinematics(robot)
 
 
-URDF = asset_path("robots", "iiwa7", "iiwa7.urdf")
-
-
-def test_the_tool_is_where_the_simulators_kinematics_place_it():
-    robot = load_robot()
+def test_the_tool_is_where_the_simulators_kinematics_place_it(robot, postures):
     kinematics = make_kinematics(robot, "numpy")
-    postures = np.random.default_rng(5).uniform(*robot.limits, (200, 7))
-    for q, pose in zip(postures, toolPoses(URDF, postures), strict=True):
+    for q, pose in zip(postures[:50], toolPoses(URDF, postures[:50]), strict=True):
         expected = kinematics.tip(q)
         np.testing.assert_allclose(pose[:3, :3], expected[:3, :3], atol=1e-9)
         np.testing.assert_allclose(pose[:3, 3], MM_PER_M * expected[:3, 3], atol=1e-6)

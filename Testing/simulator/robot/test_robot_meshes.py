@@ -42,12 +42,12 @@ def outstretched(visuals, link: str) -> trimesh.Trimesh:
     return whole(visuals[link]).apply_translation(LINK_ORIGINS_M[link])
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}/{path.stem}")
-def test_every_mesh_is_a_closed_solid(path: Path):
-    mesh = trimesh.load_mesh(path)
-    assert mesh.is_watertight
-    assert mesh.is_winding_consistent
-    assert mesh.volume > 0
+def test_every_mesh_is_a_closed_solid():
+    for path in FILES:
+        mesh = trimesh.load_mesh(path)
+        assert mesh.is_watertight, path
+        assert mesh.is_winding_consistent, path
+        assert mesh.volume > 0, path
 
 
 @pytest.mark.soak
@@ -107,8 +107,9 @@ def test_masses_are_the_published_ones_and_inertias_are_physically_possible():
         assert largest < smallest + middle
 
 
-@pytest.mark.parametrize("layout", ["", "visual", "collision"])
-@pytest.mark.parametrize("frame", ["link", "base"])
+@pytest.mark.parametrize(
+    ("layout", "frame"), [("", "link"), ("visual", "base"), ("collision", "link")]
+)
 def test_a_mesh_folder_may_hold_its_meshes_in_either_frame(tmp_path, visuals, layout, frame):
     folder = tmp_path / layout
     folder.mkdir(exist_ok=True)
@@ -130,11 +131,10 @@ def test_a_mesh_folder_may_hold_its_meshes_in_either_frame(tmp_path, visuals, la
     [
         b"",
         b"solid nothing\nendsolid nothing\n",
-        bytes(84),
         bytes(80) + b"\xff\xff\xff\xff",
         b"not a mesh at all",
     ],
-    ids=["empty", "no facets", "zero triangles", "false count", "text"],
+    ids=["empty", "no facets", "false count", "text"],
 )
 def test_a_file_without_a_surface_is_refused_in_one_sentence(tmp_path, data):
     (tmp_path / "link_2.stl").write_bytes(data)

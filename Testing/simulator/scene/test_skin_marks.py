@@ -3,14 +3,9 @@ import pytest
 from scipy.spatial import cKDTree
 
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, read_head_mesh
-from rastrainer_simulator.authoring.task_set import smooth_places
+from rastrainer_simulator.authoring.task_proposal import smooth_places
 from rastrainer_simulator.scene.nodes import ARROW
-from rastrainer_simulator.scene.skin_marks import (
-    LIFTS,
-    NUMBER_HEIGHT,
-    RIM_RADIUS,
-    skin_marks,
-)
+from rastrainer_simulator.scene.skin_marks import LIFTS, NUMBER_HEIGHT, RIM_RADIUS, skin_marks
 from Testing.domain.head.spheres import RADIUS_MM, sphere_mesh
 
 FRONT = RADIUS_MM * np.array([[0.0, 1.0, 0.0], [0.5, 0.75**0.5, 0.0], [-0.5, 0.75**0.5, 0.0]])

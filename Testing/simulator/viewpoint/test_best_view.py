@@ -25,9 +25,9 @@ TASKS = ("trial-run", *(f"task-{number}" for number in range(1, 6)))
 
 
 HEADS = (
-    *(("colin27", task) for task in TASKS[::5]),
+    ("colin27", TASKS[5]),
     ("egg", TASKS[0]),
-    *(pytest.param("colin27", task, marks=pytest.mark.soak) for task in TASKS[1:5]),
+    *(pytest.param("colin27", task, marks=pytest.mark.soak) for task in TASKS[:5]),
     *(pytest.param("egg", task, marks=pytest.mark.soak) for task in TASKS[1:]),
     *(pytest.param("small", task, marks=pytest.mark.soak) for task in TASKS),
 )
@@ -120,7 +120,6 @@ def test_the_check_of_a_scenario_names_what_no_view_shows(setup, monkeypatch):
     planning = PlanningSetup(scenario, read_head_mesh(scenario.head), setup)
     task = scenario.task("task-1")
     monkeypatch.setattr("rastrainer_simulator.authoring.scenario_check.POSES_TRIED", 0)
-    assert check_tasks(planning, [task]) == []
     monkeypatch.setattr("rastrainer_simulator.viewpoint.best_view.WIDEST_DEG", 0.0)
     (sentence,) = check_tasks(planning, [task])
     assert sentence.startswith("Task 1: fiducials 1, 2, 3,")

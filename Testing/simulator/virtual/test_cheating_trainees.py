@@ -8,12 +8,7 @@ import pytest
 from rastrainer.protocol import TouchRule
 from rastrainer.trial.scoring import PASS_MARK, passes
 from Testing.error_rates.played import score_of
-from Testing.simulator.virtual.cheating_trainees import (
-    BIAS_MM,
-    CHEATS,
-    along_skin,
-    play_honestly,
-)
+from Testing.simulator.virtual.cheating_trainees import BIAS_MM, CHEATS, along_skin, play_honestly
 
 TASKS = ("task-1", "task-5")
 SEED = 3

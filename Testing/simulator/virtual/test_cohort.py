@@ -13,6 +13,7 @@ from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.report.report import report_html
 from rastrainer_simulator.virtual.cohort import DATABASE, run_jobs, simulate_cohort
 from rastrainer_simulator.virtual.play import PlaySettings
+from Testing.simulator.report.without_charts import without_charts
 from Testing.simulator.virtual.conftest import AIM_FACTOR, BRISK
 from Testing.simulator.virtual.small_jobs import squared
 
@@ -32,7 +33,8 @@ def test_the_cohort_is_stored_like_a_real_study_and_reported(data):
     for name in ("score", "expected_tre_mm", "true_tre_mm", "sparc", "path_efficiency"):
         assert np.isfinite(values[name])
     assert 0.2 < values["path_efficiency"] < 1.0
-    page = report_html(data)
+    with without_charts():
+        page = report_html(data)
     assert "2 trainees did 4 trials" in page
     assert "without a trial run" in page
     assert "(virtual trainees)" in page
@@ -104,14 +106,8 @@ def test_the_command_reports_power_without_playing(capsys):
         (["--trainees", "1"], "--trainees: must be a whole number from 2 to 100000"),
         ([], "with -o"),
         (["-o", "x", "--aim", "50"], "--aim: must be a number from 0.0 to 3.0"),
-        (["-o", "x", "--step", "5"], "--step: must be a number from 0.002 to 0.1"),
-        (["-o", "x", "--workers", "0"], "--workers: must be a whole number from 1 to 1024"),
-        (["-o", "x", "--hmd-aim", "0"], "factors from 0.1 to 10"),
-        (["-o", "x", "--lapses", "2"], "lapses must be from 0 to 1"),
         (["-o", "x", "--hmd-bias", "0", "0", "9"], "at most 5 mm"),
-        (["--power", "20", "--trade-off", "9"], "from 0 to 2"),
         (["--power", "20", "--hmd-aim", "0"], "factors from 0.1 to 10"),
-        (["--power", "3"], "--power: must be a whole number from 10 to 100000"),
         (["-o", "x", "--protocol", "missing.json"], "missing.json"),
     ],
 )

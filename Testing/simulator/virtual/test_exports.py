@@ -21,10 +21,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
 from rastrainer_headless.scene import HeadlessScene
 from rastrainer_simulator.cli.main import main
-from rastrainer_simulator.export.trial_files import (
-    participant_labels,
-    write_motion_bids,
-)
+from rastrainer_simulator.export.trial_files import participant_labels, write_motion_bids
 from rastrainer_simulator.virtual.cohort import DATABASE, RECORDS
 
 VALIDATOR = Path(sys.executable).with_name("bids-validator-deno")

@@ -42,7 +42,7 @@ def next_point_pixels(picture):
 
 def test_a_film_shows_the_trial_at_the_chosen_speed(monkeypatch, tmp_path, journal, capsys):
     monkeypatch.setattr(film, "SIZE", (320, 180))
-    monkeypatch.setattr(film, "RATE_HZ", 10)
+    monkeypatch.setattr(film, "RATE_HZ", 4)
     target = tmp_path / "trial.webm"
     assert main(["replay", str(journal), "--film", str(target), "--speed", str(SPEED)]) == 0
     assert [path.name for path in tmp_path.iterdir()] == ["trial.webm"]

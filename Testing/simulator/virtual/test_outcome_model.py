@@ -7,10 +7,7 @@ from rastrainer.errors import InputError
 from rastrainer.study.outcomes import MAIN_OUTCOMES
 from rastrainer_simulator.report.comparisons import compare_modes
 from rastrainer_simulator.virtual.hand import Skill
-from rastrainer_simulator.virtual.outcome_model import (
-    OutcomeModel,
-    rejection_rates,
-)
+from rastrainer_simulator.virtual.outcome_model import OutcomeModel, rejection_rates
 from rastrainer_simulator.virtual.population import ModeEffect, Population
 from Testing.drawn_study import draw_study
 
@@ -120,8 +117,6 @@ def test_lapses_occur_in_their_share_of_trials():
     ("changes", "sentence"),
     [
         ({"learning": -1.0}, "learning exponents and lapses must be from 0 to 1"),
-        ({"lapses": 1.5}, "lapses must be from 0 to 1"),
-        ({"interaction": -0.1}, "Spreads"),
         ({"trade_off": 3.0}, "speed and accuracy must be from 0 to 2"),
         ({"modes": {"hmd": ModeEffect(aim=0.0)}}, "factors from 0.1 to 10"),
         ({"modes": {"hmd": ModeEffect(bias_mm=(9.0, 0.0, 0.0))}}, "at most 5 mm"),

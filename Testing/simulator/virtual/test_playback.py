@@ -1,6 +1,5 @@
 """A recorded trial replayed in the simulator's views: as recorded, played and sought."""
 
-import os
 import signal
 import subprocess
 import sys
@@ -248,11 +247,10 @@ def test_canceled_loading_ends(journal, setup, monkeypatch):
         loading.loaded.result(60)
 
 
-def test_the_program_serves_the_replay_to_views_until_escape(journal, tmp_path, loop_thread):
+def test_the_program_serves_the_replay_to_views_until_escape(journal, loop_thread):
     command = ["replay", str(journal), "--no-window", "--view-port", "0"]
     process = subprocess.Popen(
         [sys.executable, "-m", "rastrainer_simulator.cli.main", *command],
-        env={**os.environ, "XDG_CACHE_HOME": str(tmp_path)},
         stdout=subprocess.PIPE,
         text=True,
     )

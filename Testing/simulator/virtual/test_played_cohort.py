@@ -52,9 +52,3 @@ def test_a_misleading_view_moves_the_target_more_than_the_residuals():
     tre, rmse = (errors[1] - errors[0]).T
     assert (tre > rmse).all()
     assert tre.mean() > 0.7 > rmse.mean()
-
-
-def test_equal_jobs_give_equal_trials_whatever_was_played_before():
-    population = Population(BRISK, learning=0.0)
-    first, _, again = (played(population, "desktop", 1, seed) for seed in (3, 4, 3))
-    assert again.analysis.record == first.analysis.record

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import random
 import re
 import sqlite3
@@ -273,12 +272,11 @@ def test_a_mark_that_cannot_be_stored_is_reported_and_can_be_given_again(rater, 
 class RatingProcess:
     """`rastrainer rate` as a process, and a page that joins it."""
 
-    def __init__(self, folder, loop_thread, cache):
+    def __init__(self, folder, loop_thread):
         words = ["rate", str(folder / STUDY_FILE), "--records", str(folder / RECORDS)]
         words += ["--rater", "R1", "--replays", "2", "--no-window", "--view-port", "0"]
         self._process = subprocess.Popen(
             [sys.executable, "-m", "rastrainer_simulator.cli.main", *words],
-            env={**os.environ, "XDG_CACHE_HOME": str(cache)},
             stdout=subprocess.PIPE,
             text=True,
         )
@@ -322,7 +320,7 @@ def test_the_program_accepts_marks_and_resumes_where_it_was(copied, loop_thread,
     trials = trials_to_show(study, copied / RECORDS)
     (first, *_) = store.assign("R1", trials, 2, random.Random("R1"))
     store.give(str(uuid.uuid4()), "R1", first, GEARS, "gears_depth", 4)
-    rating = RatingProcess(copied, loop_thread, tmp_path)
+    rating = RatingProcess(copied, loop_thread)
     assert rating.lines[0] == "RASTrainer rating has 2 replays for R1, 0 rated\n"
     rating.until(lambda screen: "Replay 1 of 2" in screen["instruction"]["text"])
     rating.press("Escape")

@@ -18,10 +18,7 @@ from rastrainer_simulator.report.procedures import procedures
 from rastrainer_simulator.virtual.cohort import simulate_cohort
 from rastrainer_simulator.virtual.hand import Skill
 from rastrainer_simulator.virtual.play import PlaySettings
-from rastrainer_simulator.virtual.virtual_procedure import (
-    ProcedureHands,
-    VirtualProcedure,
-)
+from rastrainer_simulator.virtual.virtual_procedure import ProcedureHands, VirtualProcedure
 
 SCENARIO = load_scenario(asset_path("scenarios", "colin27"))
 SEEG = SCENARIO.procedure("seeg")

@@ -39,7 +39,7 @@ FLAT_MM = 1e-3
 _FACE = np.dtype([("count", "u1"), ("corners", "<i4", (3,))])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class HeadMesh:
     """Triangles that share vertices.
 

@@ -10,6 +10,7 @@ import uuid
 from dataclasses import dataclass, replace
 from enum import Enum
 
+from rastrainer import transforms
 from rastrainer.commands import CommandName
 from rastrainer.head.trial_head import Perturbation
 from rastrainer.journal.entries import GUIDED_TOUCHES
@@ -196,8 +197,7 @@ class TouchPractice:
         self._rest = rest
         self._settings = replace(setup.settings.training, acceptance_radius=CENTERED_M)
         self._of_trials = setup.settings.training
-        pose = state.head_to_world.copy()
-        pose[:3, 3] *= MM_PER_M
+        pose = transforms.in_millimeters(state.head_to_world)
         tasks = setup.scenario.tasks
         whole = next((each for each in tasks if each.name == task), tasks[0])
         short = replace(whole, labels=whole.labels[points], fiducials=whole.fiducials[points])
