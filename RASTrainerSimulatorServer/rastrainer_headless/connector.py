@@ -15,7 +15,7 @@ import threading
 import time
 import weakref
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, BinaryIO
 
 import slicer
@@ -23,15 +23,7 @@ import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.igtl.content import ERROR_KEY, STATUS_KEY, SUCCESS, Command, CommandReply, Status
-from rastrainer.igtl.message import (
-    HEADER_BYTES,
-    Header,
-    Message,
-    crc64,
-    pack,
-    read_header,
-    unpack,
-)
+from rastrainer.igtl.message import HEADER_BYTES, Header, Message, crc64, pack, read_header, unpack
 from rastrainer.slicer.link.link import ConnectorKit
 from rastrainer.slicer.scene.nodes import ORIGINAL_NAME, decodedText
 from rastrainer_headless.scene import NODE_CLASS, adoptOrCreateNode, asSlicerHas, updateNode
@@ -61,6 +53,11 @@ def recordCrash(sentence: str) -> CrashError:
     return CrashError(sentence)
 
 
+def _stored(name: str) -> tuple[Callable[[Any, Any], None], Callable[[Any], Any]]:
+    """Return the setter and the getter of a value, as VTK's classes have them."""
+    return (lambda self, value: setattr(self, name, value)), (lambda self: getattr(self, name))
+
+
 class HeadlessCommand(vtk.vtkObject):
     """The part of `vtkSlicerOpenIGTLinkCommand` that we use: a sent command, and its answer.
 
@@ -71,50 +68,27 @@ class HeadlessCommand(vtk.vtkObject):
     CommandUnknown, CommandWaiting, CommandExpired, CommandCancelled = range(4)
     CommandFailed, CommandResponseReceived, CommandResponseSent = range(4, 7)
 
-    CommandResponseEvent = 128000
-    CommandExpiredEvent = 128001
-    CommandReceivedEvent = 128002
     CommandCompletedEvent = 128004
 
     def __init__(self) -> None:
         self.commandId = -1
-        self._name: WireText = ""
-        self._content: WireText = ""
-        self._response: WireText = ""
+        self._name = self._content = self._response = ""
         self._metadata: Mapping[str, WireText] = {}
-        self.timeoutSec = 5.0
+        self._timeoutS = 5.0
         self._status = self.CommandUnknown
 
-    def SetName(self, name: WireText) -> None:
-        self._name = name
-
-    def GetName(self) -> WireText:
-        return self._name
-
-    def SetCommandContent(self, content: WireText) -> None:
-        self._content = content
-
-    def GetCommandContent(self) -> WireText:
-        return self._content
-
-    def SetTimeoutSec(self, seconds: float) -> None:
-        self.timeoutSec = seconds
-
-    def GetCommandStatus(self) -> int:
-        return self._status
-
-    def SetCommandStatus(self, status: int) -> None:
-        self._status = status
+    SetName, GetName = _stored("_name")
+    SetCommandContent, GetCommandContent = _stored("_content")
+    SetTimeoutSec, GetTimeoutSec = _stored("_timeoutS")
+    SetCommandStatus, GetCommandStatus = _stored("_status")
+    _setResponse, GetResponseContent = _stored("_response")
 
     def IsInProgress(self) -> bool:
         return self._status == self.CommandWaiting
 
     def setResponse(self, content: WireText, metadata: Mapping[str, WireText]) -> None:
-        self._response, self._metadata = content, metadata
-        self._status = self.CommandResponseReceived
-
-    def GetResponseContent(self) -> WireText:
-        return self._response
+        self._setResponse(content)
+        self._metadata, self._status = metadata, self.CommandResponseReceived
 
     def GetSuccessful(self) -> bool:
         """Return whether the answer says SUCCESS in its metadata; its content does not matter."""
@@ -134,8 +108,6 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
     ConnectedEvent = 118944
     DisconnectedEvent = 118945
     CommandReceivedEvent = 119001
-    CommandResponseReceivedEvent = 119002
-    CommandCompletedEvent = 119003
 
     def __init__(self) -> None:
         self.SetSaveWithScene(False)
@@ -202,16 +174,13 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         self._nextCommandId += 1
         if self._state != self.StateConnected:
             return
-        content = Command(
-            command.commandId,
-            decodedText(command.GetName()),
-            decodedText(command.GetCommandContent()),
-        )
+        texts = decodedText(command.GetName()), decodedText(command.GetCommandContent())
+        content = Command(command.commandId, *texts)
         if not self._send(pack(Message("command", content, timestamp=0.0))):
             command.SetCommandStatus(command.CommandFailed)
             return
         command.SetCommandStatus(command.CommandWaiting)
-        deadline = time.monotonic() + command.timeoutSec
+        deadline = time.monotonic() + command.GetTimeoutSec()
         self._outgoing[command.commandId] = deadline, weakref.ref(command)
 
     def PeriodicProcess(self) -> None:
@@ -229,8 +198,8 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
             self._processCommand(header, body)
         self._giveUpOldCommands()
         modifications: list[tuple[Any, int]] = []
-        for _key, raw in sorted(latest.items(), key=lambda item: item[0]):
-            self._processData(*raw, modifications)
+        for key in sorted(latest):
+            self._processData(*latest[key], modifications)
         for event in events:
             if event == self.ConnectedEvent:
                 # The odd STATUS that Slicer opens each connection with: no name, metadata `dummy`.
@@ -296,14 +265,10 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
             command = self._sentCommand(content.command_id)
             metadata = {key: asSlicerHas(text) for key, text in message.metadata.items()}
             command.setResponse(asSlicerHas(content.body), metadata)
-            self.InvokeEvent(self.CommandResponseReceivedEvent, command)
-            command.InvokeEvent(command.CommandResponseEvent)
         elif isinstance(content, Command):
             command = HeadlessCommand()
-            command.commandId = content.command_id
             command.SetName(asSlicerHas(content.name))
             command.SetCommandContent(asSlicerHas(content.body))
-            command.SetCommandStatus(command.CommandWaiting)
             self.InvokeEvent(self.CommandReceivedEvent, command)
 
     def _sentCommand(self, commandId: int) -> HeadlessCommand:
@@ -322,11 +287,9 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
                 command = self._sentCommand(commandId)
                 if command.IsInProgress():
                     command.SetCommandStatus(command.CommandExpired)
-                    command.InvokeEvent(command.CommandExpiredEvent)
             ended = reference()
             if ended is not None and not ended.IsInProgress():
                 del self._outgoing[commandId]
-                self.InvokeEvent(self.CommandCompletedEvent, ended)
                 ended.InvokeEvent(ended.CommandCompletedEvent)
 
     def _processData(

@@ -242,9 +242,7 @@ def _decompressed(image: Any) -> np.ndarray:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "image.dcm"
         bare.save_as(path, enforce_file_format=True)
-        reader = slicer.vtkITKArchetypeImageSeriesScalarReader()
-        reader.SetArchetype(str(path))
-        reader.SetSingleFile(1)
+        reader = slicer.vtkITKArchetypeImageSeriesScalarReader(archetype=str(path), single_file=1)
         reader.SetOutputScalarTypeToNative()
         reader.SetDesiredCoordinateOrientationToNative()
         reader.Update()

@@ -5,7 +5,6 @@
 Every line on standard output is one JSON object with the key `event`:
 
     status  state, sentence, remedy              the link, whenever it changes
-    point   label, count, positionMm             a touch has appeared in the scene
     trial   results                              a trial is registered, scored and kept; the same
                                                  object is a line of results.jsonl
     problem sentence                             something is wrong with a trial or the images
@@ -23,10 +22,9 @@ import sys
 import time
 from collections.abc import Sequence
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import Any
-
-import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
@@ -34,15 +32,17 @@ from rastrainer.json_records import record_to_json
 from rastrainer.protocol import DEFAULT_PORT
 from rastrainer.registration.fits import RIGID
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.sections.module_session import ModuleSession
+from rastrainer.sections.module_session import ModulePaths, ModuleSession
+from rastrainer.slicer.program.child_process import runHere
+from rastrainer.slicer.program.simulator_package import SimulatorPackage
 from rastrainer.slicer.scene.error_colors import magnification
-from rastrainer.slicer.scene.nodes import labelsOf
 from rastrainer.slicer.scene.scenario_nodes import showScenario
+from rastrainer.study.database.database import PostgresAddress
 from rastrainer.study.database.study import STUDY_FILE
 from rastrainer.trial.analysis import TrialAnalysis
 from rastrainer.trial.ctps import CTPS_WARNING
 from rastrainer.work_progress import allow_any_text
-from rastrainer_headless.headless_session import openSession, process
+from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.scene import HeadlessScene
 
 PERIOD_S = 0.01
@@ -52,6 +52,30 @@ PICTURE = "residuals.png"
 RESULTS = "results.jsonl"
 
 
+def openSession(
+    scene: HeadlessScene, folder: Path, assets: Path, studyAddress: PostgresAddress | None = None
+) -> ModuleSession:
+    """Return the session of Slicer's module, on stand-ins for its scene and connector."""
+    places = ModulePaths(
+        assets=assets,
+        python=Path(sys.executable),
+        simulator=folder / "simulator",
+        study=folder / STUDY_FILE,
+        records=folder / "records",
+        library=folder / "scenarios",
+        package=SimulatorPackage(folder),
+        studyAddress=studyAddress,
+    )
+    return ModuleSession(scene.scene, places, headlessKit, run=runHere)
+
+
+def process(session: ModuleSession) -> None:
+    """Do what Slicer's timers do; to be called every few milliseconds."""
+    if session.link.connector is not None:
+        session.link.connector.PeriodicProcess()
+    session.process()
+
+
 class TrialPrinter:
     """Prints what happens in a session, and writes a line on each scored trial."""
 
@@ -59,21 +83,11 @@ class TrialPrinter:
         self.latest: TrialAnalysis | None = None
         self.scored = 0
         self._results = results
-        self._touches = 0
         session.link.statusChanged.connect(lambda status: printEvent("status", **asdict(status)))
-        session.link.pointsChanged.connect(self._printPoints)
         session.trials.trialScored.connect(self._printTrial)
         trials, files, procedure = session.trials, session.files, session.procedure
         for problems in (trials.problemFound, files.problemFound, procedure.answered):
             problems.connect(lambda sentence: printEvent("problem", sentence=sentence))
-
-    def _printPoints(self, node: Any) -> None:
-        labels, positions = labelsOf(node), slicer.util.arrayFromMarkupsControlPoints(node)
-        for row in range(self._touches, len(labels)):
-            printEvent(
-                "point", label=labels[row], count=row + 1, positionMm=positions[row].tolist()
-            )
-        self._touches = len(labels)
 
     def _printTrial(self, analysis: TrialAnalysis) -> None:
         results = results_json(analysis)
@@ -89,16 +103,11 @@ def printEvent(event: str, **values: Any) -> None:
 
 
 def results_json(analysis: TrialAnalysis) -> dict[str, Any]:
-    results: dict[str, Any] = {
-        "record": record_to_json(analysis.record, with_defaults=True),
-        "fits": {},
-        "targetName": analysis.target_name,
-        "feedback": list(analysis.feedback.sentences),
-        **dict.fromkeys(("truth", "score", "procedure", "ctps")),
-    }
+    whole = partial(record_to_json, with_defaults=True)
+    fits = {}
     for kind, fit in analysis.fits.items():
         error = analysis.target_errors[kind]
-        results["fits"][kind] = {
+        fits[kind] = {
             "freMm": fit.fre_mm,
             "matrix": fit.matrix.ravel().tolist(),
             "residualsMm": fit.residuals_mm.tolist(),
@@ -107,19 +116,21 @@ def results_json(analysis: TrialAnalysis) -> dict[str, Any]:
             "treIntervalMm": list(error.interval_mm),
             "warnings": [record_to_json(warning) for warning in fit.warnings],
         }
-    if analysis.truth is not None:
-        results["truth"] = record_to_json(analysis.truth)
-    if analysis.score is not None:
-        results["score"] = record_to_json(analysis.score, with_defaults=True)
-    if analysis.procedure is not None:
-        results["procedure"] = {
-            "score": record_to_json(analysis.procedure.score, with_defaults=True),
-            "trajectories": record_to_json(analysis.procedure.analysis)["trajectories"],
-        }
-    if analysis.published_score is not None:
-        ctps = record_to_json(analysis.published_score)
-        results["ctps"] = {**ctps, "warning": CTPS_WARNING}
-    return results
+    procedure, published = analysis.procedure, analysis.published_score
+    return {
+        "record": whole(analysis.record),
+        "fits": fits,
+        "targetName": analysis.target_name,
+        "feedback": list(analysis.feedback.sentences),
+        "truth": analysis.truth and record_to_json(analysis.truth),
+        "score": analysis.score and whole(analysis.score),
+        "procedure": procedure
+        and {
+            "score": whole(procedure.score),
+            "trajectories": record_to_json(procedure.analysis)["trajectories"],
+        },
+        "ctps": published and {**record_to_json(published), "warning": CTPS_WARNING},
+    }
 
 
 def writeOutput(
@@ -146,8 +157,7 @@ def writeOutput(
     # Only here: matplotlib takes time to import.
     from rastrainer_headless.residual_picture import writeResidualPicture
 
-    head = read_head_mesh(scenario.head)
-    writeResidualPicture(files["picture"], head, rigid, title, caption)
+    writeResidualPicture(files["picture"], read_head_mesh(scenario.head), rigid, title, caption)
     return {name: str(path) for name, path in files.items()}
 
 

@@ -15,14 +15,8 @@ import vtk
 from scipy.spatial.transform import Rotation
 
 from rastrainer.errors import InputError
+from rastrainer.slicer.head import volume_header
 from rastrainer.slicer.head.volume import Volume, asFloat, imageOfNode
-from rastrainer.slicer.head.volume_header import (
-    beginOf,
-    isAnalyze,
-    missingOrientation,
-    niftiHeader,
-    nrrdFields,
-)
 from rastrainer_headless.dicom_series import isDicom, readDicom
 
 _MGH = b"\0\0\0\1"
@@ -42,11 +36,11 @@ def readVolume(path: Path, orientation: str | None = None) -> Volume:
         return readDicom(path)
     if not path.is_file():
         raise InputError(f"{path} does not exist; give a volume such as a .nii.gz or .nrrd file.")
-    nifti = niftiHeader(path)
+    nifti = volume_header.niftiHeader(path)
     _checkHeader(path, nifti)
     if _isCutShort(path, nifti):
         raise InputError(f"{path} is cut short; copy the file again.")
-    missing = missingOrientation(path)
+    missing = volume_header.missingOrientation(path)
     if missing and orientation is None:
         raise InputError(
             f"{path} does not state the patient's orientation ({missing}): left and right, front "
@@ -55,8 +49,7 @@ def readVolume(path: Path, orientation: str | None = None) -> Volume:
         )
     scene = slicer.vtkMRMLScene()
     node = scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode")
-    storage = slicer.vtkMRMLVolumeArchetypeStorageNode()
-    storage.SetFileName(str(path))
+    storage = slicer.vtkMRMLVolumeArchetypeStorageNode(file_name=str(path))
     if not storage.ReadData(node) or node.GetImageData() is None:
         raise InputError(f"{path} could not be read as a volume such as NIfTI or NRRD.")
     volume = asFloat(imageOfNode(node))
@@ -81,13 +74,13 @@ def _oriented(volume: Volume, orientation: str) -> Volume:
 
 
 def _checkHeader(path: Path, nifti: vtk.vtkNIFTIImageHeader | None) -> None:
-    begin = beginOf(path)
+    begin = volume_header.beginOf(path)
     if path.suffix.lower() in (".mgz", ".mgh") or (nifti is None and begin.startswith(_MGH)):
         raise _unusable(path, "is in FreeSurfer's format", "mri_convert makes NIfTI of it")
     if nifti is not None and nifti.GetMagic()[1:3] in ("+2", "i2"):
         raise _unusable(path, "is NIfTI-2", "save it as NIfTI-1 or NRRD")
     if nifti is None and begin.startswith(b"NRRD"):
-        fields = nrrdFields(begin)
+        fields = volume_header.nrrdFields(begin)
         sizes = [int(size) for size in fields.get("sizes", "").split() if size.isdecimal()]
         kinds = fields.get("kinds", "").lower()
         if len(sizes) == 4 and any(kind in kinds for kind in ("color", "vector", "complex")):
@@ -104,7 +97,7 @@ def _checkNifti(path: Path, nifti: vtk.vtkNIFTIImageHeader) -> None:
         raise _unusable(path, "has colors (RGB)", "use the image with one gray value a voxel")
     if nifti.GetDataType() in _COMPLEX:
         raise _unusable(path, "has complex numbers", "use the magnitude")
-    if isAnalyze(nifti):
+    if volume_header.isAnalyze(nifti):
         return
     repair = "write the orientation again from the original DICOM files"
     qformCode, sformCode = nifti.GetQFormCode(), nifti.GetSFormCode()
@@ -143,7 +136,8 @@ def _letters(axes: np.ndarray) -> str:
 def _isCutShort(path: Path, nifti: vtk.vtkNIFTIImageHeader | None) -> bool:
     """Return whether a `.gz` file, or a NIfTI-1 file of any kind, ends too early."""
     least = 0.0
-    if nifti is not None and not isAnalyze(nifti) and path.suffix not in (".hdr", ".img"):
+    isAlone = path.suffix not in (".hdr", ".img")
+    if nifti is not None and isAlone and not volume_header.isAnalyze(nifti):
         least = nifti.GetVoxOffset() + math.prod(_sizesOf(nifti)) * nifti.GetBitPix() / 8
     opened = gzip.open if path.suffix == ".gz" else open
     try:

@@ -52,12 +52,13 @@ UNITS = {
     "views": "views",
 }
 IMPORTS = """
-import sys, time
+import sys, tempfile, time
+from pathlib import Path
 import Testing.slicer.host.host
 for name in [name for name in sys.modules if name.split(".")[0] == "rastrainer"]:
     del sys.modules[name]
 from Testing.slicer.host.installation import Installation
-Installation().add_modules()
+Installation(Path(tempfile.mkdtemp())).add_modules()
 from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.slicer.turns import importInTurns
 ours = lambda: sum(name.split(".")[0] == "rastrainer" for name in sys.modules)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer.study.database.database import PostgresAddress, study_place
-from rastrainer_headless.headless_session import openSession, process
+from rastrainer_headless.main import openSession, process
 from rastrainer_headless.scene import HeadlessScene
 from rastrainer_simulator.assets import asset_path
 

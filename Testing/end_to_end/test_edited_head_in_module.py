@@ -20,7 +20,7 @@ from rastrainer.slicer.scene.nodes import Role, setPoints
 from Testing.end_to_end.module.story import Story, unfold
 from Testing.running_process import runs
 from Testing.slicer.head.phantoms import phantom
-from Testing.slicer.head.placed import add_volume, fiducials, vtk_matrix
+from Testing.slicer.head.placed import add_volume, fiducials
 from Testing.slicer.host.cancels import cancels
 from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
 
@@ -57,7 +57,7 @@ def paint_wen(node):
     ball = (np.linalg.norm(ras - WEN, axis=1) < WEN_RADIUS).reshape(scan.values.shape)
     image = slicer.vtkOrientedImageData()
     image.SetDimensions(ball.shape)
-    image.SetImageToWorldMatrix(vtk_matrix(scan.ijkToRas))
+    image.SetImageToWorldMatrix(slicer.util.vtkMatrixFromArray(scan.ijkToRas))
     values = np.ascontiguousarray(ball.transpose(2, 1, 0), np.uint8).ravel()
     image.GetPointData().SetScalars(numpy_to_vtk(values, array_type=vtk.VTK_UNSIGNED_CHAR, deep=1))
     logic = slicer.vtkSlicerSegmentationsModuleLogic

@@ -14,7 +14,7 @@ from rastrainer.commands import CommandName
 from rastrainer.protocol import DEFAULT_HOST, Phase
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.nodes import NodeKind, Role, nodesOfClass
-from rastrainer_headless.headless_session import openSession, process
+from rastrainer_headless.main import openSession, process
 from rastrainer_headless.scene import HeadlessScene
 from rastrainer_simulator.assets import asset_path
 from Testing.end_to_end.simulator_process import SimulatorProcess

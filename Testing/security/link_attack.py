@@ -28,12 +28,8 @@ class LinkAttack:
     A message that claims to be long swallows those after it: then the attack continues with another
     connection, so that the server has to do with nearly all of them.
 
-    Attributes:
-        sent: messages that were handed to open connections.
-        mutated: of these, such as are not valid.
-        decoded: messages that a reader like the server's takes from the same bytes.
-        refused: how often it refuses something of them, by the kind of trouble.
-        connections: that were made.
+    Of the `sent` messages, so many were `mutated`. A reader like the server's takes `decoded`
+    messages from the same bytes, and has `refused` the rest, by the kind of trouble.
     """
 
     def __init__(self, port: int, count: int, seed: int, clients: int = 4, policed: int = 1):
@@ -45,7 +41,7 @@ class LinkAttack:
         self._check_every = policed
         self.sent = self.mutated = self.decoded = self.connections = 0
         self.refused: Counter[StreamError] = Counter()
-        self.seen: dict[bytes, int] = {}
+        self.seen: Counter[bytes] = Counter()
 
     def run(self) -> None:
         """Attack, and return when the server has read or refused everything."""
@@ -70,7 +66,10 @@ class LinkAttack:
                 writer.close()
                 with contextlib.suppress(ConnectionError):
                     await writer.wait_closed()
-            self._count_in(messages)
+            self.sent += messages.sent
+            self.mutated += messages.mutations.mutated
+            self.decoded += messages.decoded
+            self.refused += messages.reader.errors
             if self.connections % CONNECTIONS_PER_COLLECTION == 0:
                 # Nothing is collected by itself within a test, and streams are circles.
                 gc.collect(1)
@@ -79,7 +78,7 @@ class LinkAttack:
         self, messages: _Messages, reading: asyncio.Task, writer: asyncio.StreamWriter
     ) -> None:
         with contextlib.suppress(OSError):  # The other side has ended it.
-            writer.write(messages.first())
+            writer.write(messages.fed(messages.mutations.first()))
             for number in range(MESSAGES_A_CONNECTION // PIECE):
                 if reading.done():
                     return
@@ -90,7 +89,7 @@ class LinkAttack:
                 if number % 8 == 0:
                     await asyncio.sleep(0)
             if next(self._seeds) % 4 == 0:
-                writer.write(messages.fatal())
+                writer.write(messages.fed(messages.mutations.fatal()))
             writer.write_eof()
 
     async def _read(self, reader: asyncio.StreamReader, is_policed: bool) -> None:
@@ -99,55 +98,34 @@ class LinkAttack:
             while piece := await reader.read(65_536):
                 if is_policed:
                     police.feed(piece)
-        for kind, times in police.seen.items():
-            self.seen[kind] = self.seen.get(kind, 0) + times
-
-    def _count_in(self, messages: _Messages) -> None:
-        self.sent += messages.sent
-        self.mutated += messages.mutated
-        self.decoded += messages.decoded
-        self.refused += messages.refused
+        self.seen += police.seen
 
 
 class _Messages:
     """What one connection sends, and what a reader like the server's takes from it."""
 
     def __init__(self, seed: int) -> None:
-        self._messages = MutatedMessages(seed)
-        self._reader = MessageReader(dict.fromkeys(CONTENTS, MESSAGE_BYTES))
+        self.mutations = MutatedMessages(seed)
+        self.reader = MessageReader(dict.fromkeys(CONTENTS, MESSAGE_BYTES))
         self._swallowed = 0
         self.sent = self.decoded = 0
-
-    @property
-    def mutated(self) -> int:
-        return self._messages.mutated
-
-    @property
-    def refused(self) -> Counter[StreamError]:
-        return self._reader.errors
 
     @property
     def are_swallowed(self) -> bool:
         """Whether the server would still wait for the rest of another message, or for nothing."""
         return self._swallowed >= SWALLOWED
 
-    def first(self) -> bytes:
-        return self._fed(self._messages.first())
-
     def next_piece(self) -> bytes:
         piece = bytearray()
         for _ in range(PIECE):
             self.sent += 1
-            piece += self._fed(self._messages.next())
+            piece += self.fed(self.mutations.next())
             if self.are_swallowed:
                 break
         return bytes(piece)
 
-    def fatal(self) -> bytes:
-        return self._fed(self._messages.fatal())
-
-    def _fed(self, data: bytes) -> bytes:
-        before = self._reader.taken
-        self.decoded += len(self._reader.feed(data))
-        self._swallowed = 0 if self._reader.taken > before else self._swallowed + 1
+    def fed(self, data: bytes) -> bytes:
+        before = self.reader.taken
+        self.decoded += len(self.reader.feed(data))
+        self._swallowed = 0 if self.reader.taken > before else self._swallowed + 1
         return data

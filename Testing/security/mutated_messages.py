@@ -91,11 +91,7 @@ def valid_messages() -> list[bytes]:
 
 
 class MutatedMessages:
-    """An endless stream of messages, valid and damaged; the same seed gives the same.
-
-    Attributes:
-        mutated: how many were given that are none of the valid ones.
-    """
+    """An endless stream of messages by a seed, of which `mutated` were none of the valid ones."""
 
     def __init__(self, seed: int) -> None:
         self.mutated = 0

@@ -17,7 +17,7 @@ from Testing.security.pose_leak import PoseFit, Readings
 
 SEED = 5
 SESSION_SEED = 3
-PLACES = 12
+PLACES = 6
 AS_BEFORE_MM = 1.0
 """If states carried the clearance, the fit would be far better than this."""
 

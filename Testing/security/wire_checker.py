@@ -4,6 +4,7 @@ The rules are measured: see "Sent to Slicer" in SECURITY.md.
 """
 
 import struct
+from collections import Counter
 
 SENT_TYPES = {b"TRANSFORM", b"STRING", b"POINT", b"STATUS", b"COMMAND", b"RTS_COMMAND"}
 """Slicer crashes on prefixed types such as GET_STATUS; of these it understands only RTS_COMMAND."""
@@ -18,24 +19,17 @@ class OffenseError(AssertionError):
 
 
 class WireChecker:
-    """Reads a stream of sent bytes, in any pieces, and raises at forbidden messages.
+    """Reads a stream of sent bytes, in any pieces, and raises `OffenseError` at forbidden messages.
 
-    Attributes:
-        seen: how many messages of each type have passed.
-        names: names of their devices.
+    `seen` says how many messages of each type have passed, `names` names their devices.
     """
 
     def __init__(self) -> None:
         self._buffer = b""
-        self.seen: dict[bytes, int] = {}
+        self.seen: Counter[bytes] = Counter()
         self.names: set[bytes] = set()
 
     def feed(self, data: bytes) -> None:
-        """Check further bytes.
-
-        Raises:
-            OffenseError: they hold a message that harms.
-        """
         self._buffer += data
         while len(self._buffer) >= HEADER.size:
             version, kind, device, _seconds, _fraction, size, checksum = HEADER.unpack_from(
@@ -48,7 +42,7 @@ class WireChecker:
             self._buffer = self._buffer[HEADER.size + size :]
             check_body(version, kind.rstrip(b"\0"), body, checksum)
             name = kind.rstrip(b"\0")
-            self.seen[name] = self.seen.get(name, 0) + 1
+            self.seen[name] += 1
             self.names.add(device.rstrip(b"\0"))
 
 

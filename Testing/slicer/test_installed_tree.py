@@ -5,6 +5,7 @@ import os
 import shutil
 import subprocess
 import sys
+import zipfile
 from importlib import import_module
 from pathlib import Path
 
@@ -89,6 +90,9 @@ def test_the_installed_tree_holds_assets_simulator_and_licenses(tree):
     package = SimulatorPackage.of(tree)
     assert package.checkout is None
     assert f"/{WHEEL} \\\n    --hash=sha256:{package.digest()}\n" in package.requirements()
+    with zipfile.ZipFile(package.folder / WHEEL) as wheel:
+        packed = wheel.read("rastrainer_simulator/assets/scenarios/colin27/volume.nrrd")
+    assert packed == (ROOT / "assets/scenarios/colin27/volume.nrrd").read_bytes()
 
 
 def test_as_part_of_a_larger_application_everything_lies_beside_the_module(repository, tmp_path):

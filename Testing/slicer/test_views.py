@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from slicer.util import vtkMatrixFromArray
 
 from rastrainer import transforms
 from rastrainer.protocol import DeviceName
@@ -15,7 +16,6 @@ from rastrainer.slicer.settings import (
     SLICES_SHOW_NEXT_POINT,
     Settings,
 )
-from Testing.slicer.head.placed import vtk_matrix
 
 TRANSFORM = "vtkMRMLLinearTransformNode"
 TIP = np.array([480.0, -60.0, 330.0])
@@ -50,7 +50,7 @@ def play(room, follower, point, task="task-1"):
 def put_tool(scene, tip):
     list(prepareNodes(scene))
     pose = poseKind(DeviceName.TOOL_TIP_TO_WORLD).find(scene)
-    pose.SetMatrixTransformToParent(vtk_matrix(transforms.rigid(np.eye(3), tip)))
+    pose.SetMatrixTransformToParent(vtkMatrixFromArray(transforms.rigid(np.eye(3), tip)))
 
 
 def stand(room, scenario):
@@ -187,7 +187,7 @@ def put_instrument(scene, tip, direction):
     across = np.cross(direction, [0.3, 0.9, 0.1])
     across /= np.linalg.norm(across)
     axes = np.column_stack([across, np.cross(direction, across), direction])
-    pose.SetMatrixTransformToParent(vtk_matrix(transforms.rigid(axes, tip)))
+    pose.SetMatrixTransformToParent(vtkMatrixFromArray(transforms.rigid(axes, tip)))
 
 
 def axes_of(scene, name):

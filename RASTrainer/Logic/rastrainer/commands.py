@@ -12,40 +12,16 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Annotated, Any, Literal, cast
 
+from rastrainer import json_checks, protocol
 from rastrainer.errors import InputError
-from rastrainer.json_checks import (
-    MAX_RECORD_VALUES,
-    decode_message_object,
-    number,
-    numbers,
-    one_of,
-    plain_object,
-    pseudonym,
-    text,
-    trial_id,
-    whole_number,
-)
+from rastrainer.json_checks import number, numbers, one_of, text, trial_id, whole_number
 from rastrainer.json_records import record_fields, record_from_json
-from rastrainer.protocol import (
-    COMMANDED_ABORTS,
-    FEED_LIMIT_MM_S,
-    FINISHED_PHASES,
-    MAX_JOURNAL_BYTES,
-    OPEN_PHASES,
-    PROCEDURE_PHASES,
-    PROTOCOL_VERSION,
-    SPEED_LIMIT_MM_S,
-    STAND_OFF_LIMIT_MM,
-    WORLD_LIMIT_MM,
-    AbortReason,
-    Mode,
-    Phase,
-    Rate,
-)
+from rastrainer.protocol import FINISHED_PHASES, OPEN_PHASES, PROCEDURE_PHASES, Mode, Phase
 from rastrainer.study_messages import AnyMode, CurriculumMessage, Skin, StudyStep
 
 _Numbers = tuple[float, ...]
-_Position = Annotated[_Numbers, numbers(3, WORLD_LIMIT_MM, "mm")]
+_place = numbers(3, protocol.WORLD_LIMIT_MM, "mm")
+_Position = Annotated[_Numbers, _place]
 _TrialId = Annotated[str, trial_id]
 _Name = Annotated[str, text(40, 0)]
 """Name of a procedure, a method or an assignment; empty for none."""
@@ -60,10 +36,10 @@ class NoArguments:
 class HelloArguments:
     """Introduces the client, and sets the rates of its poses."""
 
-    protocol_version: Annotated[int, whole_number(0, 1_000_000), f"now {PROTOCOL_VERSION}"]
+    protocol_version: Annotated[int, whole_number(0, 1_000_000), f"now {protocol.PROTOCOL_VERSION}"]
     client: str
-    tool_tip_hz: Annotated[float, number(0, 250, "Hz")] = Rate.TOOL_TIP_HZ
-    links_hz: Annotated[float, number(0, 250, "Hz")] = Rate.LINKS_HZ
+    tool_tip_hz: Annotated[float, number(0, 250, "Hz")] = protocol.Rate.TOOL_TIP_HZ
+    links_hz: Annotated[float, number(0, 250, "Hz")] = protocol.Rate.LINKS_HZ
     steady: bool = False
     scores: bool = True
 
@@ -86,7 +62,7 @@ class StartTutorialArguments:
     3D Slicer sends it before it starts a trial run.
     """
 
-    trainee: Annotated[str, pseudonym]
+    trainee: Annotated[str, json_checks.pseudonym]
     mode: AnyMode = Mode.DESKTOP.value
 
 
@@ -102,7 +78,7 @@ class StartTaskArguments:
     """Starts a trial."""
 
     task: str
-    trainee: Annotated[str, pseudonym]
+    trainee: Annotated[str, json_checks.pseudonym]
     mode: AnyMode = Mode.DESKTOP.value
     seed: Annotated[
         int | None,
@@ -124,7 +100,7 @@ class StartTaskArguments:
 class JogArguments:
     """Moves the tip for some time."""
 
-    velocity_mm_s: Annotated[_Numbers, numbers(3, SPEED_LIMIT_MM_S, "mm/s")]
+    velocity_mm_s: Annotated[_Numbers, numbers(3, protocol.SPEED_LIMIT_MM_S, "mm/s")]
     frame: Literal["world", "camera", "tool"] = "world"
     duration_s: Annotated[float, number(0, 2, "s")] = 0.1
 
@@ -135,7 +111,7 @@ class MoveTipToArguments:
 
     position_mm: _Position
     direction: Annotated[_Numbers | None, numbers(3, 1), "of the tool, from A7 to the tip"] = None
-    speed_mm_s: Annotated[float, number(0, SPEED_LIMIT_MM_S, "mm/s")] = 100.0
+    speed_mm_s: Annotated[float, number(0, protocol.SPEED_LIMIT_MM_S, "mm/s")] = 100.0
 
 
 @dataclass(frozen=True)
@@ -163,7 +139,7 @@ class SubmitRegistrationArguments(UseRegistrationArguments):
 class AlignGuideArguments:
     """Has the robot bring the guide onto the planned line."""
 
-    stand_off_mm: Annotated[float, number(0, STAND_OFF_LIMIT_MM, "mm")] = 30.0
+    stand_off_mm: Annotated[float, number(0, protocol.STAND_OFF_LIMIT_MM, "mm")] = 30.0
 
 
 @dataclass(frozen=True)
@@ -171,7 +147,7 @@ class FeedArguments:
     """Moves drill or instrument along the guide."""
 
     velocity_mm_s: Annotated[
-        float, number(-FEED_LIMIT_MM_S, FEED_LIMIT_MM_S, "mm/s"), "inward above 0"
+        float, number(-protocol.FEED_LIMIT_MM_S, protocol.FEED_LIMIT_MM_S, "mm/s"), "inward above 0"
     ]
     duration_s: Annotated[float, number(0, 2, "s")] = 0.1
 
@@ -180,9 +156,7 @@ class FeedArguments:
 class AbortArguments:
     """Ends the trial."""
 
-    reason: Annotated[str, one_of(*(reason.value for reason in COMMANDED_ABORTS))] = (
-        AbortReason.CLIENT.value
-    )
+    reason: Annotated[str, one_of(*protocol.COMMANDED_ABORTS)] = protocol.AbortReason.CLIENT.value
     trial_id: Annotated[str | None, trial_id, "refused if a different trial is open now"] = None
 
 
@@ -199,7 +173,7 @@ class TrialScoredArguments:
 
     trial_id: _TrialId
     score: Annotated[float, number(0, 100)]
-    details: Annotated[Mapping[str, Any], plain_object] = field(default_factory=dict)
+    details: Annotated[Mapping[str, Any], json_checks.plain_object] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -207,9 +181,7 @@ class PlanTargetArguments:
     """Shows a planned target or trajectory."""
 
     position_mm: _Position
-    entry_mm: Annotated[
-        _Numbers | None, numbers(3, WORLD_LIMIT_MM, "mm"), "the entry point of a trajectory"
-    ] = None
+    entry_mm: Annotated[_Numbers | None, _place, "the entry point of a trajectory"] = None
     name: str = "target"
 
 
@@ -232,7 +204,7 @@ class GetJournalArguments:
     """Reads a piece of the journal of a finished trial whose registration was submitted."""
 
     trial_id: _TrialId
-    start: Annotated[int, whole_number(0, MAX_JOURNAL_BYTES), "in bytes"] = 0
+    start: Annotated[int, whole_number(0, protocol.MAX_JOURNAL_BYTES), "in bytes"] = 0
 
 
 class CommandEntry(str):
@@ -515,12 +487,13 @@ def check_arguments(command: str, arguments: Mapping[str, Any]) -> dict[str, Any
 
 def decode_json_object(body: str) -> dict[str, Any]:
     """Return the JSON object in a command's body; an empty body is an empty object."""
-    return decode_message_object(body or "{}", "The command's body")
+    return json_checks.decode_message_object(body or "{}", "The command's body")
 
 
 def decode_answer_object(body: str) -> dict[str, Any]:
     """Return the JSON object in an answer of the simulator, such as a trial's record."""
-    return decode_message_object(body or "{}", "The simulator's message", MAX_RECORD_VALUES)
+    most = json_checks.MAX_RECORD_VALUES
+    return json_checks.decode_message_object(body or "{}", "The simulator's message", most)
 
 
 def deflection(value: float) -> float:

@@ -117,16 +117,29 @@ def is_number(value: object) -> TypeGuard[float]:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
-def text(max_length: int = 64, min_length: int = 1) -> Callable[[Any], str]:
-    """Accept printable text of `min_length` to `max_length` characters."""
+def check_of(
+    is_valid: Callable[[Any], bool], words: str, make: Callable[[Any], T] = lambda value: value
+) -> Callable[[Any], T]:
+    """Return a check of a decoded value; `words` follow "must be", `make` gives the kept value."""
 
-    def check(value: Any) -> str:
-        is_text = isinstance(value, str) and value.isprintable()
-        if not is_text or not min_length <= len(value) <= max_length:
-            raise ValueError(f"printable text of {min_length} to {max_length} characters")
-        return value
+    def check(value: Any) -> T:
+        if not is_valid(value):
+            raise ValueError(words)
+        return make(value)
 
     return check
+
+
+def text(max_length: int = 64, min_length: int = 1) -> Callable[[Any], str]:
+    """Accept printable text of `min_length` to `max_length` characters."""
+    return check_of(
+        lambda value: (
+            isinstance(value, str)
+            and value.isprintable()
+            and min_length <= len(value) <= max_length
+        ),
+        f"printable text of {min_length} to {max_length} characters",
+    )
 
 
 def pseudonym(value: Any) -> str:
@@ -136,13 +149,8 @@ def pseudonym(value: Any) -> str:
 
 
 def number(minimum: float, maximum: float, unit: str = "") -> Callable[[Any], float]:
-
-    def check(value: Any) -> float:
-        if not is_number(value) or not minimum <= value <= maximum:
-            raise ValueError(f"a number from {minimum:g} to {maximum:g} {unit}".rstrip())
-        return float(value)
-
-    return check
+    words = f"a number from {minimum:g} to {maximum:g} {unit}".rstrip()
+    return check_of(lambda value: is_number(value) and minimum <= value <= maximum, words, float)
 
 
 Setting = Annotated[float, number(-10_000, 10_000)]
@@ -150,28 +158,23 @@ Setting = Annotated[float, number(-10_000, 10_000)]
 
 
 def whole_number(minimum: int, maximum: int) -> Callable[[Any], int]:
-
-    def check(value: Any) -> int:
-        if isinstance(value, bool) or not isinstance(value, int) or not minimum <= value <= maximum:
-            raise ValueError(f"a whole number from {minimum} to {maximum}")
-        return value
-
-    return check
+    words = f"a whole number from {minimum} to {maximum}"
+    return check_of(
+        lambda value: is_number(value) and isinstance(value, int) and minimum <= value <= maximum,
+        words,
+    )
 
 
 def numbers(count: int, limit: float, unit: str = "") -> Callable[[Any], tuple[float, ...]]:
-    check_one = number(-limit, limit)
-
-    def check(value: Any) -> tuple[float, ...]:
-        sentence = f"a list of {count} numbers within ±{limit:g} {unit}".rstrip()
-        if not isinstance(value, (list, tuple)) or len(value) != count:
-            raise ValueError(sentence)
-        try:
-            return tuple(check_one(item) for item in value)
-        except ValueError:
-            raise ValueError(sentence) from None
-
-    return check
+    return check_of(
+        lambda value: (
+            isinstance(value, (list, tuple))
+            and len(value) == count
+            and all(is_number(item) and -limit <= item <= limit for item in value)
+        ),
+        f"a list of {count} numbers within ±{limit:g} {unit}".rstrip(),
+        lambda value: tuple(float(item) for item in value),
+    )
 
 
 def _array(values: tuple[float, ...], shape: tuple[int, ...]) -> np.ndarray:
@@ -180,9 +183,9 @@ def _array(values: tuple[float, ...], shape: tuple[int, ...]) -> np.ndarray:
     return array
 
 
-def point(limit: float, unit: str = "mm") -> Callable[[Any], np.ndarray]:
-    """Accept three numbers within ±`limit`: (3,) float, read-only."""
-    check = numbers(3, limit, unit)
+def point(limit: float) -> Callable[[Any], np.ndarray]:
+    """Accept three numbers within ±`limit` mm: (3,) float, read-only."""
+    check = numbers(3, limit, "mm")
     return lambda value: _array(check(value), (3,))
 
 
@@ -231,12 +234,8 @@ def object_of(
 
 
 def one_of(*choices: str) -> Callable[[Any], str]:
-    def check(value: Any) -> str:
-        if not isinstance(value, str) or value not in choices:
-            raise ValueError("one of " + ", ".join(choices))
-        return value
-
-    return check
+    words = "one of " + ", ".join(choices)
+    return check_of(lambda value: isinstance(value, str) and value in choices, words)
 
 
 def texts(
@@ -262,10 +261,7 @@ def texts(
     return check
 
 
-def yes_or_no(value: Any) -> bool:
-    if not isinstance(value, bool):
-        raise ValueError("true or false")
-    return value
+yes_or_no: Callable[[Any], bool] = check_of(lambda value: isinstance(value, bool), "true or false")
 
 
 def trial_id(value: Any) -> str:

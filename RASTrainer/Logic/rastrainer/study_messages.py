@@ -11,32 +11,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 
+from rastrainer import protocol
 from rastrainer.errors import InputError
 from rastrainer.json_checks import identifier, list_of, number, one_of, text, texts, whole_number
-from rastrainer.protocol import (
-    ALL_DONE,
-    FREE,
-    MAX_ASSIGNMENTS,
-    MAX_GATES,
-    MAX_GOAL_TRIALS,
-    PLAYED_METHODS,
-    REPEAT,
-    SKIN_KEYS,
-    SKIN_LIMIT_MM,
-    TRIAL_RUN,
-    AssignmentState,
-    GhostRule,
-    GoalKind,
-    Guidance,
-    Mode,
-    RegistrationMethod,
-    StepKind,
-    TutorialRule,
-)
+from rastrainer.protocol import ALL_DONE, FREE, REPEAT, SKIN_KEYS, SKIN_LIMIT_MM, TRIAL_RUN
 
 WHOLE_WAY = 100
 """Percent of the way to competence."""
-FIDUCIALS = RegistrationMethod.FIDUCIALS.value
+FIDUCIALS = protocol.RegistrationMethod.FIDUCIALS.value
 
 
 def skin_amounts(value: Any) -> dict[str, float]:
@@ -51,11 +33,11 @@ def skin_amounts(value: Any) -> dict[str, float]:
 
 
 _Name = Annotated[str, identifier]
-AnyMode = Annotated[str, one_of(*(mode.value for mode in Mode))]
-PlayedMethod = Annotated[str, one_of(*(method.value for method in PLAYED_METHODS))]
-GuidanceRule = Annotated[str, one_of(*(choice.value for choice in Guidance))]
-GhostChoice = Annotated[str, one_of(*(rule.value for rule in GhostRule))]
-TutorialChoice = Annotated[str, one_of(*(rule.value for rule in TutorialRule))]
+AnyMode = Annotated[str, one_of(*protocol.Mode)]
+PlayedMethod = Annotated[str, one_of(*protocol.PLAYED_METHODS)]
+GuidanceRule = Annotated[str, one_of(*protocol.Guidance)]
+GhostChoice = Annotated[str, one_of(*protocol.GhostRule)]
+TutorialChoice = Annotated[str, one_of(*protocol.TutorialRule)]
 Skin = Annotated[Mapping[str, float], skin_amounts]
 Allowances = tuple[Annotated[str, text(20)], ...]
 _Minutes = Annotated[float, number(0, 43_200, "min")]
@@ -74,7 +56,7 @@ class StudyStep:
     """
 
     trainee: str
-    kind: Annotated[str, one_of(*(kind.value for kind in StepKind), ALL_DONE, FREE, REPEAT)]
+    kind: Annotated[str, one_of(*protocol.StepKind, ALL_DONE, FREE, REPEAT)]
     number: Annotated[int, whole_number(1, 100_000)] = 0
     count: Annotated[int, whole_number(1, 100_000)] = 0
     task: str = ""
@@ -93,7 +75,8 @@ class StudyStep:
 
     @property
     def is_played(self) -> bool:
-        return self.kind in (StepKind.TRIAL, StepKind.TRIAL_RUN, StepKind.DECIDE)
+        kinds = protocol.StepKind
+        return self.kind in (kinds.TRIAL, kinds.TRIAL_RUN, kinds.DECIDE)
 
     def left_s(self, passed_s: float = 0.0) -> float:
         """Return the remaining time in s, `passed_s` after it was sent."""
@@ -120,10 +103,10 @@ class Assignment:
     mode: AnyMode = ""
     method: PlayedMethod = FIDUCIALS
     procedure: _Name = ""
-    goal: GoalKind = GoalKind.SCORE
-    trials: Annotated[int, whole_number(1, MAX_GOAL_TRIALS)] = 1
+    goal: protocol.GoalKind = protocol.GoalKind.SCORE
+    trials: Annotated[int, whole_number(1, protocol.MAX_GOAL_TRIALS)] = 1
     mark: Annotated[float | None, number(1, 100)] = None
-    after: Annotated[tuple[str, ...], texts(0, MAX_GATES)] = ()
+    after: Annotated[tuple[str, ...], texts(0, protocol.MAX_GATES)] = ()
 
     def __post_init__(self) -> None:
         if self.task == TRIAL_RUN:
@@ -131,7 +114,7 @@ class Assignment:
                 f"The assignment {self.name}: task must be a task that is scored; the trial run is "
                 "not."
             )
-        if self.goal is GoalKind.COMPETENT and self.trials > 1:
+        if self.goal is protocol.GoalKind.COMPETENT and self.trials > 1:
             raise InputError(
                 f"The assignment {self.name}: trials must be left out of the goal competent."
             )
@@ -157,13 +140,13 @@ class AssignmentStanding(Assignment):
     the trial by which it was reached, or of a gate's where that was later.
     """
 
-    goal: GoalKind = field(kw_only=True)
-    state: AssignmentState = field(kw_only=True)
+    goal: protocol.GoalKind = field(kw_only=True)
+    state: protocol.AssignmentState = field(kw_only=True)
     needed: Annotated[int, whole_number(1, 100)] = field(kw_only=True)
     done: Annotated[int, whole_number(0, 100)] = 0
     played: Annotated[int, whole_number(0, 1_000_000)] = 0
     mean: Annotated[float | None, number(0, 100)] = None
-    missing: Annotated[tuple[str, ...], texts(0, MAX_GATES)] = ()
+    missing: Annotated[tuple[str, ...], texts(0, protocol.MAX_GATES)] = ()
     weakest: Annotated[str, text(20)] = ""
     reached_utc: str = ""
 
@@ -176,7 +159,7 @@ class CurriculumMessage:
     title: Annotated[str, text(80)] = ""
     next: Annotated[str, text(40)] = ""
     assignments: Annotated[
-        tuple[AssignmentStanding, ...], list_of(0, MAX_ASSIGNMENTS, "assignments")
+        tuple[AssignmentStanding, ...], list_of(0, protocol.MAX_ASSIGNMENTS, "assignments")
     ] = ()
 
     def find(self, name: str) -> AssignmentStanding | None:

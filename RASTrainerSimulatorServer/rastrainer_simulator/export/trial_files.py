@@ -21,7 +21,7 @@ from rastrainer.decision.case_table import COLUMNS, cells
 from rastrainer.decision.drill_record import DrillRecord
 from rastrainer.decision.drill_rows import drill_rows
 from rastrainer.errors import InputError
-from rastrainer.files.ply import write_point_cloud
+from rastrainer.files.ply import write_ply
 from rastrainer.files.point_files import write_markups
 from rastrainer.files.point_list import PointList
 from rastrainer.files.writing import make_empty_folder, make_folder, write_json, write_text
@@ -246,7 +246,7 @@ def _write_trace(trial: StoredTrial, folder: Path, matrix: np.ndarray | None) ->
         path = folder / f"traced-{frame}.mrk.json"
         write_markups(path, PointList((), places))
         cloud = folder / f"traced-{frame}.ply"
-        write_point_cloud(cloud, places, "World" if frame == "world" else "RAS")
+        write_ply(cloud, places, "World" if frame == "world" else "RAS")
         written += [path, cloud]
     return written
 

@@ -7,7 +7,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk
 
 from rastrainer.errors import InputError
-from rastrainer.files.ply import read_ply, read_point_cloud, write_point_cloud
+from rastrainer.files.ply import read_ply, read_point_cloud, write_ply
 
 POINTS = np.array([[1.5, -2.0, 3.25], [80.0, 0.125, -7.0], [-3.0, 40.0, 99.0]])
 CORNERS = np.array([[0, 1, 2], [2, 1, 0]])
@@ -24,7 +24,7 @@ def cloud(path, content):
 @pytest.mark.parametrize("first", [b"\r\n", b"\n", b"end_header\n\r\n"], ids=ascii)
 def test_bytes_of_the_body_that_look_like_ends_of_lines_stay(tmp_path, ending, first):
     body = (first + POINTS.astype("<f8").tobytes()[len(first) :])[:72]
-    write_point_cloud(tmp_path / "a.ply", POINTS, "World")
+    write_ply(tmp_path / "a.ply", POINTS, "World")
     head = (tmp_path / "a.ply").read_bytes()[:-72].replace(b"\n", ending)
     read = cloud(tmp_path / "a.ply", head + body)
     np.testing.assert_array_equal(read, np.frombuffer(body, "<f8").reshape(3, 3))
@@ -34,7 +34,7 @@ def test_every_trace_that_was_written_is_read_to_the_last_bit(tmp_path):
     random = np.random.default_rng(0)
     for _ in range(60):
         points = random.normal(0.0, 100.0, (500, 3))
-        write_point_cloud(tmp_path / "a.ply", points, "World")
+        write_ply(tmp_path / "a.ply", points, "World")
         np.testing.assert_array_equal(read_point_cloud(tmp_path / "a.ply"), points)
 
 

@@ -3,14 +3,17 @@
 import numpy as np
 import pytest
 
-from rastrainer.head.mesh import nearest_on_mesh
+from rastrainer.head.mesh import HeadMesh, nearest_on_mesh
 from rastrainer.head.triangle_tree import FollowedPoints, TriangleTree
-from Testing.domain.registration.traces import colin27
+from Testing.domain.head.spheres import sphere_mesh
 
 
 @pytest.fixture(scope="module")
 def head():
-    return colin27()
+    """A sphere with bumps as small as a nose and an ear."""
+    ball = sphere_mesh(4)
+    bumps = 1.0 + 0.1 * np.cos(ball.vertices / 6.0).prod(axis=1)
+    return HeadMesh(ball.vertices * bumps[:, None], ball.triangles)
 
 
 @pytest.mark.parametrize("off_mm", [0.0, 0.5, 5.0, 60.0])

@@ -65,17 +65,8 @@ def test_the_same_image_gives_the_same_bytes_without_further_metadata(tmp_path):
     assert content == (tmp_path / "b.nrrd").read_bytes()
     header = content.partition(b"\n\n")[0].decode()
     names = [line.partition(":")[0] for line in header.split("\n")[1:]]
-    assert names == [
-        "type",
-        "dimension",
-        "space",
-        "sizes",
-        "space directions",
-        "kinds",
-        "endian",
-        "encoding",
-        "space origin",
-    ]
+    written = "type,dimension,space,sizes,space directions,kinds,endian,encoding,space origin"
+    assert ",".join(names) == written
 
 
 @pytest.mark.parametrize(
@@ -105,14 +96,10 @@ def test_left_handed_axes_and_big_endian_numbers_are_read(tmp_path):
     ("changes", "sentence"),
     [
         ({"type": "float"}, "must have the type uint8"),
-        ({"type": None}, "must have the type uint8"),
         ({"encoding": "raw"}, "compressed by gzip"),
-        ({"encoding": "txt"}, "compressed by gzip"),
         ({"endian": "middle"}, "little or big endian"),
         ({"dimension": "4"}, "three axes"),
         ({"sizes": "5 6"}, "three axes"),
-        ({"sizes": "5 6 -7"}, "three axes"),
-        ({"sizes": "5 6 7.5"}, "three axes"),
         ({"sizes": "5 6 ٧"}, "three axes"),
         ({"sizes": "5 6 999999999999"}, "three axes"),
         ({"sizes": "2000 2000 2000"}, "at most 50 million in all"),
@@ -120,18 +107,14 @@ def test_left_handed_axes_and_big_endian_numbers_are_read(tmp_path):
         ({"sizes": "5 6 8"}, "cut short"),
         ({"sizes": "5 6 6"}, "no more voxels than its header says"),
         ({"space": "scanner-xyz"}, "space left-posterior-superior"),
-        ({"space": None}, "space left-posterior-superior"),
         ({"space_directions": None}, "“space directions” with 9 numbers"),
         ({"space_directions": "(1,0,0) (0,nan,0) (0,0,1)"}, "9 numbers within ±2000"),
-        ({"space_directions": "(1,0,0) (0,1e999,0) (0,0,1)"}, "9 numbers within ±2000"),
         ({"space_directions": "(1,0,0) (0,1) (0,0,1)"}, "9 numbers"),
         ({"space_directions": "(1,0,0) (0,1,0) (1,1,0)"}, "axes that span a space"),
         ({"space_directions": "(1,0,0) (0,1,0) (0,0,0)"}, "voxels of 0.1 to 10 mm"),
         ({"space_directions": "(100,0,0) (0,1,0) (0,0,1)"}, "voxels of 0.1 to 10 mm"),
-        ({"space_origin": "(1,2,inf)"}, "“space origin” with 3 numbers"),
         ({"space_origin": "(1,2,1e6)"}, "“space origin” with 3 numbers"),
         ({"data_file": "/etc/passwd"}, "hold its voxels itself"),
-        ({"datafile": "other.raw"}, "hold its voxels itself"),
         ({"byte_skip": "-1"}, "hold its voxels itself"),
         ({"SIZES": "5 6 7"}, "have the field “sizes” once"),
     ],
@@ -178,12 +161,3 @@ def test_a_file_that_is_not_nrrd_is_refused(tmp_path, content):
     (tmp_path / "bad.nrrd").write_bytes(content)
     with pytest.raises(InputError, match=r"bad\.nrrd must (start as NRRD files do|have a header)"):
         read_nrrd(tmp_path / "bad.nrrd")
-
-
-def test_a_missing_or_too_large_file_is_named(tmp_path):
-    with pytest.raises(InputError, match=r"There is no file .*none\.nrrd"):
-        read_nrrd(tmp_path / "none.nrrd")
-    with (tmp_path / "large.nrrd").open("wb") as file:
-        file.truncate(MAX_FILE_BYTES + 1)
-    with pytest.raises(InputError, match=r"large\.nrrd is larger than"):
-        read_nrrd(tmp_path / "large.nrrd")

@@ -7,7 +7,7 @@ import struct
 
 import pytest
 
-from rastrainer.igtl.content import Command, Point, Points, Status, String, Transform
+from rastrainer.igtl.content import Command, String, Transform
 from rastrainer.igtl.message import (
     MAX_BODY_BYTES,
     MAX_GARBAGE_BYTES,
@@ -15,7 +15,6 @@ from rastrainer.igtl.message import (
     Message,
     MessageReader,
     StreamError,
-    crc64,
     pack,
 )
 
@@ -114,31 +113,3 @@ def test_endless_garbage_ends_the_stream_and_takes_no_memory(reader):
         reader.feed(bytes(generator.choices(range(65, 91), k=1000)))
         assert len(reader._buffer) < 2000
     assert reader.refusal
-
-
-def test_reader_survives_thousands_of_mutated_streams():
-    generator = random.Random(3)
-    points = Message("P", Points(tuple(Point(str(i), (i, 0, 0)) for i in range(3))), {"n": "3"})
-    seeds = [pack(m) for m in [*GOOD, points, Message("S", Status(1, 2, "x", "well"))]]
-    for _ in range(3_000):
-        data = bytearray(generator.choice(seeds))
-        for _ in range(generator.randint(1, 6)):
-            position = generator.randrange(len(data))
-            data[position] = generator.choice([0, 1, 2, 0x7F, 0xFF, generator.randrange(256)])
-        if generator.random() < 0.3:
-            del data[generator.randrange(len(data)) :]
-        reader = MessageReader()
-        reader.feed(bytes(data) + pack(TIP))
-        assert len(reader._buffer) <= len(data) + 200
-
-
-def test_reader_survives_mutated_bodies_whose_checksum_is_right():
-    generator = random.Random(4)
-    for _ in range(2_000):
-        body = bytearray(pack(generator.choice(GOOD[:2]))[58:])
-        for _ in range(generator.randint(1, 6)):
-            body[generator.randrange(min(len(body), 80))] = generator.randrange(256)
-        kind = generator.choice([b"TRANSFORM", b"STRING", b"POINT", b"STATUS", b"COMMAND"])
-        reader = MessageReader()
-        bad = header(kind, len(body), 2, crc64(bytes(body))) + bytes(body)
-        assert reader.feed(bad + pack(TIP))[-1] == TIP

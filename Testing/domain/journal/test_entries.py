@@ -2,7 +2,8 @@
 
 import pytest
 
-from rastrainer.journal.entries import Line, read_line
+from rastrainer.commands import CommandName
+from rastrainer.journal.entries import CommandDone, Line, read_line
 from rastrainer.protocol import Phase, Proximity
 from Testing.journal_lines import at, header, phase, proximity, sample, touch
 
@@ -15,6 +16,7 @@ from Testing.journal_lines import at, header, phase, proximity, sample, touch
         touch("1", measured_mm=(3.0, 2.0, 1.0)),
         phase(Phase.PAUSED, "2"),
         proximity(Proximity.CONTACT, Proximity.FREE, 2.5),
+        CommandDone(CommandName.GET_TRIAL, {}, "3D Slicer"),
     ],
     ids=lambda entry: entry.kind,
 )

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.files.ply import write_point_cloud
+from rastrainer.files.ply import write_ply
 from rastrainer.files.point_files import write_markups
 from rastrainer.files.point_list import PointList
 from rastrainer.head.mesh import read_head_mesh
@@ -42,7 +42,7 @@ def files(traced, tmp_path):
     labels = tuple(landmark.name for landmark in LANDMARKS)
     for name, points in (("moving", moving), ("fixed", fixed)):
         write_markups(tmp_path / f"{name}.mrk.json", PointList(labels, points))
-    write_point_cloud(tmp_path / "trace.ply", trace, "World")
+    write_ply(tmp_path / "trace.ply", trace, "World")
     return tmp_path
 
 

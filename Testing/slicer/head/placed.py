@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import slicer
-import vtk
+from slicer.util import vtkMatrixFromArray
 
 from Testing.slicer.head.phantoms import SEMI_AXES
 
@@ -16,7 +16,7 @@ def add_volume(scene, volume, name):
     """Return a volume node of the scene with an image of `Volume`."""
     node = scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode", name)
     slicer.util.updateVolumeFromArray(node, volume.values.transpose(2, 1, 0).copy())
-    node.SetIJKToRASMatrix(vtk_matrix(volume.ijkToRas))
+    node.SetIJKToRASMatrix(vtkMatrixFromArray(volume.ijkToRas))
     return node
 
 
@@ -40,12 +40,5 @@ def add_transform(scene, shift):
     matrix = np.eye(4)
     matrix[:3, 3] = shift
     node = scene.AddNewNodeByClass("vtkMRMLLinearTransformNode", "Moved")
-    node.SetMatrixTransformToParent(vtk_matrix(matrix))
+    node.SetMatrixTransformToParent(vtkMatrixFromArray(matrix))
     return node
-
-
-def vtk_matrix(values):
-    """Return a (4, 4) array as VTK's matrix."""
-    matrix = vtk.vtkMatrix4x4()
-    matrix.DeepCopy(values.ravel().tolist())
-    return matrix

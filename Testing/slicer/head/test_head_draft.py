@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from rastrainer.head.mesh import nearest_on_mesh
 from rastrainer.procedure.geometry import bone_ahead
 from rastrainer.scenario.scenario import SkullKind
 from rastrainer.slicer.head.extraction import findHead
@@ -84,7 +83,7 @@ def test_the_skull_is_closed_within_the_skin_and_ends_at_the_heads_base(draft):
     assert abs(heights.min() - BASE) < 1.0
     above = draft.skull.vertices[heights > BASE + SCALP_MM]
     assert depth_mm(above, SIZE).min() > 3.0
-    assert min(nearest_on_mesh(draft.head, point).distance for point in above[::50]) > 3.0
+    assert draft.head.tree.nearest(above[::20]).distances.min() > 3.0
 
 
 def test_the_skull_of_a_ct_is_its_bone(ct):

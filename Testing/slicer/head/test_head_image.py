@@ -11,7 +11,7 @@ from rastrainer.slicer.head.volume import HeadSettings, Volume
 from rastrainer_headless.volume_files import readVolume
 from Testing.slicer.head.phantoms import CT, DOUBLE_OBLIQUE, MRI, phantom, voxel_depths
 
-SIZE = 0.5
+SIZE = 0.4
 """Size of the phantom's head: a small head tests the same, and faster."""
 
 
@@ -88,8 +88,7 @@ def test_slicer_reads_the_file_as_it_was_written(ct, tmp_path):
     read = readVolume(path)
     assert np.array_equal(read.values, made.values)
     assert np.allclose(read.ijkToRas, made.ijk_to_ras)
-    storage = slicer.vtkMRMLNRRDStorageNode()
-    storage.SetFileName(str(path))
+    storage = slicer.vtkMRMLNRRDStorageNode(file_name=str(path))
     node = slicer.vtkMRMLScene().AddNewNodeByClass("vtkMRMLScalarVolumeNode")
     assert storage.ReadData(node)
     assert np.array_equal(slicer.util.arrayFromVolume(node).T, made.values)

@@ -12,8 +12,7 @@ HEAD = asset_path("scenarios", "colin27", "head.ply")
 
 def vertices_in_slicer(scene, path):
     node = scene.AddNewNodeByClass("vtkMRMLModelNode")
-    storage = slicer.vtkMRMLModelStorageNode()
-    storage.SetFileName(str(path))
+    storage = slicer.vtkMRMLModelStorageNode(file_name=str(path))
     assert storage.ReadData(node)
     return vtk_to_numpy(node.GetPolyData().GetPoints().GetData())
 

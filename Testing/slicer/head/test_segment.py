@@ -16,7 +16,7 @@ from rastrainer.slicer.head.volume import (
     volumeOfSegment,
 )
 from rastrainer.work_progress import no_progress
-from Testing.slicer.head.placed import add_transform, vtk_matrix
+from Testing.slicer.head.placed import add_transform
 
 BASE = -30.3
 CENTER, RADIUS, NECK = np.array([0.0, 5.0, 0.0]), 22.0, 15.0
@@ -43,7 +43,7 @@ def lay_on_grid(node, segment, to_ras, shape):
     shown, grid, laid = (slicer.vtkOrientedImageData() for _ in range(3))
     node.GetBinaryLabelmapRepresentation(segment, shown)
     grid.SetDimensions(shape)
-    grid.SetImageToWorldMatrix(vtk_matrix(to_ras))
+    grid.SetImageToWorldMatrix(slicer.util.vtkMatrixFromArray(to_ras))
     grid.AllocateScalars(vtk.VTK_UNSIGNED_CHAR, 1)
     resample = slicer.vtkOrientedImageDataResample
     resample.ResampleOrientedImageToReferenceOrientedImage(shown, grid, laid)

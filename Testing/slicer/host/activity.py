@@ -16,13 +16,10 @@ _watching: list[ActivityWatch] = []
 class ActivityWatch(QtCore.QObject):
     """Counts in a `with` statement.
 
-    Attributes:
-        writes: what the module has assigned to widgets, as `name.property` or `name.setProperty`,
-            whether or not it was another value.
-        drawn: names of the widgets that were painted, or got another layout.
-        ticks: how often timers of the module were over.
-        busy_s: processor time of what the module does for timers and widgets.
-        clock: periods of `CLOCK_MS` that Qt has counted, however busy the machine is.
+    `writes` are assignments to widgets, as `name.property` or `name.setProperty`, also of the same
+    value; `drawn` names the widgets that were painted, or got another layout; `ticks` is how often
+    timers of the module were over, `busy_s` its processor time for timers and widgets, and `clock`
+    the periods of `CLOCK_MS` that Qt has counted, however busy the machine is.
     """
 
     def __init__(self) -> None:

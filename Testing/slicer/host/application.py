@@ -29,9 +29,7 @@ class Application(Checked):
 
     def __init__(self, folder: Path, application_logic: Any, layout_manager: Any) -> None:
         self._settings = _settings_of_last_time(folder)
-        self._application_logic = application_logic
-        self._layout_manager = layout_manager
-        self._module_manager = ModuleManager(application_logic)
+        self._error_log, modules = ErrorLog(folder / "log"), ModuleManager(application_logic)
         self.applicationName = NAME
         self.slicerHome = str(folder / "Slicer")
         self.temporaryPath = str(folder / "temporary")
@@ -39,9 +37,17 @@ class Application(Checked):
         self.majorVersion, self.minorVersion, self.revision = 5, 13, "34000"
         self.applicationVersion = "5.13.0-2026-01-01"
         self.os = {"linux": "linux", "darwin": "macosx", "win32": "win"}[sys.platform]
+        self.applicationLogic = lambda: application_logic
+        self.commandOptions = lambda: SimpleNamespace(runPythonAndExit=True)
+        self.coreIOManager = CoreIOManager
+        self.errorLogModel = lambda: self._error_log
+        self.isInstalled = lambda: True
+        self.layoutManager = lambda: layout_manager
+        self.moduleManager = lambda: modules
+        self.mrmlScene = application_logic.GetMRMLScene
+        self.testingEnabled = lambda: False
         Path(self.temporaryPath).mkdir(parents=True, exist_ok=True)
         self._startup_listeners: list[Slot] = []
-        self._error_log = ErrorLog(folder / "log")
         self._exit_status: int | None = None
         write_python_slicer(Path(self.slicerHome))
 
@@ -55,15 +61,6 @@ class Application(Checked):
         """Signal, as Slicer does once, that all modules are loaded."""
         for listener in self._startup_listeners:
             listener()
-
-    def errorLogModel(self) -> ErrorLog:
-        return self._error_log
-
-    def coreIOManager(self) -> CoreIOManager:
-        return CoreIOManager()
-
-    def commandOptions(self) -> Any:
-        return SimpleNamespace(runPythonAndExit=True)
 
     def exit(self, status: int) -> None:
         self._exit_status = status
@@ -87,21 +84,6 @@ class Application(Checked):
 
     userSettings = settings
 
-    def applicationLogic(self) -> Any:
-        return self._application_logic
-
-    def layoutManager(self) -> Any:
-        return self._layout_manager
-
-    def moduleManager(self) -> Any:
-        return self._module_manager
-
-    def mrmlScene(self) -> Any:
-        return self._application_logic.GetMRMLScene()
-
-    def testingEnabled(self) -> bool:
-        return False
-
     def processEvents(self, *_flags: int) -> None:
         QtWidgets.QApplication.processEvents()
 
@@ -117,9 +99,6 @@ class Application(Checked):
 
     def topLevelWidgets(self) -> tuple:
         return tuple(wrap(widget) for widget in QtWidgets.QApplication.topLevelWidgets())
-
-    def isInstalled(self) -> bool:
-        return True
 
 
 def _settings_of_last_time(folder: Path) -> QtCore.QSettings:

@@ -55,12 +55,9 @@ LOOK_AFTER_S = 0.03
 
 @dataclass(frozen=True)
 class Stall:
-    """A time without a turn of the loop.
+    """A time without a turn of the loop, in which the innermost lines of ours `ran`.
 
-    Attributes:
-        seconds: how long it was.
-        own_s: without what the main thread waited for a processor, which other programs had.
-        ran: the innermost lines of ours that ran then.
+    `own_s` is without what the main thread waited for a processor, which other programs had.
     """
 
     seconds: float
@@ -71,10 +68,8 @@ class Stall:
 class StallWatch:
     """Measures in a `with` statement; the loop must turn meanwhile.
 
-    Attributes:
-        stalls: each gap between two turns that was longer than a look.
-        longest_s: of all gaps.
-        longest_own_s: of all gaps, without what the main thread waited for a processor.
+    `stalls` has each gap between two turns that was longer than a look. `longest_s` and
+    `longest_own_s` are of all gaps.
     """
 
     def __init__(self) -> None:

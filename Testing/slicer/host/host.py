@@ -18,7 +18,7 @@ from Testing.slicer.host.answers import ANSWERS, Message
 from Testing.slicer.host.application import Application
 from Testing.slicer.host.event_loop import lend_references
 from Testing.slicer.host.failures import FAILURES, VtkMessages
-from Testing.slicer.host.installation import Home, Installation
+from Testing.slicer.host.installation import Installation
 from Testing.slicer.host.layout import LayoutManager
 from Testing.slicer.host.proxy import class_named
 from Testing.slicer.host.renders import RenderCounter
@@ -46,12 +46,11 @@ class Host(User):
         ANSWERS.clear()
         FAILURES.texts.clear()
         self._vtk_messages = VtkMessages()
-        self._home = Home(folder / "home")
+        self._installation = Installation(folder / "home")
         self._application_scene = ApplicationScene()
         self.scene = self._application_scene.scene
         self._renders = RenderCounter(self.scene)
         self._module_file = module_file
-        self._installation = Installation()
         self._installation.add_modules()
         self._installation.set("mrmlScene", self.scene)
         logic = self._application_scene.applicationLogic
@@ -64,8 +63,8 @@ class Host(User):
         self._main_window = class_named("qSlicerMainWindow")() if window else None
         if window:
             self._layout.show_views()
-            self._main_window._qt.setModuleSelector(self)
-            self._main_window._qt.setPicture(self._window_picture)
+            self._main_window._qt.selector = self
+            self._main_window._qt.picture = self._window_picture
         self._excepthook, sys.excepthook = sys.excepthook, self._note
         # As the module OpenIGTLinkIF does.
         self._timer = QtCore.QTimer()
@@ -223,7 +222,6 @@ class Host(User):
                 self._main_window._qt.deleteLater()
             self.process_events()
             sys.excepthook = self._excepthook
-            self._home.leave()
             sys.modules.pop(self._module_name, None)
             slicer.app.close_of_host()
             self._installation.remove()

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import os
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
+from unittest import mock
 
 import slicer
 from PySide6.QtCore import QStandardPaths
@@ -16,15 +18,21 @@ from Testing.slicer.host.application import qSlicerScriptedLoadableModule
 from Testing.slicer.host.members import OFFERED
 from Testing.slicer.host.proxy import class_named, ctk, qt
 
-_MISSING = object()
+VARIABLES = ("HOME", "USERPROFILE", "APPDATA", "LOCALAPPDATA")
+WITHOUT = ("XDG_DATA_HOME", "XDG_CONFIG_HOME", "XDG_CACHE_HOME", "XDG_DOCUMENTS_DIR")
 
 
 class Installation:
-    """Modules and attributes as they were before, until `remove`."""
+    """Modules, attributes and the user's home as they were before, until `remove`."""
 
-    def __init__(self) -> None:
-        self._modules: dict[str, Any] = {}
-        self._attributes: dict[str, Any] = {}
+    def __init__(self, home: Path) -> None:
+        """Have everything that Qt calls the user's in the folder `home`."""
+        self._changes = ExitStack()
+        home.mkdir(parents=True, exist_ok=True)
+        kept = {name: value for name, value in os.environ.items() if name not in WITHOUT}
+        mine = {**kept, **dict.fromkeys(VARIABLES, str(home))}
+        self._changes.enter_context(mock.patch.dict(os.environ, mine, clear=True))
+        QStandardPaths.setTestModeEnabled(True)
 
     def add_modules(self) -> None:
         """Make `qt`, `ctk` and the parts of `slicer` that slicer-core lacks importable."""
@@ -41,7 +49,7 @@ class Installation:
             "slicer.parameterNodeWrapper": parameter_node.make_module(),
         }
         for name, module in modules.items():
-            self._modules[name] = sys.modules.get(name, _MISSING)
+            self._changes.callback(_put_back, name, sys.modules.get(name))
             sys.modules[name] = module
             if name.startswith("slicer."):
                 self.set(name.removeprefix("slicer."), module)
@@ -56,41 +64,14 @@ class Installation:
 
     def set(self, name: str, value: Any) -> None:
         """Set an attribute of the package `slicer`."""
-        self._attributes.setdefault(name, getattr(slicer, name, _MISSING))
-        setattr(slicer, name, value)
+        self._changes.enter_context(mock.patch.object(slicer, name, value, create=True))
 
     def remove(self) -> None:
-        for name, value in self._modules.items():
-            if value is _MISSING:
-                sys.modules.pop(name, None)
-            else:
-                sys.modules[name] = value
-        for name, value in self._attributes.items():
-            if value is _MISSING:
-                delattr(slicer, name)
-            else:
-                setattr(slicer, name, value)
+        self._changes.close()
 
 
-VARIABLES = ("HOME", "USERPROFILE", "APPDATA", "LOCALAPPDATA")
-WITHOUT = ("XDG_DATA_HOME", "XDG_CONFIG_HOME", "XDG_CACHE_HOME", "XDG_DOCUMENTS_DIR")
-
-
-class Home:
-    """Everything that Qt calls the user's lies in `folder`, until `leave`."""
-
-    def __init__(self, folder: Path) -> None:
-        folder.mkdir(parents=True, exist_ok=True)
-        self._former = {name: os.environ.get(name) for name in (*VARIABLES, *WITHOUT)}
-        for name in VARIABLES:
-            os.environ[name] = str(folder)
-        for name in WITHOUT:
-            os.environ.pop(name, None)
-        QStandardPaths.setTestModeEnabled(True)
-
-    def leave(self) -> None:
-        for name, value in self._former.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
+def _put_back(name: str, module: ModuleType | None) -> None:
+    if module is None:
+        sys.modules.pop(name, None)
+    else:
+        sys.modules[name] = module

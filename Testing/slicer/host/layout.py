@@ -23,9 +23,16 @@ LAYOUTS_WITHOUT_SLICES = (
 )
 
 
-def _all_members(class_name: str) -> frozenset[str]:
-    members = members_of(class_name)
-    return members.properties | members.methods
+class ViewWidget(Checked):
+    """Stands in for the widget of a view by some of its members.
+
+    It is visible if the layout has it, also where the window is minimized.
+    """
+
+    def __init__(self, class_name: str, **offered: Any) -> None:
+        members = members_of(class_name)
+        measured = members.properties | members.methods
+        vars(self).update(measured=measured, title=class_name, **offered)
 
 
 class LayoutManager(Checked):
@@ -76,9 +83,11 @@ class LayoutManager(Checked):
     def setLayout(self, layout: int) -> None:
         self._layouts.GetLayoutNode().SetViewArrangement(layout)
 
-    def plotWidget(self, index: int) -> PlotWidget | None:
+    def plotWidget(self, index: int) -> ViewWidget | None:
         nodes = self._views("vtkMRMLPlotViewNode")
-        return PlotWidget(nodes[index]) if index < len(nodes) else None
+        if index >= len(nodes):
+            return None
+        return ViewWidget("qMRMLPlotWidget", mrmlPlotViewNode=lambda: nodes[index])
 
     def shown_tables_of_host(self) -> list[str]:
         """Return the names of the tables that are visible in the layout."""
@@ -91,15 +100,23 @@ class LayoutManager(Checked):
         shown = [nodes.GetItemAsObject(index) for index in range(nodes.GetNumberOfItems())]
         return [node for node in shown if node.IsA(class_name)]
 
-    def threeDWidget(self, index: int) -> ThreeDWidget | None:
-        return ThreeDWidget(self) if index == 0 else None
+    def threeDWidget(self, index: int) -> ViewWidget | None:
+        is_visible = self.layout not in LAYOUTS_WITHOUT_3D
+        return ViewWidget("qMRMLThreeDWidget", visible=is_visible) if index == 0 else None
 
     def sliceViewNames(self) -> tuple[str, ...]:
         return tuple(SLICES)
 
-    def sliceWidget(self, name: str) -> SliceWidget | None:
-        has_slices = self.layout not in LAYOUTS_WITHOUT_SLICES
-        return SliceWidget(self._slices[name], has_slices) if name in SLICES else None
+    def sliceWidget(self, name: str) -> ViewWidget | None:
+        if name not in SLICES:
+            return None
+        logic = self._slices[name].logic
+        return ViewWidget(
+            "qMRMLSliceWidget",
+            visible=self.layout not in LAYOUTS_WITHOUT_SLICES,
+            sliceLogic=lambda: logic,
+            mrmlSliceCompositeNode=logic.GetSliceCompositeNode,
+        )
 
     def resetThreeDViews(self) -> None:
         self._three_d.look_at_everything()
@@ -115,44 +132,3 @@ class LayoutManager(Checked):
         for view in views:
             if view is not None:
                 view.close()
-
-
-class PlotWidget(Checked):
-    """Stands in for `qMRMLPlotWidget`."""
-
-    measured = _all_members("qMRMLPlotWidget")
-    title = "qMRMLPlotWidget"
-
-    def __init__(self, node: Any) -> None:
-        self._node = node
-
-    def mrmlPlotViewNode(self) -> Any:
-        return self._node
-
-
-class ThreeDWidget(Checked):
-    """Stands in for `qMRMLThreeDWidget`; it is visible if the layout has it, also where the window
-    is minimized."""
-
-    measured = _all_members("qMRMLThreeDWidget")
-    title = "qMRMLThreeDWidget"
-
-    def __init__(self, layout: LayoutManager) -> None:
-        self.visible = layout.layout not in LAYOUTS_WITHOUT_3D
-
-
-class SliceWidget(Checked):
-    """Stands in for `qMRMLSliceWidget`; visible as `ThreeDWidget` is."""
-
-    measured = _all_members("qMRMLSliceWidget")
-    title = "qMRMLSliceWidget"
-
-    def __init__(self, view: SliceView, is_visible: bool) -> None:
-        self._view = view
-        self.visible = is_visible
-
-    def sliceLogic(self) -> Any:
-        return self._view.logic
-
-    def mrmlSliceCompositeNode(self) -> Any:
-        return self._view.logic.GetSliceCompositeNode()

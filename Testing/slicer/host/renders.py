@@ -26,16 +26,9 @@ class RenderCounter:
 
     def __init__(self, scene: Any) -> None:
         self.count = 0
-        self._scene = scene
         self._is_due = False
-        self._tags = [
-            scene.AddObserver(slicer.vtkMRMLScene.NodeAddedEvent, self._node_added),
-            scene.AddObserver(slicer.vtkMRMLScene.NodeRemovedEvent, self._node_removed),
-        ]
-
-    def close(self) -> None:
-        for tag in self._tags:
-            self._scene.RemoveObserver(tag)
+        scene.AddObserver(scene.NodeAddedEvent, self._node_added)
+        scene.AddObserver(scene.NodeRemovedEvent, self._node_removed)
 
     @vtk.calldata_type(vtk.VTK_OBJECT)
     def _node_added(self, _scene: Any, _event: str, node: Any) -> None:

@@ -93,10 +93,8 @@ class ScriptedLoadableModuleLogic:
         return node or self.createParameterNode()
 
     def createParameterNode(self) -> Any:
-        node = slicer.vtkMRMLScriptedModuleNode()
-        node.SetSingletonTag(self.moduleName)
-        node.SetModuleName(self.moduleName)
-        node.SetName(slicer.mrmlScene.GenerateUniqueName(self.moduleName))
+        own, name = self.moduleName, slicer.mrmlScene.GenerateUniqueName(self.moduleName)
+        node = slicer.vtkMRMLScriptedModuleNode(singleton_tag=own, module_name=own, name=name)
         return slicer.mrmlScene.AddNode(node)
 
 

@@ -15,7 +15,7 @@ from PySide6 import QtCore, QtGui, QtTest, QtWidgets
 from Testing.slicer.host import event_loop, pictures
 from Testing.slicer.host.answers import ANSWERS
 from Testing.slicer.host.proxy import wrap
-from Testing.slicer.host.stand_ins import ctkCollapsibleButton, ctkCollapsibleGroupBox
+from Testing.slicer.host.stand_ins.ctk import ctkCollapsibleButton, ctkCollapsibleGroupBox
 
 DOCK_WIDTH = 470
 TIMEOUT_S = 2.0

@@ -48,9 +48,7 @@ SLICE_COLORS = {
 
 
 def picture_of(window: Any, width: int, height: int) -> QtGui.QImage:
-    reader = vtk.vtkWindowToImageFilter()
-    reader.SetInput(window)
-    reader.ReadFrontBufferOff()
+    reader = vtk.vtkWindowToImageFilter(input=window, read_front_buffer=False)
     reader.Update()
     colors = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
     rows = np.ascontiguousarray(colors.reshape(height, width, -1)[::-1, :, :3])
@@ -125,10 +123,7 @@ class ThreeDView(View):
     def __init__(self, scene: Any, logic: Any) -> None:
         node = scene.GetSingletonNode("1", "vtkMRMLViewNode")
         if node is None:
-            node = slicer.vtkMRMLViewNode()
-            node.SetSingletonTag("1")
-            node.SetLayoutName("1")
-            node.SetName("View1")
+            node = slicer.vtkMRMLViewNode(singleton_tag="1", layout_name="1", name="View1")
             node = scene.AddNode(node)
         factory = slicer.vtkMRMLThreeDViewDisplayableManagerFactory.GetInstance()
         super().__init__(factory, THREE_D_MANAGERS, logic, node)
@@ -193,11 +188,8 @@ class SliceView(View):
         self.logic = logic
         factory = slicer.vtkMRMLSliceViewDisplayableManagerFactory.GetInstance()
         super().__init__(factory, SLICE_MANAGERS, application_logic, logic.GetSliceNode())
-        self._mapper = vtk.vtkImageMapper()
-        self._mapper.SetColorWindow(255)
-        self._mapper.SetColorLevel(127.5)
-        self._actor = vtk.vtkActor2D()
-        self._actor.SetMapper(self._mapper)
+        self._mapper = vtk.vtkImageMapper(color_window=255, color_level=127.5)
+        self._actor = vtk.vtkActor2D(mapper=self._mapper)
         self._actor.GetProperty().SetDisplayLocationToBackground()
 
     def picture(self, width: int, height: int) -> QtGui.QImage:

@@ -14,7 +14,7 @@ from tour_hands import Hands, TourError
 SLIP_AT = 9
 
 
-class Tour:
+class Tour(Hands):
     """The opened module, and someone who works with it."""
 
     def __init__(self, folder: Path, program: str, has_window: bool, patience_s: float) -> None:
@@ -22,7 +22,7 @@ class Tour:
             slicer.util.selectModule("RASTrainer")
         module = slicer.util.getModuleWidget("RASTrainer")
         self.dialogs = Dialogs()
-        self.hands = Hands(module, self.dialogs.unexpected, patience_s)
+        super().__init__(module, self.dialogs.unexpected, patience_s)
         self.panel = module.parent
         if slicer.util.mainWindow() is None:
             self.panel.show()
@@ -41,8 +41,8 @@ class Tour:
             self._trainee.kill()
         self.dialogs.close()
         for name, attribute, value in self._former:
-            setattr(self.hands.find(name), attribute, value)
-        self.hands.idle_for(0.3)
+            setattr(self.find(name), attribute, value)
+        self.idle_for(0.3)
 
     def _choices(self) -> list[tuple[str, str, object]]:
         kept = (
@@ -51,12 +51,12 @@ class Tour:
             ("windowCheckBox", "checked"),
             ("tutorialCheckBox", "checked"),
         )
-        return [(name, what, getattr(self.hands.find(name), what)) for name, what in kept]
+        return [(name, what, getattr(self.find(name), what)) for name, what in kept]
 
     def choose_study(self, path: Path) -> None:
         """Continue with a study in the tour's folder."""
-        self.hands.find("studyPathLineEdit").currentPath = str(path)
-        self.hands.idle_for(0.2)
+        self.find("studyPathLineEdit").currentPath = str(path)
+        self.idle_for(0.2)
 
     def fresh(self, name: str) -> Path:
         """Return the path of a file in the tour's folder, which is not there yet."""
@@ -66,14 +66,14 @@ class Tour:
 
     def remove_chosen_scenario(self) -> None:
         """Remove the scenario that is chosen and loaded, and go back to the built-in one."""
-        combo = self.hands.find("scenarioComboBox")
+        combo = self.find("scenarioComboBox")
         name = combo.itemData(combo.currentIndex)
         folder = self.session.places.library / name
-        self.hands.must(folder.is_dir(), f"There is no scenario {folder}.")
+        self.must(folder.is_dir(), f"There is no scenario {folder}.")
         # The simulator, which is about to use it, loads one scenario at a time.
         self.play("--await", name)
-        self.hands.choose("scenarioComboBox", "Colin27")
-        self.hands.click("loadScenarioButton")
+        self.choose("scenarioComboBox", "Colin27")
+        self.click("loadScenarioButton")
         self.play("--await", "colin27")
         shutil.rmtree(folder)
 
@@ -83,7 +83,7 @@ class Tour:
             node.AddControlPoint(*place)
         interaction = slicer.app.applicationLogic().GetInteractionNode()
         interaction.SetCurrentInteractionMode(interaction.ViewTransform)
-        self.hands.idle_for(0.5)
+        self.idle_for(0.5)
 
     def place_active(self, *places: tuple[float, ...]) -> None:
         """Place points of the markup that the module has just added."""
@@ -92,24 +92,23 @@ class Tour:
 
     def touch(self, first: int, last: int) -> str:
         """Let the trainee touch points, and wait until Slicer shows them; return its sentence."""
-        hands = self.hands
         self.play("--points", str(first), str(last), "--slip-at", str(SLIP_AT))
-        hands.wait_until(lambda: hands.find("pointsProgressBar").value == last, "they are shown")
-        return hands.text("nextStepText")
+        self.wait_until(lambda: self.find("pointsProgressBar").value == last, "they are shown")
+        return self.text("nextStepText")
 
     def play(self, *words: str) -> None:
         """Let the trainee do something, in a process of Slicer's own Python."""
         places = self.session.places
         command = [str(places.python), str(Path(__file__).with_name("tour_trainee.py"))]
-        command += ["--logic", str(Path(self.hands.module.resourcePath("..")) / "Logic")]
+        command += ["--logic", str(Path(self.module.resourcePath("..")) / "Logic")]
         command += ["--scenario", str(places.assets / "scenarios" / "colin27")]
         command += ["--records", str(places.records)]
-        command += ["--port", str(self.hands.find("portSpinBox").value)]
-        command += ["--patience", str(self.hands.patience_s), *words]
+        command += ["--port", str(self.find("portSpinBox").value)]
+        command += ["--patience", str(self.patience_s), *words]
         self._trainee = subprocess.Popen(
             command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
         )
-        self.hands.wait_until(lambda: self._trainee.poll() is not None, "the trainee is done")
+        self.wait_until(lambda: self._trainee.poll() is not None, "the trainee is done")
         said = self._trainee.communicate()[0]
         if self._trainee.returncode != 0:
             raise TourError(f"The scripted trainee has failed: {said}")

@@ -10,7 +10,7 @@ import re
 import struct
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -62,8 +62,7 @@ class PlyFile:
         return points * LPS_TO_RAS if self.space == "LPS" else points
 
 
-@dataclass(frozen=True)
-class _Property:
+class _Property(NamedTuple):
     """A column of an element: types as in `struct`; `length` is empty unless it holds lists."""
 
     name: str
@@ -71,8 +70,7 @@ class _Property:
     length: str = ""
 
 
-@dataclass(frozen=True)
-class _Element:
+class _Element(NamedTuple):
     name: str
     rows: int
     properties: list[_Property]
@@ -201,14 +199,28 @@ def _even_table(element: _Element, body: bytes, at: int, order: str) -> np.ndarr
     return table if all((table[name] == count).all() for name, count in lists) else None
 
 
-def write_point_cloud(path: str | os.PathLike[str], points: np.ndarray, frame: str) -> None:
-    """Write points (n, 3) in mm as PLY, whole or not at all; a comment names their frame."""
-    header = (
-        f"ply\nformat binary_little_endian 1.0\ncomment SPACE={frame}\ncomment mm\n"
-        f"element vertex {len(points)}\n"
-        "property double x\nproperty double y\nproperty double z\nend_header\n"
-    )
-    write_bytes(path, header.encode("ascii") + np.asarray(points, dtype="<f8").tobytes())
+def write_ply(
+    path: str | os.PathLike[str],
+    points: np.ndarray,
+    frame: str,
+    triangles: np.ndarray | None = None,
+) -> None:
+    """Write points (n, 3) and triangles (m, 3), if there are any, whole or not at all.
+
+    A comment names their frame, by which Slicer places them. A mesh has 32-bit numbers.
+    """
+    is_mesh = triangles is not None
+    kind = "float" if is_mesh else "double"
+    lines = ["ply", "format binary_little_endian 1.0", f"comment SPACE={frame}"]
+    lines += [*([] if is_mesh else ["comment mm"]), f"element vertex {len(points)}"]
+    lines += [f"property {kind} {axis}" for axis in "xyz"]
+    content = np.asarray(points, dtype="<f4" if is_mesh else "<f8").tobytes()
+    if triangles is not None:
+        lines += [f"element face {len(triangles)}", "property list uchar int vertex_indices"]
+        faces = np.empty(len(triangles), [("count", "u1"), ("corners", "<i4", (3,))])
+        faces["count"], faces["corners"] = 3, triangles
+        content += faces.tobytes()
+    write_bytes(path, "\n".join([*lines, "end_header", ""]).encode("ascii") + content)
 
 
 def read_point_cloud(path: str | os.PathLike[str]) -> np.ndarray:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from rastrainer.errors import InputError
-from rastrainer.json_checks import decode_finite_json, text
+from rastrainer.json_checks import check_of, decode_finite_json, text
 from rastrainer.json_records import record_from_json
 
 T = TypeVar("T")
@@ -79,13 +79,8 @@ def read_record(kind: type[T], path: Path) -> T:
 
 
 def format_version(version: int) -> Callable[[Any], int]:
-
-    def check(value: Any) -> int:
-        if isinstance(value, bool) or value != version:
-            raise ValueError(f"{version}, which this version reads")
-        return version
-
-    return check
+    words = f"{version}, which this version reads"
+    return check_of(lambda value: not isinstance(value, bool) and value == version, words, int)
 
 
 _OUTSIDE = "the path of a file inside the scenario's folder"

@@ -82,9 +82,7 @@ def read_urdf(path: Path) -> RobotDescription:
     return RobotDescription(root.get("name", ""), joints, links, meshes)
 
 
-def _chain(
-    elements: list[ElementTree.Element],
-) -> tuple[tuple[Joint, ...], tuple[RobotLink, ...]]:
+def _chain(elements: list[ElementTree.Element]) -> tuple[tuple[Joint, ...], tuple[RobotLink, ...]]:
     following = {_attribute(each, "parent", "link"): each for each in elements}
     first = following.keys() - {_attribute(each, "child", "link") for each in elements}
     joints: list[Joint] = []

@@ -14,8 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.ply import read_ply
-from rastrainer.files.writing import write_bytes
+from rastrainer.files.ply import read_ply, write_ply
 from rastrainer.head.triangle_tree import TriangleSides, TriangleTree
 
 MAX_TRIANGLES = 1_000_000
@@ -23,30 +22,13 @@ RAS_LIMIT_MM = 2000.0
 """Limit of coordinates; scanners may have a distant origin."""
 
 
-_HEADER = """ply
-format binary_little_endian 1.0
-comment SPACE=RAS
-element vertex {vertices}
-property float x
-property float y
-property float z
-element face {triangles}
-property list uchar int vertex_indices
-end_header
-"""
 BASE_THICKNESS_MM = 1.0
 FLAT_MM = 1e-3
-_FACE = np.dtype([("count", "u1"), ("corners", "<i4", (3,))])
 
 
 @dataclass(frozen=True, eq=False)
 class HeadMesh:
-    """Triangles that share vertices.
-
-    Attributes:
-        vertices: (n, 3) float, RAS mm.
-        triangles: (m, 3) int, counterclockwise seen from outside.
-    """
+    """Vertices (n, 3) float, RAS mm; triangles (m, 3) int, counterclockwise seen from outside."""
 
     vertices: np.ndarray
     triangles: np.ndarray
@@ -162,13 +144,7 @@ class HeadMesh:
 
 
 def write_head_mesh(path: Path, mesh: HeadMesh) -> None:
-    """Write a mesh as PLY whose comment lets Slicer place it in RAS; whole or not at all."""
-    header = _HEADER.format(vertices=len(mesh.vertices), triangles=len(mesh.triangles))
-    faces = np.empty(len(mesh.triangles), _FACE)
-    faces["count"] = 3
-    faces["corners"] = mesh.triangles
-    content = header.encode() + mesh.vertices.astype("<f4").tobytes() + faces.tobytes()
-    write_bytes(path, content)
+    write_ply(path, mesh.vertices, "RAS", mesh.triangles)
 
 
 def read_head_mesh(path: Path) -> HeadMesh:

@@ -25,13 +25,8 @@ from rastrainer.protocol import SKIN_LIMIT_MM
 
 @dataclass(frozen=True)
 class Perturbation:
-    """How far the head may be from its nominal pose.
-
-    Attributes:
-        translation_mm: along each axis of World.
-        yaw_deg: about the vertical.
-        tilt_deg: about a horizontal axis of any direction.
-    """
+    """How far the head may be from its nominal pose: along each axis of World, about the vertical,
+    and about a horizontal axis of any direction."""
 
     translation_mm: Annotated[float, number(0, 200, "mm")]
     yaw_deg: Annotated[float, number(0, 180, "°")]

@@ -23,9 +23,8 @@ REPRESENTED_LEVEL = 7
 class TriangleSides:
     """Triangles with the products that a search for nearest points needs, mm.
 
-    Attributes:
-        rows: (m, 12) float: the first corner, from it to the second (b) and to the third (c), and
-            b·b, b·c and c·c; side by side, since picking rows is what takes the time.
+    A row (12,) has the first corner, from it to the second (b) and to the third (c), and b·b, b·c
+    and c·c: side by side, since picking rows is what takes the time.
     """
 
     rows: np.ndarray
@@ -99,11 +98,7 @@ def _on_sides(
     opposite = rest * (2.0 * along_b - rest * bb - 2.0 * share * bc)
     opposite += share * (2.0 * along_c - share * cc)
     better = opposite > gain
-    return (
-        np.where(better, rest, v),
-        np.where(better, share, w),
-        np.where(better, opposite, gain),
-    )
+    return (np.where(better, rest, v), np.where(better, share, w), np.where(better, opposite, gain))
 
 
 @dataclass(frozen=True)

@@ -91,12 +91,9 @@ _KINDS = {
     "int16": ("short", "short int", "signed short", "signed short int", "int16", "int16_t"),
 }
 _SPACES = {
-    "left-posterior-superior": (-1.0, -1.0, 1.0),
-    "lps": (-1.0, -1.0, 1.0),
-    "left-anterior-superior": (-1.0, 1.0, 1.0),
-    "las": (-1.0, 1.0, 1.0),
-    "right-anterior-superior": (1.0, 1.0, 1.0),
-    "ras": (1.0, 1.0, 1.0),
+    **dict.fromkeys(("left-posterior-superior", "lps"), (-1.0, -1.0, 1.0)),
+    **dict.fromkeys(("left-anterior-superior", "las"), (-1.0, 1.0, 1.0)),
+    **dict.fromkeys(("right-anterior-superior", "ras"), (1.0, 1.0, 1.0)),
 }
 """Signs that convert to RAS."""
 
@@ -107,16 +104,15 @@ _VECTOR = re.compile(r"\(([^()]*)\)")
 def read_nrrd(path: Path) -> tuple[np.ndarray, np.ndarray]:
     """Return the voxels (i, j, k), uint8 or int16, and the matrix (4, 4) float, index to RAS mm."""
     content = read_bytes(path, MAX_FILE_BYTES)
-    head = content[:_MAX_HEADER_BYTES].replace(b"\r\n", b"\n")
-    text, separator, _ = head.partition(b"\n\n")
-    magic, _, rest = text.decode("latin-1").partition("\n")
+    start = content[:_MAX_HEADER_BYTES]
+    blank_line = re.search(rb"\r?\n\r?\n", start)
+    header = start[: blank_line.start()] if blank_line else start
+    magic, *lines = header.decode("latin-1").replace("\r\n", "\n").split("\n")
     if not _MAGIC.fullmatch(magic):
         raise _wrong(path, "start as NRRD files do")
-    if not separator:
+    if blank_line is None:
         raise _wrong(path, f"have a header of at most {_MAX_HEADER_BYTES // 1024} KiB")
-    fields = _fields(path, rest)
-    blank_line = re.search(rb"\r?\n\r?\n", content[:_MAX_HEADER_BYTES])
-    assert blank_line is not None  # The separator was found above.
+    fields = _fields(path, lines)
     kind = fields.get("type", "").lower()
     name = next((name for name, words in _KINDS.items() if kind in words), None)
     if name is None:
@@ -166,9 +162,9 @@ def write_nrrd(path: Path, values: np.ndarray, ijk_to_ras: np.ndarray) -> None:
     write_bytes(path, "\n".join(lines).encode("ascii") + b"\n\n" + packed.getvalue())
 
 
-def _fields(path: Path, text: str) -> dict[str, str]:
+def _fields(path: Path, lines: list[str]) -> dict[str, str]:
     fields: dict[str, str] = {}
-    for line in text.split("\n"):
+    for line in lines:
         name, separator, value = line.partition(":")
         # "#" starts a comment, "name:=value" is a key/value text.
         if line.startswith("#") or not separator or value.startswith("="):
@@ -209,11 +205,8 @@ def _matrix(path: Path, fields: dict[str, str]) -> np.ndarray:
         raise _wrong(path, f"have voxels of {SPACINGS_MM[0]:g} to {SPACINGS_MM[1]:g} mm")
     if abs(np.linalg.det(axes / spacings[:, None])) < MIN_AXIS_VOLUME:
         raise _wrong(path, "have axes that span a space")
-    matrix = np.eye(4)
-    matrix[:3, :3] = axes.T
-    matrix[:3, 3] = origin
-    matrix = np.diag([*signs, 1.0]) @ matrix
-    return matrix + 0.0  # No negative zeros.
+    # No negative zeros.
+    return np.diag([*signs, 1.0]) @ transforms.rigid(axes.T, origin) + 0.0
 
 
 def _vectors(path: Path, fields: dict[str, str], name: str, count: int) -> np.ndarray:

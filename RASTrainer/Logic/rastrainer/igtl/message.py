@@ -188,14 +188,13 @@ def unpack(header: Header, body: bytes, keep_bytes: bool = False) -> Message:
 def _unpack_metadata(index: bytes, entries: bytes, keep_bytes: bool) -> dict[str, str]:
     if not index:
         return {}
-    if len(index) < _COUNT.size:
-        raise InputError("The metadata of a message must start with their count.")
-    (count,) = _COUNT.unpack_from(index)
-    if count > MAX_METADATA or len(index) < _COUNT.size + count * _ENTRY.size:
+    count = int.from_bytes(index[: _COUNT.size], "big")
+    listed = index[_COUNT.size : _COUNT.size + count * _ENTRY.size]
+    is_cut = len(index) < _COUNT.size or len(listed) < count * _ENTRY.size
+    if is_cut or count > MAX_METADATA:
         raise InputError(f"A message must list at most {MAX_METADATA} whole metadata entries.")
     metadata, start = {}, 0
-    for number in range(count):
-        key_size, _encoding, value_size = _ENTRY.unpack_from(index, _COUNT.size + number * 8)
+    for key_size, _encoding, value_size in _ENTRY.iter_unpack(listed):
         value_start, end = start + key_size, start + key_size + value_size
         if end > len(entries):
             raise InputError("The metadata of a message must be as long as they say.")

@@ -19,7 +19,16 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import RAS_LIMIT_MM
 from rastrainer.head.trial_head import UNMOVED, SkinShift
-from rastrainer.json_checks import number, numbers, one_of, point, text, transform, whole_number
+from rastrainer.json_checks import (
+    check_of,
+    number,
+    numbers,
+    one_of,
+    point,
+    text,
+    transform,
+    whole_number,
+)
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.procedure.record import UsedRegistration
 from rastrainer.protocol import Mode, Phase, Proximity, RegistrationMethod
@@ -30,20 +39,8 @@ GUIDED_TOUCHES = 3
 _LARGEST = 2**53
 
 
-def _words(value: Any) -> str:
-    if not isinstance(value, str):
-        raise ValueError("text")
-    return value
-
-
-def _object(value: Any) -> dict[str, Any]:
-    if not isinstance(value, dict):
-        raise ValueError("an object")
-    return value
-
-
-Words = Annotated[str, _words]
-Object = Annotated[Mapping[str, Any], _object]
+Words = Annotated[str, check_of(lambda value: isinstance(value, str), "text")]
+Object = Annotated[Mapping[str, Any], check_of(lambda value: isinstance(value, dict), "an object")]
 Count = Annotated[int, whole_number(0, _LARGEST)]
 Millimeters = Annotated[float, number(-1e6, 1e6, "mm")]
 Seconds = Annotated[float, number(0, 1e9, "s")]
@@ -155,14 +152,10 @@ class RecordedMethod:
 
 @dataclass(frozen=True, kw_only=True)
 class JournalHeader(Entry, kind="header", own_keys_first=4):
-    """The first line.
+    """The first line: the length of a tick, the state before the first step, the settings.
 
-    Attributes:
-        tick_s: length of a tick.
-        before: the state before the first step.
-        settings: the simulator's.
-        seed: of the head's pose. It is not written here but in the line that ends the trial, and
-            until then in the file next to the journal.
+    The seed of the head's pose is not written here but in the line that ends the trial, and until
+    then in the file next to the journal.
     """
 
     format: Annotated[str, one_of(FORMAT)]
@@ -173,7 +166,7 @@ class JournalHeader(Entry, kind="header", own_keys_first=4):
     trainee: Words
     task: Words
     shortest_path_mm: Millimeters | None
-    mode: Annotated[str, one_of(*(mode.value for mode in Mode))]
+    mode: Annotated[str, one_of(*Mode)]
     tick_s: Annotated[float, number(1e-4, 0.1, "s")]
     session: PlayingSession
     before: StartingPoint
@@ -376,13 +369,10 @@ class PhaseChange(Entry, kind="phase"):
 
 @dataclass(frozen=True)
 class RecordedTruth:
-    """Where the head really was; secret until a registration is submitted.
+    """Where the head really was, mm; secret until a registration is submitted.
 
-    Attributes:
-        head_to_world: (4, 4) float, mm, from the MRI's RAS to World.
-        target_ras: (3,) float, mm, where the true error of a registration is reported.
-        fiducials_ras: label → (3,) float, mm, of the trial's task.
-        skin: its shift, compared with the images.
+    The true error is reported at the target. The fiducials are the task's, by their labels; the
+    skin has shifted compared with the images.
     """
 
     head_to_world: Annotated[np.ndarray, transform]
@@ -547,7 +537,7 @@ class TutorialReport(Report, kind="tutorial", own_keys_first=5):
     the guided touches at the end."""
 
     device: str
-    mode: Annotated[str, one_of(*(mode.value for mode in Mode))]
+    mode: Annotated[str, one_of(*Mode)]
     duration_s: Annotated[float, number(0, 1e6, "s")]
     first_error_mm: Annotated[float, number(0, 1e4, "mm")]
     errors_mm: Annotated[tuple[float, ...], numbers(GUIDED_TOUCHES, 1e4, "mm")]

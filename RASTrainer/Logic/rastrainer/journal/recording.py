@@ -13,25 +13,8 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.journal.entries import (
-    AcceptedCheckpoint,
-    AcceptedTouch,
-    CameraChange,
-    CommandDone,
-    Continued,
-    Entry,
-    JournalHeader,
-    Line,
-    PhaseChange,
-    ProximityChange,
-    Registered,
-    Rejected,
-    Sample,
-    Stamp,
-    Stroke,
-    TracePoint,
-    Undo,
-)
+from rastrainer.journal import entries
+from rastrainer.journal.entries import Entry, JournalHeader, Line, PhaseChange, Sample, Stamp
 from rastrainer.journal.folder import journals_of
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.motion.trajectory import Interval, Touch, Trajectory
@@ -92,19 +75,19 @@ class Recording:
                 self._shortest_path = entry.shortest_path_mm
             case PhaseChange() if entry.kind == PhaseChange.kind:
                 self._phase(entry, sim_time - self._tick_s)
-            case Continued():
+            case entries.Continued():
                 # The time of an interruption is excluded.
                 if entry.phase is Phase.PAUSED and self._paused_since is None:
                     self._paused_since = entry.since_s
-            case ProximityChange():
+            case entries.ProximityChange():
                 self._proximity(entry, sim_time)
-            case Registered():
+            case entries.Registered():
                 pose = entry.truth.head_to_world
                 self._fiducials = {
                     label: transforms.apply(pose, position)
                     for label, position in entry.truth.fiducials_ras.items()
                 }
-            case CameraChange():
+            case entries.CameraChange():
                 self._cameras += 1
             case _:
                 self._add_point(entry, sim_time)
@@ -113,18 +96,18 @@ class Recording:
         # Commands are carried out a tick before their line.
         before = sim_time - self._tick_s
         match entry:
-            case AcceptedTouch():
+            case entries.AcceptedTouch():
                 self._press(entry.depth_mm)
                 self._touches.append(self._touch(entry.label, entry.position_mm, before))
-            case Rejected() if entry.label is not None:
+            case entries.Rejected() if entry.label is not None:
                 self._refused.append(self._touch(entry.label, entry.position_mm, before))
-            case Undo():
+            case entries.Undo():
                 self._undone += 1
                 del self._touches[entry.kept :]
-            case TracePoint():
+            case entries.TracePoint():
                 # A point is left at the end of its tick, unlike a touch.
                 self._traced.append(self._touch("", entry.position_mm, sim_time))
-            case Stroke():
+            case entries.Stroke():
                 del self._traced[entry.kept :]
 
     def trajectory(self) -> Trajectory:
@@ -180,7 +163,7 @@ class Recording:
         if entry.next_point in labels:
             del self._touches[labels.index(entry.next_point) :]
 
-    def _proximity(self, entry: ProximityChange, sim_time: float) -> None:
+    def _proximity(self, entry: entries.ProximityChange, sim_time: float) -> None:
         # This event is at the end of its tick, unlike the events of commands.
         now = self._trial_time(sim_time)
         # An interval that begins and ends while the time stands still is left out.
@@ -230,17 +213,9 @@ def _with_clearance(interval: Interval, times: np.ndarray, clearance: np.ndarray
 
 
 EVENTS = (
-    PhaseChange,
-    AcceptedTouch,
-    Undo,
-    TracePoint,
-    Stroke,
-    Rejected,
-    AcceptedCheckpoint,
-    ProximityChange,
-    CameraChange,
-    CommandDone,
-    Continued,
+    *(PhaseChange, entries.AcceptedTouch, entries.Undo, entries.TracePoint, entries.Stroke),
+    *(entries.Rejected, entries.AcceptedCheckpoint, entries.ProximityChange),
+    *(entries.CameraChange, entries.CommandDone, entries.Continued),
 )
 """Entries that change the view besides the arm."""
 

@@ -23,8 +23,7 @@ def trianglesPolyData(
     points: np.ndarray, triangles: np.ndarray, normals: np.ndarray | None = None
 ) -> vtk.vtkPolyData:
     """Return a surface of points (n, 3), triangles (m, 3) int, and unit normals (n, 3)."""
-    surface = _pointsAlone(points)
-    surface.SetPolys(_cells(triangles))
+    surface = vtk.vtkPolyData(points=_points(points), polys=_cells(triangles))
     if normals is not None:
         surface.GetPointData().SetNormals(vtkArray(normals.astype(np.float32), "Normals"))
     return surface
@@ -36,17 +35,11 @@ def meshPolyData(mesh: HeadMesh) -> vtk.vtkPolyData:
 
 def pointCloud(places: np.ndarray) -> vtk.vtkPolyData:
     """Return places (n, 3) as points, each of them a vertex cell."""
-    cloud = _pointsAlone(places)
-    cloud.SetVerts(_cells(np.arange(len(places))[:, None]))
-    return cloud
+    return vtk.vtkPolyData(points=_points(places), verts=_cells(np.arange(len(places))[:, None]))
 
 
-def _pointsAlone(places: np.ndarray) -> vtk.vtkPolyData:
-    points = vtk.vtkPoints()
-    points.SetData(vtkArray(places.astype(np.float32)))
-    data = vtk.vtkPolyData()
-    data.SetPoints(points)
-    return data
+def _points(places: np.ndarray) -> vtk.vtkPoints:
+    return vtk.vtkPoints(data=vtkArray(places.astype(np.float32)))
 
 
 def _cells(corners: np.ndarray) -> vtk.vtkCellArray:

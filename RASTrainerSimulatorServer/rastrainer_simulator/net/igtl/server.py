@@ -218,16 +218,11 @@ def set_up_socket(peer: socket.socket) -> None:
 
 
 class LinkHandler(Protocol):
-    """Handles clients and their messages; called in the event loop's thread."""
+    """Handles clients, once they may be sent to, and their messages; called by the event loop."""
 
-    def connected(self, connection: ClientConnection) -> None:
-        """Greet a client, which may be sent to from now on."""
-
-    def received(self, connection: ClientConnection, message: Message) -> None:
-        """Process one valid message."""
-
-    def disconnected(self, connection: ClientConnection) -> None:
-        """Forget a client."""
+    def connected(self, connection: ClientConnection) -> None: ...
+    def received(self, connection: ClientConnection, message: Message) -> None: ...
+    def disconnected(self, connection: ClientConnection) -> None: ...
 
 
 class IgtlServer:
@@ -321,22 +316,20 @@ class LinkLog:
         known = what in self._counts or len(self._counts) < _MAX_KINDS
         self._counts[what if known else "more of other kinds"] += times
         if self._timer is None:
-            self._write_in_turn()
+            self._write()
 
     def close(self) -> None:
+        self._write()
         if self._timer is not None:
             self._timer.cancel()
-        self._write()
-
-    def _write_in_turn(self) -> None:
-        """Write, and again after a second if something new has come by then."""
-        self._timer = None
-        if self._counts:
-            self._write()
-            self._timer = asyncio.get_running_loop().call_later(_PERIOD_S, self._write_in_turn)
 
     def _write(self) -> None:
+        """Write now, and again after a second if something new has come by then."""
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
         if self._counts:
             parts = [f"{times} × {what}" for what, times in self._counts.items()]
             _logger.warning("%s", "; ".join(parts))
             self._counts.clear()
+            self._timer = asyncio.get_running_loop().call_later(_PERIOD_S, self._write)

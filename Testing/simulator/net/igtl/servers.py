@@ -38,11 +38,7 @@ class LoopThread:
         self.loop.close()
 
     def run(self, coroutine, timeout=PATIENCE_S):
-        """Return the result of a coroutine that the loop runs meanwhile.
-
-        Raises:
-            RuntimeError: the loop has ended.
-        """
+        """Return the result of a coroutine; raise RuntimeError if the loop has ended."""
         try:
             future = asyncio.run_coroutine_threadsafe(coroutine, self.loop)
         except RuntimeError:

@@ -6,48 +6,19 @@ from concurrent.futures import Future
 
 import pytest
 
-from rastrainer.commands import COMMANDS
+from rastrainer import commands
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Command
 from rastrainer.igtl.message import Message, crc64, pack
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer_simulator.state import Answer
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
+from Testing.security.mutated_messages import COMMANDS
 from Testing.simulator.net.igtl.servers import LinkServer, answer_to
 
-TRIAL = "6f1e1b9e-6c3f-4a53-8a55-0d0f5a3b7c11"
 HELLO = {"protocolVersion": PROTOCOL_VERSION, "client": "test"}
-REGISTRATION = {
-    "trialId": TRIAL,
-    "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
-    "freMm": 0.5,
-    "expectedTreMm": 0.6,
-}
-ARGUMENTS = {
-    "Hello": HELLO,
-    "LoadScenario": {"folder": "scenarios/colin27"},
-    "StartTutorial": {"trainee": "anna"},
-    "StartDrill": {"trainee": "anna"},
-    "StartTask": {"task": "task-1", "trainee": "anna", "seed": None},
-    "Jog": {"velocityMmS": [1, 2, 3]},
-    "MoveTipTo": {"positionMm": [500, 0, 300], "direction": None},
-    "Trace": {"on": True},
-    "SetCamera": {"camera": "far"},
-    "SubmitRegistration": REGISTRATION,
-    "UseRegistration": REGISTRATION,
-    "Feed": {"velocityMmS": 2.5},
-    "TrialScored": {"trialId": TRIAL, "score": 80},
-    "PlanTarget": {"positionMm": [0, 0, 0]},
-    "StudyStep": {"trainee": "P07", "kind": "trial", "task": "task-2", "mode": "hmd"},
-    "Curriculum": {"trainee": "P07"},
-    "GetTrial": {"trialId": TRIAL},
-    "GetJournal": {"trialId": TRIAL},
-    "AcknowledgeTrial": {"trialId": TRIAL},
-}
-
-
 OF_SCORING_CLIENTS = {
-    *("UseRegistration", "SubmitRegistration", "TrialScored", "GetJournal", "AcknowledgeTrial"),
+    *("UseRegistration", "SubmitRegistration", "TrialScored", "GetJournal", "AcknowledgeTrial")
 }
 
 
@@ -58,16 +29,14 @@ def test_a_client_that_does_not_score_neither_registers_nor_scores_nor_acknowled
         if hello:
             client.send_command("Hello", hello)
         for name in OF_SCORING_CLIENTS:
-            reply = client.send_command(name, ARGUMENTS[name])
+            reply = client.send_command(name, COMMANDS[name])
             assert "is for clients that register and score" in reply.error
     assert link_server.simulated.commands == []
 
 
 def test_every_command_of_the_protocol_is_answered(client):
-    for name in COMMANDS.keys() - OF_SCORING_CLIENTS:
-        arguments = ARGUMENTS.get(name, {})
-        given = {key: value for key, value in arguments.items() if value is not None}
-        assert client.send_command(name, given).ok, name
+    for name in commands.COMMANDS.keys() - OF_SCORING_CLIENTS:
+        assert client.send_command(name, COMMANDS[name]).ok, name
 
 
 def test_simulation_gets_checked_arguments_and_the_name_of_the_client(client, link_server):
@@ -83,7 +52,7 @@ def test_refusal_by_the_rules_of_a_trial_has_its_code_its_values_and_an_english_
 ):
     said = Texts(LANGUAGES["de"]).say("tutorial is open", trainee="anna")
     link_server.simulated.answer = lambda *_: Answer(0, False, said)
-    reply = client.send_command("StartTutorial", ARGUMENTS["StartTutorial"])
+    reply = client.send_command("StartTutorial", COMMANDS["StartTutorial"])
     assert reply.error.startswith("anna is doing the tutorial: let them finish it")
     assert reply.data == {
         "error": reply.error,

@@ -12,19 +12,12 @@ from rastrainer.igtl.content import Points
 from rastrainer.igtl.message import HEADER_BYTES, read_header, unpack
 from rastrainer.procedure.record import UsedRegistration
 from rastrainer.protocol import DeviceName, Phase, Proximity
+from rastrainer_simulator import trial_state
 from rastrainer_simulator.loop.results import StateFeed
 from rastrainer_simulator.loop.timing import Pacer
 from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher
 from rastrainer_simulator.state import StepResult, TrainingState
-from rastrainer_simulator.trial_state import (
-    CheckedPoint,
-    PlannedLine,
-    ProcedureState,
-    TouchState,
-    TracedPoint,
-    TraceState,
-    TrajectoryState,
-)
+from rastrainer_simulator.trial_state import TouchState
 from Testing.simulator.net.igtl.servers import at_rest
 
 TICK_S = 0.004
@@ -149,7 +142,9 @@ def test_state_is_ascii_json_with_the_agreed_keys(publisher, receiver):
 
 
 def test_a_trace_reports_its_progress_and_whether_it_is_guided(publisher, receiver):
-    trace = TraceState((TracedPoint((0.0, 0.0, 0.0), 1.0, 1.0),), (0,), is_on=True)
+    trace = trial_state.TraceState(
+        (trial_state.TracedPoint((0.0, 0.0, 0.0), 1.0, 1.0),), (0,), is_on=True
+    )
     traced = replace(RUNNING, trace=trace)
     publisher.publish(at_rest(sim_time=3.0, training=traced))
     publisher.is_guided = lambda: True
@@ -162,13 +157,13 @@ def test_a_trace_reports_its_progress_and_whether_it_is_guided(publisher, receiv
 def aligning(feed=0.0, phase=Phase.ALIGNING, **others):
     """Return a state in which the guide points down, 3 mm aside of a line straight down."""
     pose = np.array([[1, 0, 0, 0.5], [0, -1, 0, 0.0], [0, 0, -1, 0.4], [0, 0, 0, 1.0]])
-    line = PlannedLine("Left", (0.503, 0.0, 0.38), (0.503, 0.0, 0.3))
-    procedure = ProcedureState(
+    line = trial_state.PlannedLine("Left", (0.503, 0.0, 0.38), (0.503, 0.0, 0.3))
+    procedure = trial_state.ProcedureState(
         "dbs",
         stage=phase,
         registration=UsedRegistration((1.0,) * 16, 1.0, 1.0),
-        checkpoints=(CheckedPoint("Vertex", (0.0, 0.0, 0.0), 0.00123456, 1.0, 1.0),),
-        trajectories=(TrajectoryState(line), TrajectoryState(line)),
+        checkpoints=(trial_state.CheckedPoint("Vertex", (0.0, 0.0, 0.0), 0.00123456, 1.0, 1.0),),
+        trajectories=(trial_state.TrajectoryState(line), trial_state.TrajectoryState(line)),
     )
     training = replace(RUNNING, phase=phase, procedure=procedure)
     return at_rest(tool_tip_to_world=pose, training=training, feed=feed, **others)

@@ -8,11 +8,11 @@ import xml.etree.ElementTree as ElementTree
 from PySide6 import QtCore, QtUiTools, QtWidgets
 
 from Testing.slicer.host.members import members_of, module_of
-from Testing.slicer.host.stand_ins import ctk_buttons, ctk_inputs, mrml_widgets, node_combo_box
+from Testing.slicer.host.stand_ins import ctk, mrml
 
 WIDGETS = {
     name: kind
-    for module in (ctk_buttons, ctk_inputs, mrml_widgets, node_combo_box)
+    for module in (ctk, mrml)
     for name, kind in vars(module).items()
     if name.startswith(("ctk", "qMRML", "qSlicer"))
 }

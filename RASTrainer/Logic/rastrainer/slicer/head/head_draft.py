@@ -13,15 +13,8 @@ from rastrainer.head.mesh import HeadMesh
 from rastrainer.head.volume import KEPT_MM, HeadVolume
 from rastrainer.scenario.scenario import SkullKind
 from rastrainer.scenario.writer import HeadDraft
-from rastrainer.slicer.head import mask, surface
+from rastrainer.slicer.head import intensities, mask, surface
 from rastrainer.slicer.head.extraction import findHead, skinOf
-from rastrainer.slicer.head.intensities import (
-    CT_AIR,
-    CT_BONE,
-    cleaned,
-    isHounsfield,
-    skullWarnings,
-)
 from rastrainer.slicer.head.volume import (
     SPACING_MM,
     HeadBody,
@@ -92,17 +85,17 @@ def _findSkin(
     """Return a copy of the volume with measured values alone, and what `findSkin` does."""
     volume, settings = asFloat(volume), settings or HeadSettings()
     warnings = [*volume.warnings, *checkVolume(volume)]
-    volume, offset, more = cleaned(volume)
+    volume, offset, more = intensities.cleaned(volume)
     if segment is not None:
         found = findHead(volumeOfSegment(segment), forSegment(settings), progress)
-        found = replace(found, isCt=isHounsfield(volume.values))
+        found = replace(found, isCt=intensities.isHounsfield(volume.values))
     else:
         if settings.threshold is not None:
             settings = replace(settings, threshold=settings.threshold + offset)
         found = findHead(volume, settings, progress)
     mesh = skinOf(found, progress)
     checkHead(mesh)
-    return volume, found, mesh, warnings + more + skullWarnings(volume, found)
+    return volume, found, mesh, warnings + more + intensities.skullWarnings(volume, found)
 
 
 FEWEST_VOXELS = 16
@@ -193,7 +186,8 @@ def imageOf(volume: Volume, head: HeadBody) -> tuple[HeadVolume, str]:
     gridToRas[:3, 3] = head.origin + SPACING_MM * np.array([part.start for part in around])
     values = np.where(near, sampled(volume, gridToRas, near.shape), volume.values.min())
     if head.isCt:
-        units = np.rint(np.clip(np.where(near, values, CT_AIR), *HOUNSFIELD)).astype(np.int16)
+        values = np.where(near, values, intensities.CT_AIR)
+        units = np.rint(np.clip(values, *HOUNSFIELD)).astype(np.int16)
         low, high = HOUNSFIELD
         method = f"Images: CT, 1 mm, Hounsfield units from {low:g} to {high:g}."
         return HeadVolume(units, gridToRas, CT_WINDOW, CT_LEVEL), method
@@ -240,7 +234,7 @@ def _bone(volume: Volume, head: HeadBody) -> np.ndarray:
     room = bone[into].shape
     start = np.maximum(0, -first)
     taken = smooth[tuple(slice(s, s + n) for s, n in zip(start, room, strict=True))]
-    bone[into] = np.clip(taken / CT_BONE - 1.0, -1.0, 1.0)
+    bone[into] = np.clip(taken / intensities.CT_BONE - 1.0, -1.0, 1.0)
     if not (bone > 0).any():
         raise InputError("The CT shows no bone.")
     return np.where(head.body, bone, -1.0)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
@@ -23,32 +25,23 @@ APART_MM = 0.5
 def surfaceOf(level: np.ndarray, originMm: np.ndarray, spacingMm: float) -> vtk.vtkPolyData:
     """Return the largest closed surface around the positive part of a level set (i, j, k)."""
     padded = np.pad(level, 1, constant_values=-1.0)
-    image = vtk.vtkImageData()
-    image.SetDimensions(padded.shape)
-    image.SetSpacing([spacingMm] * 3)
-    image.SetOrigin(np.asarray(originMm) - spacingMm)
-    scalars = padded.astype(np.float32).ravel(order="F")
-    image.GetPointData().SetScalars(vtkArray(scalars))
-    contour = vtk.vtkFlyingEdges3D()
-    contour.SetInputData(image)
+    origin = np.asarray(originMm) - spacingMm
+    image = vtk.vtkImageData(dimensions=padded.shape, spacing=[spacingMm] * 3, origin=origin)
+    image.GetPointData().SetScalars(vtkArray(padded.astype(np.float32).ravel(order="F")))
+    contour = vtk.vtkFlyingEdges3D(compute_normals=False, compute_scalars=False)
     contour.SetValue(0, 0.0)
-    contour.ComputeNormalsOff()
-    contour.ComputeScalarsOff()
-    largest = vtk.vtkPolyDataConnectivityFilter()
-    largest.SetInputConnection(contour.GetOutputPort())
-    largest.SetExtractionModeToLargestRegion()
-    return _output(largest)
+    return _output(image >> contour >> _largestPart())
 
 
 def smoothed(surface: vtk.vtkPolyData) -> vtk.vtkPolyData:
     """Return the surface without the steps of its grid, and without shrinking it."""
-    smoother = vtk.vtkWindowedSincPolyDataFilter()
-    smoother.SetInputData(surface)
-    smoother.SetNumberOfIterations(SMOOTHING_ITERATIONS)
-    smoother.SetPassBand(SMOOTHING_PASS_BAND)
-    smoother.NormalizeCoordinatesOn()
-    smoother.FeatureEdgeSmoothingOff()
-    return _output(smoother)
+    smoother = vtk.vtkWindowedSincPolyDataFilter(
+        number_of_iterations=SMOOTHING_ITERATIONS,
+        pass_band=SMOOTHING_PASS_BAND,
+        normalize_coordinates=True,
+        feature_edge_smoothing=False,
+    )
+    return _output(surface >> smoother)
 
 
 def decimated(surface: vtk.vtkPolyData, triangleCount: int, aboveMm: float) -> vtk.vtkPolyData:
@@ -57,10 +50,8 @@ def decimated(surface: vtk.vtkPolyData, triangleCount: int, aboveMm: float) -> v
     countAbove = np.count_nonzero(mesh.vertices[mesh.triangles[:, 0], 2] > aboveMm)
     if countAbove <= triangleCount:
         return surface
-    decimation = vtk.vtkQuadricDecimation()
-    decimation.SetInputData(surface)
-    decimation.SetTargetReduction(1.0 - triangleCount / countAbove)
-    thin = _output(decimation)
+    reduction = 1.0 - triangleCount / countAbove
+    thin = _output(surface >> vtk.vtkQuadricDecimation(target_reduction=reduction))
     # Decimation may leave fins: triangles that hang on an edge which two others share.
     openSides = (meshOf(thin).side_uses == 1).sum(axis=1)
     thin.BuildCells()
@@ -79,24 +70,12 @@ def cutFlat(mesh: HeadMesh, heightMm: float) -> HeadMesh:
     isNear = np.abs(vertices[:, 2] - heightMm) < APART_MM
     isAbove = vertices[:, 2] >= heightMm
     vertices[isNear, 2] = heightMm + np.where(isAbove, APART_MM, -APART_MM)[isNear]
-    plane = vtk.vtkPlane()
-    plane.SetOrigin(0.0, 0.0, heightMm)
-    plane.SetNormal(0.0, 0.0, 1.0)
     planes = vtk.vtkPlaneCollection()
-    planes.AddItem(plane)
-    clip = vtk.vtkClipClosedSurface()
-    clip.SetInputData(trianglesPolyData(vertices, mesh.triangles))
-    clip.SetClippingPlanes(planes)
-    clip.SetTolerance(1e-12)
-    triangles = vtk.vtkTriangleFilter()
-    triangles.SetInputConnection(clip.GetOutputPort())
-    largest = vtk.vtkPolyDataConnectivityFilter()
-    largest.SetInputConnection(triangles.GetOutputPort())
-    largest.SetExtractionModeToLargestRegion()
-    clean = vtk.vtkCleanPolyData()
-    clean.SetInputConnection(largest.GetOutputPort())
-    clean.PointMergingOff()
-    return meshOf(_output(clean))
+    planes.AddItem(vtk.vtkPlane(origin=(0.0, 0.0, heightMm), normal=(0.0, 0.0, 1.0)))
+    clip = vtk.vtkClipClosedSurface(clipping_planes=planes, tolerance=1e-12)
+    clean = vtk.vtkCleanPolyData(point_merging=False)
+    whole = trianglesPolyData(vertices, mesh.triangles)
+    return meshOf(_output(whole >> clip >> vtk.vtkTriangleFilter() >> _largestPart() >> clean))
 
 
 def meshOf(surface: vtk.vtkPolyData) -> HeadMesh:
@@ -106,9 +85,15 @@ def meshOf(surface: vtk.vtkPolyData) -> HeadMesh:
     )
 
 
-def _output(filter_: vtk.vtkPolyDataAlgorithm) -> vtk.vtkPolyData:
-    filter_.Update()
-    surface = filter_.GetOutput()
+def _largestPart() -> vtk.vtkPolyDataConnectivityFilter:
+    largest = vtk.vtkPolyDataConnectivityFilter()
+    largest.SetExtractionModeToLargestRegion()
+    return largest
+
+
+def _output(filters: Any) -> vtk.vtkPolyData:
+    """Return what a pipeline of filters makes."""
+    surface = filters.update().output
     if surface.GetNumberOfPolys() == 0:
         raise InputError("No head was found: there is no surface at the threshold.")
     return surface

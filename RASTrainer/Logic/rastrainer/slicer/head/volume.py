@@ -182,18 +182,16 @@ def showSegment(node: Any, head: HeadBody) -> str:
     import slicer
 
     voxels, origin = head.labels
-    image = slicer.vtkOrientedImageData()
-    image.SetDimensions(voxels.shape[::-1])
-    image.SetSpacing([SPACING_MM] * 3)
-    image.SetOrigin(*origin)
+    image = slicer.vtkOrientedImageData(
+        dimensions=voxels.shape[::-1], spacing=[SPACING_MM] * 3, origin=origin
+    )
     image.GetPointData().SetScalars(numpy_to_vtk(voxels.ravel(), deep=True))
     segmentation = node.GetSegmentation()
     former = segmentation.GetSegmentIdBySegmentName(SEGMENT_NAME)
     if former:
         segmentation.RemoveSegment(former)
     name = slicer.vtkSegmentationConverter.GetSegmentationBinaryLabelmapRepresentationName()
-    segment = slicer.vtkSegment()
-    segment.SetName(SEGMENT_NAME)
+    segment = slicer.vtkSegment(name=SEGMENT_NAME)
     segment.SetTag(BASE_TAG, repr(float(head.baseMm)))
     segment.AddRepresentation(name, image)
     segmentation.AddSegment(segment)

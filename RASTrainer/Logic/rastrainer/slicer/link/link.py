@@ -24,17 +24,8 @@ from rastrainer.commands import CommandName, check_arguments, decode_answer_obje
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, PROTOCOL_VERSION, DeviceName
-from rastrainer.slicer.link.link_status import (
-    RECONNECT_AFTER_S,
-    LinkObservation,
-    LinkState,
-    LinkStatus,
-    Peer,
-    ProbeResult,
-    judge,
-    judgeFinding,
-    lookingAt,
-)
+from rastrainer.slicer.link import link_status
+from rastrainer.slicer.link.link_status import LinkObservation, LinkState, LinkStatus, Peer
 from rastrainer.slicer.link.probe import Probe
 from rastrainer.slicer.scene.nodes import (
     ORIGINAL_NAME,
@@ -153,7 +144,7 @@ class Link:
         self.trialCompleted = Signal()
         self.trialAborted = Signal()
         self.stepAnswered = Signal()
-        self.status = judge(self.seen)
+        self.status = link_status.judge(self.seen)
         self._test: tuple[Probe, str, Callable[[LinkStatus], None]] | None = None
         self._points: tuple = ()
         self._stateText: str | bytes = ""
@@ -193,7 +184,7 @@ class Link:
             self._test[0].close()
         self._test = Probe(host, port, self._clock), f"{host}:{port}", onFound
         self.woken.emit()
-        return lookingAt(f"{host}:{port}")
+        return link_status.lookingAt(f"{host}:{port}")
 
     def disconnect(self) -> None:
         self._endConnection()
@@ -219,7 +210,7 @@ class Link:
             finding = probe.process()
             if finding is not None:
                 self._test = None
-                status = judgeFinding(finding, address)
+                status = link_status.judgeFinding(finding, address)
                 self._guard.run("The test of a connection", onFound, status)
         if self._guard.run("The connection", self.followConnection):
             self._sendHello(isFirst=True)
@@ -228,7 +219,7 @@ class Link:
             self._preparation = iter(() if self.connector is None else prepareNodes(self._scene))
         # Each new node takes the panels and trees of Slicer long.
         next(self._preparation, None)
-        status = judge(self.seen)
+        status = link_status.judge(self.seen)
         if status != self.status:
             self.status = status
             self._guard.emit("The link's status", self.statusChanged, status)
@@ -309,7 +300,7 @@ class Link:
     ) -> None:
         """Send a command; `onReply` is called in a later turn, exactly once."""
         check_arguments(name, arguments or {})
-        status = judge(self.seen)
+        status = link_status.judge(self.seen)
         if not self.seen.isOpen or status.state is LinkState.WRONG_VERSION:
             self._refused.append((onReply, Reply(False, status.sentence)))
             self._processSoon()
@@ -425,7 +416,7 @@ class Link:
                 self.seen.hasHeartbeat = True
                 self.seen.silenceS = 0.0
                 self.seen.peerVersion = node.GetSubCode()
-        if self.seen.silenceS > RECONNECT_AFTER_S:
+        if self.seen.silenceS > link_status.RECONNECT_AFTER_S:
             # Half-open: nothing will ever come over this connection again, if anything ever did.
             connector.Stop()
             self._searchAnew()
@@ -460,7 +451,7 @@ class Link:
         self.seen.finding = None
         self._nextProbe = self._clock()
 
-    def _search(self, host: str, port: int) -> ProbeResult | None:
+    def _search(self, host: str, port: int) -> link_status.ProbeResult | None:
         """Test when it is due; return the simulator of our version that has just answered."""
         if self._probe is None:
             if self._clock() < self._nextProbe:

@@ -21,7 +21,7 @@ from typing import Any
 from rastrainer import __version__
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
-from rastrainer.files.writing import write_text
+from rastrainer.files.writing import make_folder, write_text
 from rastrainer.python_environment import private_command
 from rastrainer.slicer.program.child_process import ChildProcess, childEnvironment
 from rastrainer.slicer.program.simulator_package import (
@@ -97,14 +97,7 @@ class SimulatorSetup:
         words = ["-m", "pip", "install", *pipArguments(index, wheels)]
         requirements = self.package.requirements()
         discard(self._partial)
-        try:
-            self._partial.mkdir(parents=True)
-        except OSError as error:
-            raise InputError(
-                _("The folder {path} cannot be made: {reason}.").format(
-                    path=self._partial, reason=error.strerror
-                )
-            ) from None
+        make_folder(self._partial)
         write_text(self._partial / REQUIREMENTS, requirements)
         checkout = self.package.checkout
         if checkout is not None:

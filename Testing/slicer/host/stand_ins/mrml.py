@@ -1,12 +1,86 @@
-"""The combo box in which a node of the scene is chosen."""
+"""Slicer's widgets that show a part of the scene, and the combo box in which a node is chosen."""
 
 from __future__ import annotations
 
+import weakref
+from collections.abc import Callable
 from typing import Any
 
-from PySide6 import QtCore, QtWidgets
+import shiboken6
+import slicer
+import vtk
+from PySide6 import QtCore, QtGui, QtWidgets
 
-from Testing.slicer.host.stand_ins.observing import unobserving, weakly
+
+class qMRMLWidget(QtWidgets.QWidget):
+    """Hands the scene to all its children, as the connections of a `.ui` file do."""
+
+    mrmlSceneChanged = QtCore.Signal(object)
+
+    def __init__(self, parent: QtWidgets.QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._scene: Any = None
+
+    def mrmlScene(self) -> Any:
+        return self._scene
+
+    def setMRMLScene(self, scene: Any) -> None:
+        self._scene = scene
+        self.mrmlSceneChanged.emit(scene)
+
+
+class qSlicerScriptedLoadableModuleWidget(qMRMLWidget):
+    """The frame of a module's widgets."""
+
+    def __init__(self, parent: QtWidgets.QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._isEntered = False
+        QtWidgets.QVBoxLayout(self)
+
+    def enter(self) -> None:
+        self._isEntered = True
+
+    def exit(self) -> None:
+        self._isEntered = False
+
+    isEntered = QtCore.Property(bool, lambda self: self._isEntered)
+
+
+class qSlicerMainWindow(QtWidgets.QMainWindow):
+    """The window of the application; `slicer.util.mainWindow` finds it by its name.
+
+    The host sets its list of modules, and what draws a picture of it.
+    """
+
+    selector: Any = None
+    picture: Callable[[], QtGui.QPixmap]
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("qSlicerMainWindow")
+
+    def grab(self, *_rectangle: object) -> QtGui.QPixmap:
+        """Return a picture of the window."""
+        return self.picture()
+
+    def moduleSelector(self) -> Any:
+        return self.selector
+
+
+def weakly(method: Callable[..., None]) -> Callable[..., None]:
+    """Return an observer that calls a widget's method `(event, object or None)` while it lives.
+
+    VTK would keep the observers of a dead widget alive.
+    """
+    reference = weakref.WeakMethod(method)
+
+    @vtk.calldata_type(vtk.VTK_OBJECT)
+    def observe(_caller: Any, event: str, call_data: Any = None) -> None:
+        alive = reference()
+        if alive is not None and shiboken6.isValid(alive.__self__):
+            alive(event, call_data)
+
+    return observe
 
 
 def _stored(name: str, kind: Any) -> QtCore.Property:
@@ -76,8 +150,8 @@ class qMRMLNodeComboBox(QtWidgets.QWidget):
                 scene.EndBatchProcessEvent,
                 scene.EndCloseEvent,
             )
-            self._tags = [scene.AddObserver(event, weakly(self._follow)) for event in events]
-            self.destroyed.connect(unobserving(scene, self._tags))
+            self._tags = tags = [scene.AddObserver(each, weakly(self._follow)) for each in events]
+            self.destroyed.connect(lambda: [scene.RemoveObserver(tag) for tag in tags])
         self._fill()
         self.mrmlSceneChanged.emit(scene)
 
@@ -85,11 +159,8 @@ class qMRMLNodeComboBox(QtWidgets.QWidget):
         """Return the nodes among which one can be chosen."""
         if self._scene is None:
             return []
-        found = []
-        for name in self._values["nodeTypes"]:
-            nodes = self._scene.GetNodesByClass(name)
-            nodes.UnRegister(None)
-            found += [nodes.GetItemAsObject(index) for index in range(nodes.GetNumberOfItems())]
+        kinds, find = self._values["nodeTypes"], slicer.util.getNodesByClass
+        found = [node for kind in kinds for node in find(kind, self._scene)]
         return [node for node in found if self._is_offered(node)]
 
     def _is_offered(self, node: Any) -> bool:
@@ -113,14 +184,6 @@ class qMRMLNodeComboBox(QtWidgets.QWidget):
         if isNew:
             self.currentNodeIDChanged.emit(wanted)
             self.currentNodeChanged.emit(self.currentNode())
-
-    def addNode(self, class_name: str = "") -> Any:
-        name = self._values["baseName"] or "Node"
-        made = self._scene.AddNewNodeByClass(class_name or self._values["nodeTypes"][0], name)
-        if self._values["selectNodeUponCreation"]:
-            self.setCurrentNode(made)
-        self.nodeAddedByUser.emit(made)
-        return made
 
     def _follow(self, event: str, node: Any) -> None:
         if node is not None and not any(node.IsA(name) for name in self._values["nodeTypes"]):
