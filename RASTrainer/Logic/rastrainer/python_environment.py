@@ -19,7 +19,7 @@ import runpy
 import site
 import sys
 import uuid
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 LEVEL = "APPLAUNCHER_LEVEL"
@@ -62,6 +62,21 @@ def clean_environment(environment: Mapping[str, str]) -> dict[str, str]:
         if SAVED + name in environment:
             clean[name] = environment[SAVED + name]
     return clean
+
+
+@contextlib.contextmanager
+def temporary_environment(values: Mapping[str, str]) -> Iterator[None]:
+    """Set variables temporarily: programs that are started later must not inherit them."""
+    before = {name: os.environ.get(name) for name in values}
+    os.environ.update(values)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
 
 
 START = (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import gc
 import math
 import re
 import sys
@@ -176,6 +177,8 @@ def run_command(words: Sequence[str]) -> int:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command and return its exit status: 2 where the input cannot be used."""
     allow_any_text()
+    # Modules stay: looking for garbage among them would be a twentieth of the simulator's start.
+    gc.set_threshold(100_000)
     try:
         return run_command(sys.argv[1:] if argv is None else list(argv))
     except RASTrainerError as error:

@@ -79,7 +79,6 @@ class ProcedureMotion:
             self._outline = HeadOutline(head.vertices, scenario.target.position_ras)
 
     def reset(self, feed: Feed = NO_FEED) -> None:
-        """Adopt a feed, and end a commanded one."""
         self.feed = feed
         self.drive.stop()
 

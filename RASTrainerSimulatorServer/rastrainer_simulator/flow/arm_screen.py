@@ -92,7 +92,6 @@ class ArmScreen:
 
     @property
     def _is_moving(self) -> bool:
-        """Whether the arm moves by itself."""
         return self._move is not None and not self._move.is_over
 
     def _begin_move(self, goal: Vector, above: Vector) -> None:
@@ -134,7 +133,6 @@ class ArmScreen:
         return ScreenMessage(self._session.say(key, **values), tone)
 
     def _instructed(self, tone: Tone) -> ScreenMessage:
-        """Return the instruction of the trial or the practice itself."""
         return ScreenMessage(self._session.texts.again(self._state.training.instruction), tone)
 
     def warnings(self) -> tuple[ScreenMessage, ...]:

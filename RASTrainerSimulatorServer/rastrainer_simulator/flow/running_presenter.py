@@ -24,7 +24,7 @@ from rastrainer_simulator.loop.control_loop import ControlLoop
 
 PERIOD_S = 0.005
 """Time between two polls of the gamepad."""
-QUIET_S, IDLE_S = 0.01, 0.025
+QUIET_S, IDLE_S = 0.01, 0.05
 """The same if none is plugged in, and if nobody drives either; messages of views are processed as
 they arrive."""
 LONGEST_STEP_S = 0.1

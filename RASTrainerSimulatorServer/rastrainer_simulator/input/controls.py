@@ -241,7 +241,6 @@ class InputState:
 
     @property
     def is_at_rest(self) -> bool:
-        """Whether nothing is pressed or pushed."""
         is_pushed = any(value >= AT_REST_BELOW for value in self._inputs.values())
         return not self.down and self._sticks == NEUTRAL_STICKS and not is_pushed
 

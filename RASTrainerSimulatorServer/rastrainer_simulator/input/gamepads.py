@@ -6,13 +6,12 @@ each direction in which it can be pushed ("-leftx", "+leftx").
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from types import MappingProxyType, ModuleType
 from typing import Any, Literal, NamedTuple
 
 from rastrainer.errors import RASTrainerError
+from rastrainer.python_environment import temporary_environment
 
 BUTTONS = (
     *("a", "b", "x", "y", "back", "guide", "start", "leftstick", "rightstick"),
@@ -102,7 +101,6 @@ class Gamepads:
         self._pygame.display.quit()
 
     def _look(self) -> Iterator[GamepadNews]:
-        """Open newly plugged gamepads and forget unplugged gamepads."""
         for number, pad in tuple(self._open.items()):
             if not pad.attached():
                 del self._open[number]
@@ -128,7 +126,7 @@ class NoGamepadsError(RASTrainerError):
 
 def start_sdl() -> tuple[ModuleType, ModuleType]:
     """Return pygame and its module of game controllers, both ready."""
-    with _environment(_HINTS):
+    with temporary_environment(_HINTS):
         try:
             import pygame
             from pygame._sdl2 import controller
@@ -143,18 +141,3 @@ def start_sdl() -> tuple[ModuleType, ModuleType]:
     pygame.event.set_blocked(None)
     pygame.event.set_allowed((pygame.JOYDEVICEADDED, pygame.JOYDEVICEREMOVED))
     return pygame, controller
-
-
-@contextmanager
-def _environment(values: dict[str, str]) -> Iterator[None]:
-    """Set variables temporarily: the windows that the server starts must not inherit them."""
-    before = {name: os.environ.get(name) for name in values}
-    os.environ.update(values)
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value

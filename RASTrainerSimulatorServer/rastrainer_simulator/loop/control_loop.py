@@ -287,7 +287,6 @@ class ControlLoop:
         self._writer.submit(query)
 
     def _finish(self) -> None:
-        """Write everything, answer the commands that it completes, and refuse all others."""
         self._recorder.stop(self._state)
         self._writer.shutdown(wait=True)
         for answer in self._held.publishable(StepResult(self._state), None)[0].answers:

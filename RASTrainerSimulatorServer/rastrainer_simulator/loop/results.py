@@ -42,7 +42,6 @@ class DurableResults:
 
     @property
     def is_waiting(self) -> bool:
-        """Whether a change of the trial is still being written."""
         return any(written.is_awaited for written, _ in self._unwritten)
 
     def publishable(

@@ -512,7 +512,6 @@ class OrderRequest:
 
     @property
     def sentence(self) -> str:
-        """The sentence to the trainee, "" for other orders."""
         return self.text.strip() if self.order is InstructorOrder.SAY else ""
 
 

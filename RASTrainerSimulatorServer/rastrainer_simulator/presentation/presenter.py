@@ -87,7 +87,6 @@ class Presenter:
         return None
 
     def trace_guidance(self, now: SimulationState) -> TraceGuidance:  # noqa: ARG002
-        """Return how a trainee who traces the skin is guided in a state."""
         return TraceGuidance()
 
     def seat(self) -> Seat:

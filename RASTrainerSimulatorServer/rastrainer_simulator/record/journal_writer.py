@@ -124,7 +124,6 @@ class Journal:
             self._descriptor = None
 
     def forget_unwritten(self) -> None:
-        """Forget the entries that could not be written."""
         self._unwritten.clear()
 
     def discard(self) -> None:
@@ -137,7 +136,6 @@ class Journal:
             self._size = None
 
     def _opened(self) -> tuple[int, int]:
-        """Open the file unless it is open; return its descriptor and size."""
         if self._descriptor is not None and self._size is not None:
             return self._descriptor, self._size
         flags = os.O_RDWR | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
@@ -225,7 +223,6 @@ class RecordsFolder:
         os.close(self._descriptor)
 
     def _lock(self, elsewhere: str) -> None:
-        """Lock the folder, waiting for programs that only check its lock."""
         end = time.monotonic() + PEEK_S
         while True:
             try:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import platform
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import metadata
 from pathlib import Path
@@ -82,38 +82,20 @@ class TutorialOutcome(TutorialReport):
     format_version: Annotated[int, whole_number(1, 1)] = 1
 
 
-class DisplayUse:
-    """Adds up the reports of one trial."""
-
-    def __init__(self) -> None:
-        self._aids: dict[str, str] = {}
-        self._last: DisplayReport | None = None
-        self._shown = 0
-        self._dropped = 0
-
-    def add(self, report: Entry) -> None:
-        """Add a report; entries that are no matter of drawing are ignored."""
-        match report:
-            case DisplayReport():
-                self._last = report
-                self._shown += report.shown
-                self._dropped += report.dropped
-            case GuidanceReport():
-                self._aids["guidance"] = report.guidance
-            case GhostReport():
-                self._aids["ghost"] = report.ghost
-
-    def summary(self) -> dict[str, str | float]:
-        """Return `display` of the trial's record: the last view, all frames, and the aids."""
-        aids = {name: aid for name in ("guidance", "ghost") if (aid := self._aids.get(name))}
-        if self._last is None:
-            return {**aids}
-        device = {"device": self._last.device} if self._last.device else {}
-        return {
-            "kind": self._last.view,
-            **device,
-            **aids,
-            "refreshHz": self._last.refresh_hz,
-            "shownFrames": self._shown,
-            "droppedFrames": self._dropped,
-        }
+def display_summary(reports: Sequence[Entry]) -> dict[str, str | float]:
+    """Return `display` of a trial's record: its last view, all frames, and the aids."""
+    drawn = [each for each in reports if isinstance(each, DisplayReport)]
+    aids: dict[str, str] = {}
+    for name, kind in (("guidance", GuidanceReport), ("ghost", GhostReport)):
+        given = [getattr(each, name) for each in reports if isinstance(each, kind)]
+        aids |= {name: given[-1]} if given and given[-1] else {}
+    if not drawn:
+        return {**aids}
+    return {
+        "kind": drawn[-1].view,
+        **({"device": drawn[-1].device} if drawn[-1].device else {}),
+        **aids,
+        "refreshHz": drawn[-1].refresh_hz,
+        "shownFrames": sum(each.shown for each in drawn),
+        "droppedFrames": sum(each.dropped for each in drawn),
+    }

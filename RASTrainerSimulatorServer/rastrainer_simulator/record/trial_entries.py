@@ -154,7 +154,8 @@ class TrialEntries:
                 records.dates[line.at.sim_time_s - dt] = line.at.utc
             elif isinstance(line.entry, TracePoint):
                 records.dates[line.at.sim_time_s] = line.at.utc
-            records.display.add(line.entry)
+            elif isinstance(line.entry, Report):
+                records.reports.append(line.entry)
         continued = Continued(
             since_s=since,
             session=session,
@@ -214,7 +215,7 @@ class TrialEntries:
         return UnmeasuredRecord(record, self._seed, self._recording.trajectory())
 
     def add_display(self, report: Report, state: SimulationState) -> None:
-        self.records.display.add(report)
+        self.records.reports.append(report)
         if isinstance(report, TutorialOutcome):
             # The rest is in the tutorial's own file.
             names = [each.name for each in fields(TutorialReport)]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rastrainer.journal.entries import (
     Continued,
+    Entry,
     JournalHeader,
     Line,
     PhaseChange,
@@ -30,7 +31,7 @@ from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.how_played import PlayRecording, SeedSource
 from rastrainer.trial.record import AbortedTrial, TouchedPoint, TrialRecord
-from rastrainer_simulator.record.trial_context import DisplayUse, versions
+from rastrainer_simulator.record.trial_context import display_summary, versions
 from rastrainer_simulator.state import SimulationState, TrainingState
 from rastrainer_simulator.trial_state import ProcedureState, RegistrationAttempt, TrajectoryState
 from rastrainer_simulator.vectors import in_millimeters, vector
@@ -46,7 +47,7 @@ class TrialRecords:
         self.header = header
         self.started_utc = started_utc
         self.versions = versions_of(simulation)
-        self.display = DisplayUse()
+        self.reports: list[Entry] = []
         self.feeds = FeedRecording()
         self.play = PlayRecording()
         self._setup = simulation.setup
@@ -79,7 +80,7 @@ class TrialRecords:
         return TrialRecord(
             completed_utc=self.dates[(traced or training.touches)[-1].sim_time],
             completion_time_s=training.completed_s,
-            display=self.display.summary(),
+            display=display_summary(self.reports),
             procedure=procedure,
             trace=tuple((*in_millimeters(point.position), point.sim_time) for point in traced),
             skin=self._skin,

@@ -7,6 +7,7 @@ import contextlib
 import gc
 import itertools
 import logging
+import os
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass
@@ -19,6 +20,7 @@ from rastrainer.commands import CommandName
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.journal.journal_file import JournalReading
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
+from rastrainer.python_environment import temporary_environment
 from rastrainer.scenario.scenario import task_by_method
 from rastrainer.study_messages import CurriculumMessage, StudyStep
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
@@ -146,9 +148,10 @@ class SimulatorServer:
         stop = asyncio.Event()
         views = self._make_views(link, stop, on_ready) if self._options.has_views else None
         presenter, window = self._presenter, None
-        # Garbage collection between two ticks stays short if it skips everything loaded so far.
-        gc.collect()
+        # Garbage collection between two ticks stays short if it skips everything loaded so far, in
+        # which hardly anything is garbage.
         gc.freeze()
+        gc.set_threshold(700)
         with stop_on_signals(stop):
             self._control_loop.thread.start()
             _log.info("The simulator has started.", extra={"data": versions()})
@@ -214,11 +217,12 @@ class SimulatorServer:
     def _make_views(
         self, link: SimulatorLink, stop: asyncio.Event, announce: Callable[[str], None]
     ) -> ViewServer:
-        """Make the presenter, and the server that shows it."""
-        # Before the control loop ticks: the import of aiohttp would make ticks late.
-        from rastrainer_simulator.flow.running_presenter import RunningPresenter
-        from rastrainer_simulator.flow.session.services import FlowServices
-        from rastrainer_simulator.net.views.view_server import ViewServer
+        # Before the control loop ticks: the import of aiohttp would make ticks late. It also reads
+        # all certificate authorities, for clients: a server needs none.
+        with temporary_environment({"SSL_CERT_FILE": os.devnull, "SSL_CERT_DIR": os.devnull}):
+            from rastrainer_simulator.flow.running_presenter import RunningPresenter
+            from rastrainer_simulator.flow.session.services import FlowServices
+            from rastrainer_simulator.net.views.view_server import ViewServer
 
         services = FlowServices(
             config=self._config,

@@ -21,7 +21,6 @@ from rastrainer.errors import InputError
 from rastrainer.json_records import record_from_json
 from rastrainer.protocol import TRIAL_RUN, Phase
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.study.delivered_trial import scored_with_journal, with_progress_among
 from rastrainer.trial.analysis import (
     RevealedTruth,
     TrialAnalysis,
@@ -160,6 +159,9 @@ def score_alone(
     records: Path,
 ) -> None:
     """Submit a registration, which makes it final, and the score that its truth gives."""
+    # Here, since few starts of the simulator need what stores trials in a study.
+    from rastrainer.study.delivered_trial import scored_with_journal, with_progress_among
+
     answer = ask(CommandName.SUBMIT_REGISTRATION, analysis.arguments(analysis.record.trial_id))
     truth = record_from_json(RevealedTruth, answer, "The simulator's answer")
     scored = scored_with_journal(analysis, truth, scenario, records=records, pause=_rest)

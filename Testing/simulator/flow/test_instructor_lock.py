@@ -9,7 +9,7 @@ import pytest
 from rastrainer_simulator.flow.session.preferences import OF_TRAINEES, OPTIONS
 from rastrainer_simulator.ops.instructor_pin import PIN_FILE
 from rastrainer_simulator.presentation.messages import Hello
-from Testing.simulator.flow.trainee import STEP_S, Mouse, Trainee
+from Testing.simulator.flow.trainee import Mouse, Trainee
 
 PIN = "402817"
 OTHER = "402818"
@@ -111,7 +111,7 @@ def test_a_wrong_pin_unlocks_nothing_and_after_five_no_pin_is_checked(trainee, o
         trainee.tap("accept")
         until_message(trainee, "wait 1 s" if number == 4 else "not the PIN of this seat")
         trainee.until(lambda: trainee.item("unlock").value == "_", "the digits are cleared")
-        trainee.step(round(6.0 / STEP_S))
+        trainee.presenter.advance(6.0)
     trainee.hands.type(PIN)
     trainee.tap("accept")
     until_message(trainee, "wait 1 s")
@@ -220,14 +220,13 @@ def test_another_view_takes_control_from_an_idle_operator_only_with_the_pin(trai
     trainee.step(2)
     trainee.hands.push(0.0, 0.0, 0.0, False)
     presenter.view_joined(PAGE, Hello("page"))
-    rest = round(31.0 / STEP_S)
-    trainee.step(rest)
+    presenter.advance(31.0)
     press_menu(presenter)
     trainee.step(2)
     assert presenter.control.view == 1
     until_message(trainee, "Only an instructor can pass it on: Menu, Settings, Instructor's PIN.")
     unlock_in_the_trials_menu(trainee)
-    trainee.step(rest)
+    presenter.advance(31.0)
     press_menu(presenter)
     trainee.step(2)
     assert presenter.control.view == PAGE

@@ -26,7 +26,7 @@ def shared(simulation):
 @pytest.fixture
 def presenter(loop, outside):
     outside.services = replace(outside.services, scores_alone=True)
-    presenter = outside.presenter(loop)
+    presenter = outside.presenter(loop, view="never")
     yield presenter
     presenter.close()
 

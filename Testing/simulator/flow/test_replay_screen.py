@@ -90,7 +90,7 @@ def place(anywhere, tmp_path_factory):
     outside = Outside(tmp_path_factory.mktemp("replay"))
     records = outside.services.records
     with ControlLoop(Simulation(anywhere, 3), records, speed=None) as loop:
-        presenter = outside.presenter(loop)
+        presenter = outside.presenter(loop, view="never")
         place = Place(loop, presenter, outside)
         place.until_menu("start")
         place.play_and_be_scored()

@@ -21,7 +21,7 @@ def registered(simulation, tmp_path_factory):
     """Return a trainee who waits for the score of a trial that was played."""
     folder = tmp_path_factory.mktemp("played")
     with ControlLoop(simulation, folder / "records", rate_hz=RATE_HZ, speed=None) as loop:
-        presenter = Outside(folder).presenter(loop)
+        presenter = Outside(folder).presenter(loop, view="never")
         trainee = Trainee(loop, presenter, Keys)
         trainee.records = folder / "records"
         trainee.until_menu("start")

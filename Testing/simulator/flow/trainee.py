@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 import time
 from collections.abc import Callable, Mapping
 
@@ -17,8 +16,8 @@ from rastrainer_simulator.presentation.screen import Screen
 from rastrainer_simulator.state import TouchStage
 from rastrainer_simulator.teleoperation.steering import camera_axes
 from rastrainer_simulator.vectors import dot, subtract
+from Testing.simulator.lock_step import PATIENCE_S, LockStep
 
-PATIENCE_S = 120.0
 RATE_HZ = 62.5
 """Rate of a trainee's control loop, which ticks as often as a view is drawn and costs a quarter."""
 STEP_S = 1.0 / RATE_HZ
@@ -43,43 +42,6 @@ class Watcher:
     @property
     def kinds(self):
         return [feedback.kind for feedback in self.feedbacks]
-
-
-class LockStep:
-    """Lets a control loop tick only when a test wants it: nothing depends on how fast it is.
-
-    The loop waits between two ticks, after all its subscribers have been called: the test sees the
-    same states as they do.
-    """
-
-    def __init__(self, loop):
-        self._loop = loop
-        self._go, self._done = threading.Semaphore(0), threading.Semaphore(0)
-        self._is_free = self._has_waited = False
-        self._tick_alone, loop._tick = loop._tick, self._tick
-
-    def tick(self) -> None:
-        if not self._has_waited:
-            self._wait_for_loop()
-            self._has_waited = True
-        self._go.release()
-        self._wait_for_loop()
-
-    def free(self) -> None:
-        """Let the loop run alone."""
-        self._is_free = True
-        self._go.release()
-
-    def _wait_for_loop(self) -> None:
-        assert self._done.acquire(timeout=PATIENCE_S), "the control loop has stopped"
-
-    def _tick(self) -> None:
-        self._tick_alone()
-        if not self._is_free:
-            self._done.release()
-            # A test that has failed stops the loop without freeing it.
-            while not self._go.acquire(timeout=0.5) and not self._loop._is_stopping.is_set():
-                pass
 
 
 class Trainee:
@@ -116,14 +78,7 @@ class Trainee:
         """Advance the presenter by `count` steps, and the loop with it."""
         for _ in range(count):
             self._advance(self.step_s)
-            for _ in range(self.ticks_a_step):
-                self._lock_step.tick()
-                self._wait_for_disk()
-
-    def _wait_for_disk(self) -> None:
-        """Let no time pass in the simulation while a change of the trial is being written."""
-        if self.loop._held.is_waiting:
-            self.loop._writer.submit(lambda: None).result(PATIENCE_S)
+            self._lock_step.tick(self.ticks_a_step)
 
     def until(self, condition: Callable[[], bool], what: str = "it") -> None:
         """Step until a condition is true."""

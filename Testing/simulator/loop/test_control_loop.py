@@ -31,6 +31,8 @@ from rastrainer_simulator.state import OperatorCommand, OperatorInput, StepResul
 from Testing.simulator.record.test_interrupted_trial import on_full_disk
 
 TIMEOUT_S = 120.0
+SPEED = 20.0
+"""Of most loops: as fast as it can, a loop would fill journals while a test waits for the disk."""
 
 
 @pytest.fixture(scope="module")
@@ -101,7 +103,7 @@ def successor(shared_successor):
 def running(shared, tmp_path):
     """Return a client of a loop around the shared simulation, between two trials."""
     shared.step(0.004, OperatorInput(commands=(OperatorCommand(CommandName.ABORT),)))
-    with ControlLoop(shared, tmp_path / "records", speed=None) as loop:
+    with ControlLoop(shared, tmp_path / "records", speed=SPEED) as loop:
         yield Client(loop)
 
 
@@ -286,7 +288,7 @@ def test_the_same_seed_in_a_second_session_gives_a_different_trial(anywhere, tmp
     first = running.start()
     running.do(CommandName.ABORT)
     running.loop.stop()
-    with ControlLoop(Simulation(anywhere, 3), tmp_path / "records", speed=None) as loop:
+    with ControlLoop(Simulation(anywhere, 3), tmp_path / "records", speed=SPEED) as loop:
         assert Client(loop).start() != first
 
 
@@ -436,7 +438,7 @@ training = replace(
     setup.settings.training, acceptance_radius=10.0, touch_rule=TouchRule.WITHIN_RADIUS
 )
 setup = replace(setup, settings=replace(setup.settings, training=training))
-with ControlLoop(Simulation(setup, 1), Path(sys.argv[1]), speed=None) as loop:
+with ControlLoop(Simulation(setup, 1), Path(sys.argv[1]), speed=20.0) as loop:
     def do(name, **arguments):
         assert loop.submit(name, check_arguments(name, arguments)).result().ok
         print(name, flush=True)

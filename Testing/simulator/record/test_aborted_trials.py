@@ -27,20 +27,14 @@ from rastrainer_simulator.record.trial_archive import (
 )
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial
 from rastrainer_simulator.replay.resimulation import replay
-from Testing.simulator.record.test_interrupted_trial import (
-    TIMEOUT_S,
-    Server,
-    cut,
-    on_full_disk,
-)
+from Testing.simulator.record.test_interrupted_trial import Server, cut, on_full_disk
 
 
 class Restarted(Server):
     """A server that was started with `--no-resume`."""
 
     def __init__(self, simulation, folder):
-        self.loop = ControlLoop(simulation, folder, speed=None)
-        self.folder = folder
+        self._take(ControlLoop(simulation, folder, speed=None), folder)
 
 
 def touch(server, count):
@@ -49,8 +43,8 @@ def touch(server, count):
 
 
 def wait_for_offer(server):
-    """Return the offered records; the journal's thread has written everything before."""
-    server.loop._writer.submit(lambda: None).result()
+    """Return the offered records once everything before is written."""
+    server.write()
     return server.loop.archive.unacknowledged()
 
 
@@ -86,8 +80,7 @@ def test_an_aborted_trial_is_offered_with_its_touches_until_acknowledged_even_af
 
 
 def test_a_trial_that_was_only_viewed_is_delivered_for_its_number_alone(simulation, tmp_path):
-    # So slow that its ten seconds are not over while the start is written to disk.
-    with Server(simulation, tmp_path, speed=0.1) as server:
+    with Server(simulation, tmp_path) as server:
         server.start()
         server.move(ticks=5)
         assert server.do(CommandName.ABORT).ok
@@ -151,7 +144,7 @@ def test_of_two_simultaneous_commands_that_end_a_trial_only_one_takes_effect(sim
             touch(server, 15)
             arguments = {CommandName.ABORT: {"trialId": trial_id}}
             sent = [server.loop.submit(name, arguments.get(name)) for name in commands]
-            assert [one.result(TIMEOUT_S).ok for one in sent] == [True, False, False]
+            assert [server.answers(one).ok for one in sent] == [True, False, False]
             found = [one for one in wait_for_offer(server) if one.trial_id == trial_id]
             kinds += [type(one) for one in found]
     assert kinds == [TrialRecord, AbortedTrial]
@@ -258,6 +251,15 @@ def test_a_journal_cut_at_any_byte_keeps_every_complete_touch(simulation, tmp_pa
             assert TrialArchive(folder).unacknowledged() == archive.unacknowledged()
 
 
+@pytest.fixture(scope="module")
+def left(simulation, tmp_path_factory):
+    """The journal of a trial with two touches that was left open."""
+    with Server(simulation, tmp_path_factory.mktemp("left")) as server:
+        server.start()
+        touch(server, 2)
+    return server.path
+
+
 @pytest.mark.parametrize(
     "change",
     [
@@ -267,11 +269,8 @@ def test_a_journal_cut_at_any_byte_keeps_every_complete_touch(simulation, tmp_pa
         pytest.param({"kind": "phase", "phase": "scored"}, id="phase"),
     ],
 )
-def test_a_forged_leftover_journal_is_refused_with_a_message(simulation, tmp_path, change):
-    with Server(simulation, tmp_path) as server:
-        server.start()
-        touch(server, 2)
-    reading = read_journal(server.path)
+def test_a_forged_leftover_journal_is_refused_with_a_message(left, change):
+    reading = read_journal(left)
     for entry in reading.entries:
         if entry["kind"] == change["kind"]:
             entry.update(change)

@@ -3,7 +3,6 @@
 import errno
 import os
 import random
-import threading
 
 import numpy as np
 import pytest
@@ -21,22 +20,24 @@ from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.replay.resimulation import replay
 from rastrainer_simulator.state import OperatorInput
 from Testing.journal_lines import at, proximity
-
-TIMEOUT_S = 120.0
+from Testing.simulator.lock_step import LockStep
 
 
 class Server:
     """A control loop over a folder, as a server runs it; `end` is its end in the middle."""
 
-    def __init__(self, simulation, folder, speed=None):
+    def __init__(self, simulation, folder):
         found = find_interrupted(folder)
         reading = None
         if found is not None:
             reading, interrupted = found
             simulation.resume_trial(interrupted)
-        self.loop = ControlLoop(simulation, folder, speed=speed, interrupted=reading)
-        self.folder = folder
-        self.taken_up = self.loop.latest
+        self._take(ControlLoop(simulation, folder, speed=None, interrupted=reading), folder)
+
+    def _take(self, loop, folder):
+        self.loop, self.folder, self.taken_up = loop, folder, loop.latest
+        lock_step = LockStep(loop)
+        self.tick, self.until, self.write = lock_step.tick, lock_step.until, lock_step.write
 
     def __enter__(self):
         self.loop.thread.start()
@@ -55,29 +56,27 @@ class Server:
         return path
 
     def do(self, command, **arguments):
-        checked = check_arguments(command, arguments)
-        return self.loop.submit(command, checked, "tester").result(TIMEOUT_S)
+        return self.answers(
+            self.loop.submit(command, check_arguments(command, arguments), "tester")
+        )
+
+    def answers(self, answer):
+        """Tick until a command is answered; return the answer."""
+        while not answer.done():
+            self.tick()
+            self.write()
+        return answer.result()
 
     def start(self):
         self.do(CommandName.ABORT)
         return self.do(CommandName.START_TASK, task="task-1", trainee="P01").data["trialId"]
 
     def move(self, translation=(0.4, -0.3, 0.2), ticks=20):
-        """Hold the sticks for a number of ticks, however late this thread is."""
-        sticks = [OperatorInput(translation, operator="gamepad"), *[None] * (ticks - 1)]
-        sticks.append(OperatorInput())
-        is_over = threading.Event()
-
-        def push(_result):
-            given = sticks.pop(0) if sticks else None
-            if given is not None:
-                self.loop.hold_sticks(given)
-            if not sticks:
-                is_over.set()
-
-        unsubscribe = self.loop.subscribe(push)
-        assert is_over.wait(TIMEOUT_S)
-        unsubscribe()
+        """Hold the sticks for a number of ticks."""
+        self.loop.hold_sticks(OperatorInput(translation, operator="gamepad"))
+        self.tick(ticks)
+        self.loop.hold_sticks(OperatorInput())
+        self.tick()
 
     def finish(self):
         while self.training.phase is not Phase.COMPLETE:
@@ -243,6 +242,19 @@ def test_an_altered_journal_is_named_and_not_resumed(simulation, tmp_path):
         find_interrupted(tmp_path)
 
 
+@pytest.fixture(scope="module")
+def started(simulation, tmp_path_factory):
+    """The entries of an open trial with a touch, and its seed; the tip is near the skin."""
+    with Server(simulation, tmp_path_factory.mktemp("started")) as server:
+        server.start()
+        server.do(CommandName.CAPTURE)
+        server.move(ticks=30)
+    reading = read_journal(server.path)
+    near = at(1.0, proximity(Proximity.PROXIMITY, Proximity.FREE), reading.entries[-1]["tick"])
+    first, *others = reading.entries
+    return [{**first, "seed": reading.seed}, *others, near.to_json()]
+
+
 @pytest.mark.parametrize(
     "change",
     [
@@ -255,18 +267,10 @@ def test_an_altered_journal_is_named_and_not_resumed(simulation, tmp_path):
         {"kind": "proximity", "to": "inside"},
     ],
 )
-def test_a_forged_journal_is_refused_with_a_message(simulation, tmp_path, change):
-    with Server(simulation, tmp_path) as server:
-        server.start()
-        server.do(CommandName.CAPTURE)
-        server.move(ticks=30)
-    reading = read_journal(server.path)
-    reading.entries[0]["seed"] = reading.seed
-    near = at(1.0, proximity(Proximity.PROXIMITY, Proximity.FREE), reading.entries[-1]["tick"])
-    entries = [*reading.entries, near.to_json()]
-    assert InterruptedTrial.of(tuple(map(read_line, entries))) is not None
-    for entry in entries:
-        if entry["kind"] == change["kind"]:
-            entry.update(change)
+def test_a_forged_journal_is_refused_with_a_message(started, change):
+    assert InterruptedTrial.of(tuple(map(read_line, started))) is not None
+    entries = [
+        {**entry, **change} if entry["kind"] == change["kind"] else entry for entry in started
+    ]
     with pytest.raises(InputError, match="malformed"):
         InterruptedTrial.of(tuple(map(read_line, entries)))

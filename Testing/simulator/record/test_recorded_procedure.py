@@ -1,7 +1,6 @@
 """A procedure in its journal: ended in any phase it continues there, and it replays bit by bit."""
 
 import json
-import threading
 from dataclasses import replace
 
 import numpy as np
@@ -27,7 +26,7 @@ from rastrainer_simulator.replay.recorded_trial import RecordedTrial
 from rastrainer_simulator.replay.resimulation import replay
 from rastrainer_simulator.state import OperatorInput
 from rastrainer_simulator.trial_state import Tool
-from Testing.simulator.record.test_interrupted_trial import TIMEOUT_S, Server, cut
+from Testing.simulator.record.test_interrupted_trial import Server, cut
 
 IN = (0.0, 0.0, -1.0)
 
@@ -60,28 +59,19 @@ class Theater(Server):
 
     def feed(self, to_mm):
         """Feed by the stick, with other sticks in between, to a depth."""
-        is_deep = threading.Event()
-
-        def release_in_time(result):
-            if MM_PER_M * result.state.feed >= to_mm:
-                self.loop.hold_sticks(OperatorInput())
-                is_deep.set()
-
         self.loop.hold_sticks(OperatorInput(IN, operator="gamepad"))
-        unsubscribe = self.loop.subscribe(release_in_time)
-        assert is_deep.wait(TIMEOUT_S)
-        unsubscribe()
+        self.until(lambda: MM_PER_M * self.loop.latest.feed >= to_mm)
+        self.loop.hold_sticks(OperatorInput())
         self.move((0.0, 0.0, 0.0), 20)
 
     def align(self):
-        """Have the robot align the guide; return how the motion ended."""
+        """Have the robot align the guide."""
         ended = []
         unsubscribe = self.loop.subscribe(
             lambda result: ended.extend(e for e in result.events if isinstance(e.entry, MotionEnd))
         )
         self.must(CommandName.ALIGN_GUIDE, standOffMm=20.0)
-        while not ended:
-            self.do(CommandName.LIST_TASKS)
+        self.until(lambda: ended)
         unsubscribe()
         assert ended[-1].entry == MotionEnd("reached")
         assert self.loop.latest.alignment.is_exact
@@ -290,10 +280,10 @@ def test_a_paused_procedure_is_aborted_in_the_phase_in_which_it_was_paused(simul
     with Theater(simulation, tmp_path) as server:
         server.to(Phase.DRILLING)
         server.must(CommandName.PAUSE)
-        server.loop._writer.submit(lambda: None).result()
+        server.write()
         left = interrupted_attempt(read_journal(server.path))
         server.must(CommandName.ABORT, reason="trainee")
-        server.loop._writer.submit(lambda: None).result()
+        server.write()
         (record,) = server.loop.archive.unacknowledged()
     assert (record.phase, left.phase) == ("drilling", "drilling")
 

@@ -162,10 +162,7 @@ LINE = [[1.0, 2.0, float(number), 2.0] for number in range(501)]
         pytest.param({"trace": LINE}, "at most 500 points", id="too long"),
         pytest.param({"trace": LINE[:29]}, "needs at least 30", id="too short"),
         pytest.param({"trace": [[1, 2, 3]] * 30}, "x, y, z, simTimeS", id="without time"),
-        pytest.param({"trace": [["1", 2, 3, 4]] * 30}, "x, y, z, simTimeS", id="text"),
-        pytest.param({"trace": [{"x": 1}] * 30}, "x, y, z, simTimeS", id="objects"),
         pytest.param({"trace": [[1, 2, 9e9, 4]] * 30}, "x, y, z, simTimeS", id="far"),
-        pytest.param({"trace": "long"}, "x, y, z, simTimeS", id="no list"),
         pytest.param({"trace": [[1, 2, 3, 4 - n / 50] for n in range(30)]}, "time", id="back"),
         pytest.param({"method": "landmarks"}, "must hold no trace", id="unwanted"),
         pytest.param({"method": "scan"}, "method", id="not played"),
@@ -190,8 +187,7 @@ def test_aborted_and_interrupted_trials_report_their_method_and_how_much_was_tra
         traced = len(server.training.trace.points)
         assert traced > 0
         assert server.do(CommandName.ABORT, reason="trainee").ok
-        # The journal's thread has written all that came before.
-        server.loop._writer.submit(lambda: None).result()
+        server.write()
         (record,) = server.loop.archive.unacknowledged()
     assert (record.method, record.traced) == (RegistrationMethod.SURFACE, traced)
     data, seed = server.path.read_bytes(), read_journal(server.path).header.seed

@@ -13,7 +13,7 @@ from rastrainer.journal.recording import Recording
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import Proximity
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.record.trial_context import DisplayUse
+from rastrainer_simulator.record.trial_context import display_summary
 from rastrainer_simulator.record.trial_entries import TrialEntries
 from rastrainer_simulator.state import Event, OperatorCommand, OperatorInput
 
@@ -75,14 +75,14 @@ def test_a_contact_in_the_register_tick_counts_in_the_record_as_in_the_journal(a
 
 
 def test_the_record_names_the_last_view_all_frames_and_the_aids():
-    use = DisplayUse()
-    assert use.summary() == {}
-    use.add(GuidanceReport("arrow"))
-    assert use.summary() == {"guidance": "arrow"}
-    use.add(GhostReport("expert"))
-    use.add(DisplayReport("page", "Chrome/120", 60.0, 55, 5))
-    use.add(DisplayReport("headset", "Quest 3", 90.0, 88, 2))
-    assert use.summary() == {
+    guidance = GuidanceReport("arrow")
+    assert display_summary([]) == {}
+    assert display_summary([guidance]) == {"guidance": "arrow"}
+    views = (
+        DisplayReport("page", "Chrome/120", 60.0, 55, 5),
+        DisplayReport("headset", "Quest 3", 90.0, 88, 2),
+    )
+    assert display_summary([guidance, GhostReport("expert"), *views]) == {
         "kind": "headset",
         "device": "Quest 3",
         "guidance": "arrow",

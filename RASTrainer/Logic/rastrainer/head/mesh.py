@@ -118,9 +118,10 @@ class HeadMesh:
     @cached_property
     def triangle_spheres(self) -> tuple[np.ndarray, np.ndarray]:
         """Centers (m, 3) and radii (m,) of spheres that hold the triangles, mm."""
-        corners = self.vertices[self.triangles]
-        centers = corners.mean(axis=1)
-        return centers, np.linalg.norm(corners - centers[:, None], axis=2).max(axis=1)
+        a, b, c = self.corners()
+        centers = (a + b + c) / 3.0
+        away = [np.linalg.norm(corner - centers, axis=1) for corner in (a, b, c)]
+        return centers, np.maximum.reduce(away)
 
     @cached_property
     def skin(self) -> HeadMesh:

@@ -149,7 +149,6 @@ class Page(Generic[S]):
         return False
 
     def is_over(self) -> bool:
-        """Return whether the page has to go back by itself."""
         return False
 
     def advance(self, dt: float) -> None:  # noqa: ARG002

@@ -57,7 +57,6 @@ class SimulationReload:
 
     @property
     def is_under_way(self) -> bool:
-        """Whether other settings of the simulation, or another scenario, are being loaded."""
         is_ours = self._answer is not None or self._wanted is not None
         return is_ours or self._control_loop.is_being_replaced
 

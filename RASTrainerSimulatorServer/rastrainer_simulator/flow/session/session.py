@@ -119,7 +119,6 @@ class TrainingSession:
         self.state: SimulationState = loop.latest
 
     def say(self, key: str, **values: object) -> str:
-        """Return a sentence in the trainee's language."""
         return self.texts.say(key, **values)
 
     @property

@@ -200,7 +200,6 @@ class TraineeHistory:
             self._drills[path] = record_from_json(JournalHeader, first), record
 
     def _note_journal(self, path: Path) -> None:
-        """Note what a journal says; ignore it if it cannot be read."""
         try:
             with path.open("rb") as file:
                 header = decode_line(file.readline(MAX_LINE_BYTES).rstrip(b"\n"), 1, NO_LINE)

@@ -213,7 +213,6 @@ class TouchPractice:
         return self.training.handle(OperatorCommand(command), _moment(state))
 
     def errors_mm(self) -> tuple[float, ...]:
-        """Return how far each kept touch is from its point, in mm."""
         touches = self.training.state.touches
         places = ((t.label, in_millimeters(t.position)) for t in touches)
         return tuple(self.training.truth.touch_errors_mm(places).values())

@@ -178,7 +178,6 @@ def check_origin(request: web.Request) -> None:
 
 
 def fresh_json(values: Mapping[str, Any]) -> web.Response:
-    """Return an answer that no browser keeps."""
     return web.json_response(values, headers={hdrs.CACHE_CONTROL: "no-store"})
 
 

@@ -10,6 +10,7 @@ import asyncio
 import math
 
 from aiohttp import web
+from aiohttp.typedefs import Handler
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import with_units
@@ -47,31 +48,31 @@ def seat_text(now: SimulationState, seat: Seat) -> str:
     return with_units(message_text(news))
 
 
-class InstructorOrders:
-    """Accepts orders over HTTP, each with the PIN."""
+def instructor_orders(pin: InstructorPin | None, presenter: Presenter) -> Handler:
+    """Return what takes orders over HTTP, each `{"pin", "order", "text"}` with the seat's PIN.
 
-    def __init__(self, pin: InstructorPin | None, presenter: Presenter) -> None:
-        self._pin = pin
-        self._presenter = presenter
-        self._one_guess = asyncio.Lock()
+    It answers 200, or why not in one sentence.
+    """
+    one_guess = asyncio.Lock()
 
-    async def take(self, request: web.Request) -> web.Response:
-        """Take `{"pin", "order", "text"}`; answer 200, or why not in one sentence."""
+    async def take(request: web.Request) -> web.Response:
         if request[ROLE] is not ViewRole.BOARD:
             raise web.HTTPForbidden(text=ONLY_BOARDS)
         asked = await read_body(request, OrderRequest)
-        if self._pin is None or not self._pin.is_set:
+        if pin is None or not pin.is_set:
             raise web.HTTPConflict(text=NO_PIN)
         # One after the other: many guesses at the same time would take all threads.
-        async with self._one_guess:
+        async with one_guess:
             try:
-                answer = await asyncio.to_thread(self._pin.guess, asked.pin)
+                answer = await asyncio.to_thread(pin.guess, asked.pin)
             except InputError as error:
                 raise web.HTTPConflict(text=str(error)) from None
         refuse_for(answer.wait_s, TOO_MANY)
         if not answer.is_right:
             raise web.HTTPForbidden(text=WRONG_PIN)
-        problem = self._presenter.instruct(asked.order, asked.sentence)
+        problem = presenter.instruct(asked.order, asked.sentence)
         if problem:
             raise web.HTTPConflict(text=problem)
         return fresh_json({})
+
+    return take

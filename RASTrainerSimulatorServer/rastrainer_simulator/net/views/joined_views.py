@@ -143,7 +143,6 @@ class JoinedViews:
                 view.outbox.put_event(text)
 
     def _tell_boards(self, now: SimulationState) -> None:
-        """Send all boards the state of the seat, if it has changed."""
         text = seat_text(now, self._presenter.seat())
         if text != self._seat:
             self._seat = text

@@ -27,7 +27,7 @@ from rastrainer_simulator.net.views.access_control import (
     fresh_json,
     open_socket,
 )
-from rastrainer_simulator.net.views.boards import InstructorOrders
+from rastrainer_simulator.net.views.boards import instructor_orders
 from rastrainer_simulator.net.views.guarded_server import GuardedServer, page_answer
 from rastrainer_simulator.net.views.joined_views import JoinedViews
 from rastrainer_simulator.ops.instructor_pin import InstructorPin
@@ -96,7 +96,7 @@ class ViewServer:
             web.get("/sounds/{name:[a-z-]{1,32}}.wav", self._send_file),
             web.get("/scenarios/{name:[a-z0-9-]{1,40}}.png", self._send_file),
             web.get("/role", _send_role),
-            web.post("/instructor", InstructorOrders(pin, presenter).take),
+            web.post("/instructor", instructor_orders(pin, presenter)),
             web.get("/stream", self._stream),
         ]
         self._http = GuardedServer(self.sessions, self.code, routes, self._page)
