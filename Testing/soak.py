@@ -16,12 +16,18 @@ ROOT = Path(__file__).parents[1]
 class Part(NamedTuple):
     """Some of the tests, with a sentence about them.
 
-    A test file belongs to the part that names it, or the nearest folder that holds it.
+    A test file belongs to the part that names it, or the nearest folder that holds it. `minutes` is
+    how long the part took when it was last measured, on two processors; 0 if it never was.
     """
 
     name: str
     proves: str
     places: tuple[str, ...]
+    minutes: int = 0
+
+    def __str__(self) -> str:
+        lasts = f"{self.minutes} min" if self.minutes else "not measured"
+        return f"{self.name}: {self.proves} ({lasts})."
 
 
 PARTS = (
@@ -78,11 +84,15 @@ PARTS = (
         "whole sessions by each device, also of a procedure and a trace",
         (
             "end_to_end/test_gamepad_session.py",
-            "end_to_end/test_mouse_session.py",
             "web/test_procedure_by_hand.py",
             "web/test_surface_by_hand.py",
             "web/test_whole_flow.py",
         ),
+    ),
+    Part(
+        "drill",
+        "a drill of decisions by each device and by ear, with Slicer's side and without",
+        ("web/test_whole_drill.py",),
     ),
     Part(
         "kills",
@@ -120,7 +130,7 @@ def files_of(part: Part) -> list[str]:
 
 def run(part: Part) -> int:
     """Run a part and return its exit status."""
-    print(f"{part.name}: {part.proves}.", flush=True)
+    print(part, flush=True)
     command = [sys.executable, "-m", "pytest", "-m", "soak", "-q", *files_of(part)]
     return subprocess.run(command, cwd=ROOT, check=False).returncode
 
@@ -128,7 +138,7 @@ def run(part: Part) -> int:
 def main(words: list[str]) -> int:
     if words == ["list"]:
         for number, part in enumerate(PARTS, start=1):
-            print(f"{number:2}  {part.name}: {part.proves}.")
+            print(f"{number:2}  {part}")
         return 0
     names = {name: part for n, part in enumerate(PARTS, 1) for name in (str(n), part.name)}
     if not set(words) <= set(names):

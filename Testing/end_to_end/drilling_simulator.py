@@ -12,8 +12,9 @@ from collections import deque
 from functools import partial
 from unittest import mock
 
-from rastrainer.decision.drill_record import Decision, Fault
+from rastrainer.decision.drill_record import CASES, Decision, Fault
 from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.decision import forms
 from rastrainer_simulator.decision.drill import TIP
 from rastrainer_simulator.flow.session.session import TrainingSession
 
@@ -41,6 +42,11 @@ def seen_of(session):
     }
 
 
+def quick_form(_maker, random, _seen):
+    """Return cases that are soon drawn: balanced forms have tests of their own."""
+    return tuple((int(seed), Fault.BAD_FIDUCIAL) for seed in random.integers(2**31, size=CASES))
+
+
 def play(asked):
     """Run the simulator, which does the next of what is asked whenever a case is there."""
     advance = TrainingSession.advance
@@ -57,7 +63,8 @@ def play(asked):
             if session.drill.is_ready:
                 print(SAYS + json.dumps(seen_of(session)), flush=True)
 
-    with mock.patch.object(TrainingSession, "advance", advanced):
+    patched = mock.patch.multiple
+    with patched(TrainingSession, advance=advanced), patched(forms, draw_form=quick_form):
         return main(["simulator", *sys.argv[1:]])
 
 

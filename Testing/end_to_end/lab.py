@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from collections.abc import Mapping
 from contextlib import ExitStack
 from functools import cached_property
@@ -13,9 +11,10 @@ from typing import IO, ClassVar
 
 from rastrainer.igtl.client import Client
 from rastrainer.json_records import camel_case
-from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.net.limits import LIMITS_FILE
+from rastrainer_simulator.virtual.scripted_trial import send_hello
+from Testing.end_to_end.process_nursery import SLICER_SIDE, shared_nursery
 from Testing.end_to_end.simulator_process import SERVES, SimulatorProcess, paired_key
 from Testing.end_to_end.stream_trainee import CarriedTrainee, Trainee, WatchingView
 from Testing.end_to_end.virtual_display import VirtualDisplay, VirtualKeyboard
@@ -24,7 +23,6 @@ from Testing.end_to_end.window_process import WindowProcess
 from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.simulator.net.views.served import ViewClient
 
-SLICER = (sys.executable, "-m", "rastrainer_headless.main")
 TIMEOUT_S = 600
 WITHOUT_GRAPHICS = {"silent_s": 10, "lost_s": 20, "gone_s": 300}
 """Limits of views for a machine that draws a headset's pictures by its processor: seconds each."""
@@ -50,7 +48,7 @@ class Place:
         folder: Path,
         *arguments: str,
         limits: Mapping[str, float] = PATIENT,
-        **preferences: str,
+        **preferences: str | bool,
     ):
         self._folder = folder
         self.records = folder / "records"
@@ -104,8 +102,7 @@ class Place:
     def client(self) -> Client:
         """Return a client that may command the simulator."""
         client = self._stack.enter_context(Client(port=self.simulator.port))
-        hello = {"protocolVersion": PROTOCOL_VERSION, "client": "carrier"}
-        assert client.send_command("Hello", hello, timeout=60).ok
+        send_hello(client, "carrier")
         return client
 
     def start_slicer(self, trials: int = 1) -> SlicerProcess:
@@ -132,7 +129,7 @@ class Lab(Place):
     program = SimulatorWithGamepad
     options = ("--view-port", "0")
 
-    def __init__(self, folder: Path, *arguments: str, **preferences: str):
+    def __init__(self, folder: Path, *arguments: str, **preferences: str | bool):
         limits = {"silent_s": 10, "lost_s": TIMEOUT_S}
         super().__init__(folder, *arguments, limits=limits, **preferences)
 
@@ -157,15 +154,13 @@ class SlicerProcess:
             "timeout": 100_000,
         }
         options = [word for name, value in words.items() for word in (f"--{name}", str(value))]
-        self._process = subprocess.Popen(
-            [*SLICER, *options], stdout=subprocess.PIPE, stderr=errors, text=True
-        )
+        said = "" if errors is None else errors.name
+        self._process = shared_nursery(SLICER_SIDE).fork(*options, errors=said)
         self.pid = self._process.pid
 
     def kill(self) -> None:
         """End it as a crash would; a second time changes nothing."""
-        self._process.kill()
-        self._process.wait()
+        self._process.end()
 
     def events_until(self, event: str) -> list[dict]:
         """Return its events from now on, up to the first event of a kind."""

@@ -437,7 +437,12 @@ class Trainee(StreamTrainee):
             elif before.name in LEAVES:
                 self.choose(LEAVES[before.name])
             else:
-                self.press("back", lambda b=before: self.menu != b, f"before {before.name}")
+                self.go_back()
+
+    def go_back(self) -> None:
+        """Go back to the menu before."""
+        before = self.menu
+        self.press("back", lambda: self.menu != before, f"before {before.name}")
 
     def go_to_experiment(self) -> None:
         """Go from wherever the last trainee has stopped to the choice of head and task."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
 import time
 from collections.abc import Sequence
@@ -13,6 +12,7 @@ from rastrainer.study.database.database import PostgresAddress, study_place
 from rastrainer_headless.main import openSession, process
 from rastrainer_headless.scene import HeadlessScene
 from rastrainer_simulator.assets import asset_path
+from Testing.end_to_end.process_nursery import STUDY_SIDE, shared_nursery
 
 ROOT = Path(__file__).parents[2]
 STUDY, RECORDS = "study.db", "records"
@@ -37,8 +37,7 @@ class StudySide:
     """Runs it; killed by the `with` statement as by a crash."""
 
     def __init__(self, folder: Path, port: int):
-        command = [sys.executable, "-m", "Testing.end_to_end.study_side", str(folder), str(port)]
-        self._process = subprocess.Popen(command)
+        self._process = shared_nursery(STUDY_SIDE).fork(str(folder), str(port))
 
     def __enter__(self) -> StudySide:
         return self
@@ -48,8 +47,7 @@ class StudySide:
 
     def kill(self) -> None:
         """End it as a crash would."""
-        self._process.kill()
-        self._process.wait()
+        self._process.end()
 
 
 def main(arguments: Sequence[str]) -> None:

@@ -1,4 +1,4 @@
-"""A drill survives the simulator's death in mid case, and is delivered and acknowledged once."""
+"""A drill survives the simulator's death in mid case, is stored once, and is a study's step."""
 
 from __future__ import annotations
 
@@ -14,10 +14,16 @@ from rastrainer.igtl.client import Client
 from rastrainer.journal.folder import DRILL_SUFFIX
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.json_records import record_from_json
-from rastrainer.protocol import PROTOCOL_VERSION
+from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer.study.protocol.study_protocol import StudyProtocol
+from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.decision.drill import CLOCK_S
+from rastrainer_simulator.virtual.scripted_trial import send_hello
 from Testing.end_to_end.drilling_simulator import SAYS
 from Testing.end_to_end.simulator_process import SimulatorProcess
+from Testing.end_to_end.study_side import RECORDS, STUDY, StudySide
+from Testing.end_to_end.window_process import wait_until
 
 TIMEOUT_S = 120.0
 
@@ -54,8 +60,7 @@ class Scorer(Client):
     def __init__(self, port):
         self.offers, self.news = [], threading.Condition()
         super().__init__(port=port, on_message=self._keep)
-        hello = {"protocolVersion": PROTOCOL_VERSION, "client": "tester"}
-        assert self.send_command("Hello", hello, TIMEOUT_S).ok
+        send_hello(self, "tester")
 
     def _keep(self, message):
         if message.device == "command":
@@ -70,12 +75,21 @@ class Scorer(Client):
 
 
 @pytest.fixture
-def records(tmp_path):
-    return tmp_path / "records"
+def study(tmp_path):
+    """A study whose protocol begins and ends with drills."""
+    plan = StudyProtocol.read(asset_path("studies", "published-protocol.json")).to_json()
+    plan |= {"modes": ["desktop"], "questionnaires": [], "drills": ["before-all", "after-all"]}
+    with Study.open(tmp_path / STUDY) as study:
+        study.create_trainee("P01")
+        progress = StudyProgress(study)
+        progress.set_protocol(StudyProtocol.from_json(plan))
+        progress.enroll("P01")
+        yield study
 
 
-def test_a_drill_killed_in_mid_case_continues_there_and_is_delivered_once(records):
-    with Drilling(records) as simulator:
+def test_a_drill_killed_in_mid_case_continues_and_is_delivered_and_stored_once(tmp_path, study):
+    records = tmp_path / RECORDS
+    with Drilling(records) as simulator, StudySide(tmp_path, simulator.port):
         decided = simulator.do("see", "check", "decide", "next", "see")
         assert (decided["number"], decided["checks"]) == (2, [])
         before = simulator.do("check", "read", "see")
@@ -108,8 +122,19 @@ def test_a_drill_killed_in_mid_case_continues_there_and_is_delivered_once(record
             ("TrialScored", {"score": 100.0}),
         ):
             assert not scorer.send_command(command, {**trial, **more}, TIMEOUT_S).ok
-        for _ in range(2):
-            assert scorer.send_command("AcknowledgeTrial", trial, TIMEOUT_S).ok
-        assert scorer.send_command("GetTrial", trial, TIMEOUT_S).data["acknowledged"]
+        with StudySide(tmp_path, simulator.port):
+            wait_until(lambda: study.drills("P01"), "the stored drill")
+
+            def is_acknowledged():
+                return scorer.send_command("GetTrial", trial, TIMEOUT_S).data["acknowledged"]
+
+            wait_until(is_acknowledged, "the acknowledgement")
+        assert scorer.send_command("AcknowledgeTrial", trial, TIMEOUT_S).ok
         assert simulator.stop()[0] == 0
     assert len(read_journal(path).of_kind("acknowledged")) == 1
+    assert study.drills("P01") == (record,)
+    progress = StudyProgress(study)
+    assert progress.count_played("P01").counted_trials == (record.trial_id,)
+    assert progress.progress("P01").next_step.name == "desktop/trial-run"
+    study.delete_trainee("P01")
+    assert study.is_deleted(record.trial_id)

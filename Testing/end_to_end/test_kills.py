@@ -17,7 +17,7 @@ from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.interrupted_trial import InterruptedTrial
 from rastrainer_simulator.record.trial_archive import SUFFIX, TrialArchive, find_unacknowledged
 from Testing.end_to_end.finished_trials import COLIN, TRAINEE
-from Testing.end_to_end.process_nursery import SIMULATOR, SLICER_SIDE, Nursery
+from Testing.end_to_end.process_nursery import SIMULATOR, SLICER_SIDE, shared_nursery
 from Testing.end_to_end.simulator_process import READY
 from Testing.end_to_end.surviving_player import NOT_REPORTED, Killing, SurvivingPlayer
 from Testing.free_port import free_port
@@ -25,33 +25,18 @@ from Testing.free_port import free_port
 TIMEOUT_S = 180.0
 
 
-@pytest.fixture(scope="module")
-def simulators(tmp_path_factory):
-    """A nursery of simulators."""
-    with Nursery(SIMULATOR, tmp_path_factory.mktemp("simulators")) as nursery:
-        yield nursery
-
-
-@pytest.fixture(scope="module")
-def slicer_sides(tmp_path_factory):
-    """A nursery of Slicer's sides."""
-    with Nursery(SLICER_SIDE, tmp_path_factory.mktemp("slicer-sides")) as nursery:
-        yield nursery
-
-
 class Lab:
     """A folder of records and one of Slicer's side, and their processes."""
 
-    def __init__(self, folder, nursery, slicer_nursery=None):
+    def __init__(self, folder):
         self.records, self.output = folder / "records", folder / "slicer"
         self._config = str(folder / "config")
-        self._nursery, self._slicer_nursery = nursery, slicer_nursery
         self.port = free_port()
 
     def start_simulator(self):
         """Return a function that ends it by a signal."""
         words = ("--no-views", "--speed", "10", "--port", str(self.port))
-        simulator = self._nursery.fork(
+        simulator = shared_nursery(SIMULATOR).fork(
             "simulator", "--records", str(self.records), "--config", self._config, *words
         )
         ready = simulator.next_line()
@@ -62,7 +47,9 @@ class Lab:
     def start_slicer(self):
         """Return Slicer's side, which waits for more trials than there are."""
         words = ("--assets", str(asset_path()), "--output", str(self.output), "--trials", "100000")
-        slicer = self._slicer_nursery.fork("--port", str(self.port), *words, "--timeout", "1000")
+        slicer = shared_nursery(SLICER_SIDE).fork(
+            "--port", str(self.port), *words, "--timeout", "1000"
+        )
         slicer.drain_output()
         return slicer
 
@@ -142,11 +129,9 @@ def wait_for_study(lab, is_complete):
 @pytest.mark.parametrize(
     ("kills", "resumed"), [(4, 2), pytest.param(300, 150, marks=pytest.mark.soak)]
 )
-def test_a_repeatedly_killed_server_resumes_where_the_trainee_was(
-    tmp_path, simulators, capsys, kills, resumed
-):
+def test_a_repeatedly_killed_server_resumes_where_the_trainee_was(tmp_path, capsys, kills, resumed):
     """A kill between two trials leaves none to resume: there are more kills until so many were."""
-    lab, rng = Lab(tmp_path, simulators), random.Random(3)
+    lab, rng = Lab(tmp_path), random.Random(3)
     player, killed = SurvivingPlayer(load_scenario(COLIN), rng), 0
     while killed < kills or player.resumed < resumed:
         end = lab.start_simulator()
@@ -165,10 +150,10 @@ def test_a_repeatedly_killed_server_resumes_where_the_trainee_was(
     ("kills", "resumed"), [(2, 1), pytest.param(300, 100, marks=pytest.mark.soak)]
 )
 def test_a_trainee_whose_server_and_slicer_are_killed_loses_no_touch_and_doubles_no_trial(
-    tmp_path, simulators, slicer_sides, capsys, kills, resumed
+    tmp_path, capsys, kills, resumed
 ):
     """Slicer's side is killed, alone or at once with the server; then all is delivered."""
-    lab, rng = Lab(tmp_path, simulators, slicer_sides), random.Random(8)
+    lab, rng = Lab(tmp_path), random.Random(8)
     player = SurvivingPlayer(load_scenario(COLIN), rng)
     end_simulator, slicer = lab.start_simulator(), lab.start_slicer()
     killed = 0

@@ -78,7 +78,7 @@ def compared(report: ReplayReport) -> tuple[int, int]:
     return report.compared["touch"], report.ticks
 
 
-@pytest.fixture(scope="module", params=[6, pytest.param(100, marks=pytest.mark.soak)])
+@pytest.fixture(scope="module", params=[3, pytest.param(100, marks=pytest.mark.soak)])
 def played(request) -> list[Played]:
     seeds = list(range(request.param))
     if len(seeds) < 10:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import sys
 from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
@@ -13,12 +12,12 @@ import pytest
 
 from rastrainer.igtl.client import Client
 from rastrainer.journal.journal_file import read_journal
-from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.scenario.writer import new_folder, write_scenario
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.replay.resimulation import replay
 from rastrainer_simulator.texts.texts import ENGLISH
+from rastrainer_simulator.virtual.scripted_trial import send_hello
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
 from Testing.end_to_end.simulator_process import MenuView, ViewedSimulator, items_of
 from Testing.end_to_end.window_process import wait_until
@@ -30,18 +29,15 @@ PATIENCE_S = 120.0
 MORE_THAN_AT_ONCE = 6
 """Starts that must not all succeed; refused starts do not count."""
 HELD = """
-import sys
 from pathlib import Path
-from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.server import server
 
-def held(scenario, *others, load=server.load_setup, **named):
+def held(scenario, *others, load=server.load_setup, Path=Path, **named):
     if scenario is not None:
         Path({pipe!r}).read_bytes()
     return load(scenario, *others, **named)
 
 server.load_setup = held
-sys.exit(main(["simulator", *sys.argv[1:]]))
 """
 """After its start, each scenario is loaded when a test has opened the pipe and closed it again."""
 
@@ -53,7 +49,7 @@ class HeldSimulator(ViewedSimulator):
         self._pipe = folder / "pipe"
         os.mkfifo(self._pipe)
         self.records = folder / "records"
-        self.command = (sys.executable, "-c", HELD.format(pipe=str(self._pipe)))
+        self.first = HELD.format(pipe=str(self._pipe))
         super().__init__(self.records)
 
     @contextmanager
@@ -70,7 +66,7 @@ class Peer(Client):
     def __init__(self, port):
         super().__init__(port=port)
         self._pool = ThreadPoolExecutor(max_workers=1)
-        assert self.ask("Hello", protocolVersion=PROTOCOL_VERSION, client="test").ok
+        send_hello(self, "test")
 
     def ask(self, command, **arguments):
         return self.send_command(command, arguments, timeout=PATIENCE_S)

@@ -14,13 +14,13 @@ import pytest
 
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.igtl.client import Client
-from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.scenario.library import pack, user_library
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.writer import HeadDraft, new_folder, write_scenario
 from rastrainer.sections.new_scenario_logic import HEAD_SHARE, planScenario
 from rastrainer_simulator.authoring.make import head_process
 from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.virtual.scripted_trial import send_hello
 from Testing.domain.head.spheres import sphere_mesh
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario, png
 from Testing.end_to_end.simulator_process import SimulatorProcess
@@ -184,9 +184,7 @@ def environment(tmp_path, monkeypatch):
 def trains_on(port, name, title):
     """Load a scenario by its name into a running simulator, and begin a trial on it."""
     with Client(port=port) as client:
-        assert client.send_command(
-            "Hello", {"protocolVersion": PROTOCOL_VERSION, "client": "test"}, timeout=60
-        ).ok
+        send_hello(client, "test")
         loaded = client.send_command("LoadScenario", {"folder": name}, timeout=60)
         assert (loaded.ok, loaded.error) == (True, "")
         assert dict(loaded.data) == {"name": name, "title": title}

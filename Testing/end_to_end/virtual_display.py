@@ -1,4 +1,4 @@
-"""A display in memory (Xvfb), and a keyboard and a mouse on it (XTEST)."""
+"""A display in memory (Xvfb), and a keyboard on it (XTEST)."""
 
 from __future__ import annotations
 
@@ -59,8 +59,8 @@ class VirtualDisplay:
         self._process.wait()
 
 
-class _Device:
-    """Base of devices that operate a display by XTEST."""
+class VirtualKeyboard:
+    """Presses keys on a display by XTEST, for the window with the focus."""
 
     def __init__(self, display: VirtualDisplay):
         self._x = ctypes.CDLL("libX11.so.6")
@@ -73,30 +73,6 @@ class _Device:
     def close(self) -> None:
         """Leave the display."""
         self._x.XCloseDisplay(self._display)
-
-
-class VirtualMouse(_Device):
-    """Moves the pointer, and presses its left button."""
-
-    def move(self, x: int, y: int) -> None:
-        """Put the pointer at a pixel of the display."""
-        self._test.XTestFakeMotionEvent(self._display, -1, x, y, 0)
-        self._x.XFlush(self._display)
-
-    def hold(self, is_down: bool) -> None:
-        """Press the left button, or release it."""
-        self._test.XTestFakeButtonEvent(self._display, 1, int(is_down), 0)
-        self._x.XFlush(self._display)
-
-    def turn_wheel(self, is_down: bool) -> None:
-        """Turn the wheel by a step."""
-        for is_pressed in (1, 0):
-            self._test.XTestFakeButtonEvent(self._display, 5 if is_down else 4, is_pressed, 0)
-        self._x.XFlush(self._display)
-
-
-class VirtualKeyboard(_Device):
-    """Presses keys on a display, for the window with the focus."""
 
     def hold(self, code: str, is_down: bool) -> None:
         """Press a key by its W3C code, or release it."""

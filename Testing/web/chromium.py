@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import shutil
+import struct
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -53,6 +54,9 @@ window.frames_ = (count) => new Promise((done) => {
 """
 _DRAW_NOTHING = """
 window.drawsNothing = true;
+// A third of the usual pictures: laying out and composing what is not looked at takes long, too.
+window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 50);
+window.cancelAnimationFrame = clearTimeout;
 for (const name of Object.getOwnPropertyNames(WebGL2RenderingContext.prototype)) {
   if (!/^(clear|draw)[A-Z]|^clear$/.test(name)) continue;
   const draw = WebGL2RenderingContext.prototype[name];
@@ -77,7 +81,17 @@ _SHOW_NOTHING = """(() => {
   const empty = new scene.constructor();
   renderer.render = (shown, camera) =>
     render.call(renderer, window.drawsNothing ? empty : shown, camera);
+  const draw = page.flat.draw.bind(page.flat);
+  page.flat.draw = (...values) => !window.drawsNothing && draw(...values);
 })()"""
+_EMPTY_SCENE = '{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": []}]}'
+_EMPTY_GLB = struct.pack("<4s4I", b"glTF", 2, 88, 68, 0x4E4F534A) + _EMPTY_SCENE.encode()
+_LOAD_NO_SCENE = f"""
+const {{ fetch }} = window;
+window.fetch = (asked, ...options) => String(asked.url ?? asked).endsWith(".glb")
+  ? Promise.resolve(new Response(new Uint8Array({list(_EMPTY_GLB)})))
+  : fetch(asked, ...options);
+"""
 _PADS = """
 window.pad = { connected: true, mapping: "standard", index: 0, id: "Test pad",
   axes: [0, 0, 0, 0],
@@ -133,10 +147,12 @@ def open_page(
     size: dict[str, int] = SMALL,
     has_touch: bool = False,
     draws: bool = True,
+    has_scene: bool = True,
 ) -> Page:
     """Open the page, pair it by the code in its address, and wait until it shows the scene.
 
-    Pictures take both processors: tests that need none have it draw nothing in its canvas.
+    Pictures take both processors: tests that need none have it draw nothing in its canvas, and
+    those that need no robot and no head either have it load an empty scene.
     Its `problems` are what went wrong in it, and `loaded` has the bytes of each address.
     """
     context = browser.new_context(viewport=size, ignore_https_errors=True, has_touch=has_touch)
@@ -149,6 +165,8 @@ def open_page(
         page.add_init_script(_PADS)
     if not draws:
         draw_nothing(page)
+    if not has_scene:
+        page.add_init_script(_LOAD_NO_SCENE)
     page.problems = []
     page.on("pageerror", lambda error: page.problems.append(str(error)))
     page.loaded = {}

@@ -128,7 +128,7 @@ def test_a_stalled_network_pauses_the_trial_and_is_reported(place, relay, browse
     relay.stall()
     trainee.until(lambda: place.view.state["phase"] == "paused", "the pause")
     if headset:
-        wait_for(page, "page.headset.panels.warning.shown.includes('was lost')")
+        wait_for(page, "page.headset.panels.warning.root.textContent.includes('was lost')")
     else:
         page.wait_for_selector(LOST)
     relay.resume()

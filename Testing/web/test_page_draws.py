@@ -14,6 +14,7 @@ from Testing.web.chromium import enter_headset, open_page, show, wait_for
 @pytest.fixture(scope="module")
 def page(browser, served):
     page = open_page(browser, served.url, served.code, "metaQuest2", draws=False)
+    page.evaluate("delete page.flat.draw")
     page.evaluate("frames_(2)")
     yield page
     assert page.problems == []

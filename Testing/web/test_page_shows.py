@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import pytest
 from coloraide import Color
@@ -11,6 +12,7 @@ from rastrainer_simulator.presentation.look import BANNERS
 from rastrainer_simulator.presentation.screen import (
     ErrorArrow,
     Fact,
+    HeadSlices,
     Hint,
     Menu,
     MenuItem,
@@ -83,7 +85,7 @@ def test_a_checkpoint_has_its_name_above_it_and_others_have_none(page, served):
 
 
 def test_a_finger_leads_back_from_what_is_only_watched(browser, served):
-    page = open_page(browser, served.url, served.code, has_touch=True, draws=False)
+    page = open_page(browser, served.url, served.code, has_touch=True, draws=False, has_scene=False)
     hints = (Hint("Arrows", "Turn"), Hint("Esc", "Result", "back"), Hint("Space", "Space", "play"))
     for width, height in ((390, 844), (844, 390)):
         resize(page, width, height)
@@ -205,13 +207,15 @@ def test_new_text_is_read_aloud_in_its_language_one_sentence_after_the_other(pag
     assert heard(page, 2) == ["Contact.", "Touch point 3."]
     page.evaluate("ended()")
     assert page.evaluate("window.heard.map(([language]) => language)") == ["de", "de"]
-    items = (MenuItem("next", "Next task"), MenuItem("again", "Again"))
+    items = (MenuItem("next", "Next task"), MenuItem("again", "Again", help="Once more."))
     menu = Menu("result", "Result", ("Well done.",), (Fact("Score", "81"),), items, focus="again")
+    menu = replace(menu, slices=HeadSlices("Through the target.", (), ()))
     served.tell(spoken(menu=menu, language="zh-Hans"))
-    for count in range(3, 7):
+    said = ["Result", "Well done.", "Score: 81", "Through the target.", "Again", "Once more."]
+    for count in range(3, 3 + len(said)):
         heard(page, count)
         page.evaluate("ended()")
-    assert heard(page, 6)[2:] == ["Result", "Well done.", "Score: 81", "Again"]
+    assert heard(page, 2 + len(said))[2:] == said
     assert page.evaluate("window.heard[5][0]") == "zh-CN", "voices are named by region"
 
 

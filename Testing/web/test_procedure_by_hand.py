@@ -13,7 +13,7 @@ from Testing.end_to_end.hands import Controllers, GamepadHands
 from Testing.end_to_end.lab import Lab, Place
 from Testing.end_to_end.stream_trainee import Trainee
 from Testing.web.chromium import enter_headset, open_page
-from Testing.web.test_whole_flow import SLOW, XR
+from Testing.web.trainees_on_page import SLOW, XR
 
 # Fifteen touches and a whole procedure by hand take minutes, in a headset many.
 pytestmark = pytest.mark.soak

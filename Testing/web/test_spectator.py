@@ -69,7 +69,8 @@ def y_up(x: float, y: float, z: float) -> tuple[float, float, float]:
 
 
 def watch(browser, served, **options):
-    return open_page(browser, served.url, f"{served.code}&role=spectator", draws=False, **options)
+    code = f"{served.code}&role=spectator"
+    return open_page(browser, served.url, code, draws=False, has_scene=False, **options)
 
 
 @pytest.fixture(scope="module")

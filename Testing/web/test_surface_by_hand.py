@@ -25,7 +25,7 @@ from Testing.end_to_end.stream_trainee import LEAST_FINE_PUSH, LIFT_M, SINK_M, T
 from Testing.end_to_end.window_process import wait_until
 from Testing.simulator.landmarked import LANDMARKS, write_landmarked
 from Testing.web.chromium import enter_headset, open_page
-from Testing.web.test_whole_flow import SLOW, XR
+from Testing.web.trainees_on_page import SLOW, XR
 
 # Drawing takes minutes, in a headset many.
 pytestmark = pytest.mark.soak

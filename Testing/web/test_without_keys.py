@@ -1,6 +1,6 @@
 """Without keys: by the mouse, two thumbs or a tracked hand alone, from the menus to the touches.
 
-Whole trials are in test_whole_flow.py.
+Whole trials are in test_whole_flow.py, whole drills in test_whole_drill.py.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import pytest
 
 from Testing.end_to_end.lab import Place
 from Testing.web.chromium import enter_headset, open_page
+from Testing.web.drill_player import begin_drill, play_case
 from Testing.web.trainees_on_page import (
     DESKTOP,
     PHONE,
@@ -31,13 +32,14 @@ def place(tmp_path_factory):
 @contextmanager
 def page_of(place, browser, *headset, **options):
     """A page of that place, which leaves the arm to the next one even if a test has failed."""
-    page = open_page(browser, place.url, place.code, *headset, draws=False, **options)
+    options |= {"draws": False, "has_scene": bool(headset)}
+    page = open_page(browser, place.url, place.code, *headset, **options)
     with page.context:
         yield page
         assert page.problems == []
 
 
-def test_two_thumbs_touch_undo_pause_steer_together_and_stop_the_arm(place, browser):
+def test_two_thumbs_touch_undo_pause_steer_together_stop_the_arm_and_decide(place, browser):
     with page_of(place, browser, size=PHONE, has_touch=True) as page:
         trainee = TappingTrainee(place, page)
         trainee.begin("task-1")
@@ -64,8 +66,11 @@ def test_two_thumbs_touch_undo_pause_steer_together_and_stop_the_arm(place, brow
 
         trainee.until(are_written, "the hints on the buttons")
         trainee.press("menu", lambda: trainee.menu is not None, "the menu")
-        trainee.choose("abort")
-        trainee.choose("abort")
+        trainee.go_home()
+        begin_drill(trainee)
+        play_case(trainee, 1, checks=False)
+        trainee.choose("leave")
+        trainee.choose("leave")
 
 
 def test_a_mouse_enters_an_id_drives_the_arm_and_opens_the_menu(place, browser):
@@ -91,7 +96,7 @@ def test_a_mouse_enters_an_id_drives_the_arm_and_opens_the_menu(place, browser):
         trainee.go_home()
 
 
-def test_a_tracked_hand_moves_the_tip_to_a_touch_undoes_it_and_opens_the_menu(place, browser):
+def test_a_tracked_hand_touches_undoes_it_and_opens_the_menu(place, browser):
     with page_of(place, browser, "metaQuest3") as page:
         enter_headset(page)
         hand = HandTrainee(place, page)

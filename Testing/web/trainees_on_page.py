@@ -1,23 +1,135 @@
-"""Trainees at the page without keys: two thumbs on a phone, the mouse, or a tracked hand."""
+"""Trainees at the page: by gamepad, keys, mouse, two thumbs on a phone, or in a headset."""
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
 import numpy as np
-from playwright.sync_api import Page
+from playwright.sync_api import Browser, Page
 
 from rastrainer_simulator.flow.session.chosen_trial import FIRST_ID
-from Testing.end_to_end.hands import PageMouse, Thumbs, TrackedHands
-from Testing.end_to_end.lab import Place
-from Testing.end_to_end.stream_trainee import LONGEST_WAY_S, TRAINEE, CarriedTrainee, Trainee
+from Testing.end_to_end.hands import (
+    BrowserPad,
+    Controllers,
+    GamepadHands,
+    PageKeys,
+    PageMouse,
+    Thumbs,
+    TrackedHands,
+)
+from Testing.end_to_end.lab import Lab, Place
+from Testing.end_to_end.stream_trainee import (
+    LONGEST_WAY_S,
+    TRAINEE,
+    CarriedTrainee,
+    Hands,
+    Trainee,
+)
+from Testing.web.chromium import enter_headset, open_page
 
 PHONE = {"width": 390, "height": 844}
 DESKTOP = {"width": 1280, "height": 720}
+_SHOWN = """() => {
+  const overlay = document.getElementById("overlay");
+  const panels = page.headset?.panels;
+  const seen = panels
+    ? [panels.menu, panels.work, panels.warning].filter((panel) => panel.mesh.visible)
+    : [{ root: overlay }];
+  return seen.map(({ root }) => [
+    panels ? root.textContent : root.innerText,
+    ...[...root.querySelectorAll("img")].map((image) => image.alt),
+  ].join("\\n")).join("\\n");
+}"""
+_LISTEN = """() => {
+  window.heard = [];
+  speechSynthesis.speak = (utterance) => {
+    window.heard.push(utterance.text);
+    setTimeout(() => utterance.onend());
+  };
+}"""
 
 
-class OnPage(Trainee):
+class AtPage(Trainee):
+    """Reads what the page shows; types the ID on it, or chooses its letters."""
+
+    types_on_page = False
+
+    def __init__(self, place: Place, page: Page, hands: Hands):
+        super().__init__(place.view, hands)
+        self.place, self.page = place, page
+
+    def type_id(self, page: Page | None = None) -> None:  # noqa: ARG002
+        super().type_id(self.page if self.types_on_page else None)
+
+    def shown(self) -> str:
+        """Return all text that is shown at the moment, also that of pictures."""
+        return self.page.evaluate(_SHOWN)
+
+    def read(self, pattern: str) -> re.Match[str]:
+        """Wait until a text is shown."""
+        found = None
+
+        def is_shown() -> bool:
+            nonlocal found
+            found = re.search(pattern, self.shown())
+            return found is not None
+
+        self.until(is_shown, pattern)
+        return found
+
+
+class PadTrainee(AtPage):
+    """Uses a gamepad at the simulator."""
+
+    def __init__(self, place: Place, page: Page):
+        super().__init__(place, page, GamepadHands(place.simulator))
+
+
+class BrowserPadTrainee(AtPage):
+    """Uses a gamepad that the browser reads."""
+
+    def __init__(self, place: Place, page: Page):
+        super().__init__(place, page, BrowserPad(page))
+
+
+class KeyTrainee(AtPage):
+    types_on_page = True
+
+    def __init__(self, place: Place, page: Page):
+        super().__init__(place, page, PageKeys(page))
+
+
+class ControllerTrainee(AtPage):
+    """Uses a headset's controllers."""
+
+    types_on_page = True
+
+    def __init__(self, place: Place, page: Page):
+        super().__init__(place, page, Controllers(page))
+
+
+class ListeningTrainee(KeyTrainee):
+    """Sees nothing: knows what the page has said since the last choice."""
+
+    def __init__(self, place: Place, page: Page):
+        super().__init__(place, page)
+        page.evaluate(_LISTEN)
+
+    def shown(self) -> str:
+        return "\n".join(self.page.evaluate("heard"))
+
+    def choose(self, item: str) -> None:
+        self.page.evaluate("void (window.heard = [])")
+        super().choose(item)
+
+
+class OnPage(AtPage):
     """Chooses items where the page shows them."""
-
-    page: Page
 
     def choose(self, item: str) -> None:
         """Choose an item of the open menu, which leads to another."""
@@ -25,6 +137,9 @@ class OnPage(Trainee):
         self.until_on_page()
         self.choose_on_page(item)
         self.until(lambda: self.menu_name != before, f"after {item}")
+
+    def go_back(self) -> None:
+        self.choose("back")
 
     def until_on_page(self) -> None:
         """Wait until the page shows the open menu: the previous one may have such an item, too."""
@@ -39,8 +154,7 @@ class SteeringTrainee(OnPage):
     """Taps on menus, and does everything else with two thumbs."""
 
     def __init__(self, place: Place, page: Page):
-        super().__init__(place.view, Thumbs(page))
-        self.page = page
+        super().__init__(place, page, Thumbs(page))
 
     def choose_on_page(self, item: str) -> None:
         self.page.tap(f"#menu li[data-name='{item}'] button")
@@ -64,8 +178,7 @@ class ClickingTrainee(OnPage):
     """Does everything by the mouse."""
 
     def __init__(self, place: Place, page: Page):
-        super().__init__(place.view, PageMouse(page))
-        self.page = page
+        super().__init__(place, page, PageMouse(page))
 
     def choose_on_page(self, item: str) -> None:
         self.hands.click(item)
@@ -95,11 +208,20 @@ class HandTrainee(OnPage):
     """Pinches at the panels' buttons; elsewhere the tip follows the pinching hand."""
 
     def __init__(self, place: Place, page: Page):
-        super().__init__(place.view, TrackedHands(page))
-        self.page = page
+        super().__init__(place, page, TrackedHands(page))
 
     def choose_on_page(self, item: str) -> None:
-        self.hands.choose(item)
+        while not (parts := self.parts() & {item, "scroll down"}):
+            self.view.next_state()
+        if item not in parts:
+            self.hands.choose("scroll down")
+            self.choose_on_page(item)
+        else:
+            self.hands.choose(item)
+
+    def parts(self) -> set[str]:
+        """Return what can be pointed at on the menu."""
+        return set(self.page.evaluate("page.headset.panels.menu.regions.map(({ name }) => name)"))
 
     def type_id(self, page: Page | None = None) -> None:  # noqa: ARG002
         self.choose("trainee")
@@ -122,3 +244,47 @@ class HandTrainee(OnPage):
         while not is_there() and self.view.state["timeS"] < give_up:
             self.view.next_state()
         self.hands.pinch(False)
+
+
+@dataclass(frozen=True)
+class Device:
+    """How a trainee trains: by which input, as it is recorded, and on which display.
+
+    `speed` is that for steering, in simulated seconds in a second.
+    """
+
+    trainee: type[AtPage]
+    operator: str
+    options: dict[str, Any] = field(default_factory=dict)
+    speed: str = "1"
+    place: type[Place] = Place
+
+
+XR = "headset's controllers"
+SLOW = "0.3"
+"""The speed for hands that a page reads once a picture: where the processor draws, a picture of a
+headset takes a quarter of a second, and a stick that is released so late overshoots."""
+QUEST_2, QUEST_3 = {"headset": "metaQuest2"}, {"headset": "metaQuest3"}
+DEVICES = {
+    "keys": Device(KeyTrainee, "keyboard", {"size": {"width": 1920, "height": 1080}}),
+    "a gamepad of the browser": Device(BrowserPadTrainee, "browser's gamepad", {"has_pad": True}),
+    "controllers": Device(ControllerTrainee, XR, QUEST_2, SLOW),
+    "a tracked hand": Device(HandTrainee, XR, QUEST_3, "0.5"),
+    "a gamepad in the headset": Device(PadTrainee, "gamepad", QUEST_2, place=Lab),
+    "thumbs": Device(SteeringTrainee, "touch screen", {"size": PHONE, "has_touch": True}, "0.5"),
+    "the mouse": Device(ClickingTrainee, "mouse", {"size": DESKTOP}, "0.5"),
+}
+
+
+@contextmanager
+def at_page(
+    device: Device, browser: Browser, folder: Path, *arguments: str, **preferences: str | bool
+) -> Iterator[AtPage]:
+    """Return a trainee with a device at the page of a new simulator."""
+    with device.place(folder, *arguments, **preferences) as place:
+        page = open_page(browser, place.url, place.code, draws=False, **device.options)
+        with page.context:
+            if "headset" in device.options:
+                enter_headset(page)
+            yield device.trainee(place, page)
+            assert page.problems == []

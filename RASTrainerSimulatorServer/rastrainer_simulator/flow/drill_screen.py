@@ -144,6 +144,13 @@ class DrillScreen(ArmScreen):
             menu = session.operator.label(ControlName.MENU)
             return self._message("case.looking", menu=menu)
         if move.blocked_mm < BLOCKED_MM:
-            return self._message("case.arrived", place=place)
-        off = f"{move.blocked_mm:.0f}"
-        return self._message("case.blocked", Tone.WARNING, place=place, distance=off)
+            said = self._message("case.arrived", place=place)
+        else:
+            off = f"{move.blocked_mm:.0f}"
+            said = self._message("case.blocked", Tone.WARNING, place=place, distance=off)
+        if not session.preferences.speech:
+            return said
+        # Who listens hears what others see: where the place really is.
+        case = session.placed_case
+        true = in_meters(case.truly(case.places[self._place]))
+        return replace(said, text=f"{said.text} {self._toward(place, true)}")

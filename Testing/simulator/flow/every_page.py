@@ -386,12 +386,13 @@ LONGEST_OR_EACH = [LONGEST, *(pytest.param(tag, marks=pytest.mark.soak) for tag 
 
 
 def screens_in(presenter: FlowPresenter, language: str) -> dict[str, Screen]:
-    """Return a screen of each page in a language, or each in the language where it is longest."""
-    if language != LONGEST:
-        session = presenter._session
-        session.prefer(language=language)
-        return every_screen(presenter)
-    spoken = [screens_in(presenter, tag) for tag in LANGUAGES]
+    """Return a screen of each page in a language."""
+    presenter._session.prefer(language=language)
+    return every_screen(presenter)
+
+
+def longest_of(spoken: list[dict[str, Screen]]) -> dict[str, Screen]:
+    """Return each screen of several languages in the language where it is longest."""
     return {name: max((screens[name] for screens in spoken), key=letters) for name in spoken[0]}
 
 

@@ -124,6 +124,18 @@ def test_the_robot_goes_where_the_registration_puts_a_place(trainee, cases):
     assert clock < "01:50", "a check takes ten seconds"
 
 
+def test_who_listens_hears_how_far_a_checked_place_is(trainee, cases):
+    trainee.presenter._session.prefer(speech=True)
+    begin(trainee)
+    check(trainee, "Nasion")
+    off = np.subtract(
+        cases[0].truly(cases[0].places["Nasion"]), MM_PER_M * np.array(trainee.state.tip)
+    )
+    step = 5 if np.linalg.norm(off) >= 20 else 1
+    said = f"nasion: {step * round(np.linalg.norm(off) / step):.0f} mm"
+    trainee.until(lambda: said in trainee.presenter.screen.instruction.text, said)
+
+
 def test_one_place_is_checked_after_the_other(trainee):
     begin(trainee)
     for number, place in enumerate(("Nasion", "Vertex", "Nasion"), start=1):

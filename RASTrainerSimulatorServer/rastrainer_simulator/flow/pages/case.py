@@ -82,8 +82,9 @@ def case_page(page: SessionPage) -> PageContent:
         return page.button(name, accept, value=value, is_enabled=not late, help=help_)
 
     low, high = case.expected.interval_mm
+    # No-break spaces: no point is on another line than its number.
     each = (
-        f"{place_name(session, label)} {session.texts.say('case.number', value=residual)}"
+        f"{place_name(session, label)}\N{NO-BREAK SPACE}{say('case.number', value=residual)}"
         for label, residual in zip(case.labels, case.residuals_mm, strict=True)
     )
     facts = (

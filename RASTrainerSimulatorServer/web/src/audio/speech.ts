@@ -41,7 +41,8 @@ function sentences({ menu, instruction, warnings }: Screen): string[] {
     const focused = menu.items.find((item) => item.name === menu.focus);
     texts.push(menu.title, ...menu.paragraphs);
     texts.push(...menu.facts.map((fact) => `${fact.label}: ${fact.value}`));
-    texts.push(focused === undefined ? "" : `${focused.label} ${focused.value}`.trim());
+    texts.push(menu.slices?.text ?? "", menu.trend?.text ?? "");
+    texts.push(focused === undefined ? "" : `${focused.label} ${focused.value}`.trim(), focused?.help ?? "");
   }
   return [...new Set(texts.filter((text) => text !== ""))];
 }

@@ -79,6 +79,7 @@ export class MenuView {
   /** Keep the rows that stay, in their places: a field that leaves the page for a moment loses its caret. */
   private build(menu: Menu, shape: string): void {
     const before = menu.name === this.name ? new Map(this.rows) : new Map<string, MenuRow>();
+    if (menu.name !== this.name) this.list.scrollTop = 0;
     this.shape = shape;
     this.name = menu.name;
     this.rows.clear();

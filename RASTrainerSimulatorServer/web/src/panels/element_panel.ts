@@ -4,13 +4,18 @@ import type { Vector2 } from "three";
 
 import { byId, element } from "../elements";
 import { Panel } from "./panel";
-import { COLORS } from "./pen";
+import { COLORS, Pen } from "./pen";
 
 /** Pixels of a unit of the style sheet: the largest with which all fits, and enough choices of a menu are in sight. */
 const UNITS = [1.3, 1.2, 1.1, 1, 0.9] as const;
 /** How many choices are in sight at least, if there are so many. */
 const LEAST_ROWS = 4;
 const BAR = 10;
+/** Parts that scroll a list, by how much of its height, for who can only point; no item has such a name. */
+const SCROLLS: Readonly<Record<string, number>> = { "scroll up": -0.8, "scroll down": 0.8 };
+const SCROLL_SIZE = 68;
+/** So many pixels of a list may be hidden: no row is. */
+const UNSEEN = 12;
 const SVG = "http://www.w3.org/2000/svg";
 /** A clock changes every second: its text is written onto the picture, which is not drawn again for it. */
 const CLOCK = /^\d+:\d\d$/;
@@ -39,6 +44,7 @@ export class ElementPanel extends Panel {
   private isPainting = false;
   private isShown = false;
   private hovered = "";
+  private focused: Element | null = null;
 
   /** Make a panel of `width` × `height` pixels, `wide` m wide. */
   constructor(width: number, height: number, wide: number) {
@@ -70,7 +76,8 @@ export class ElementPanel extends Panel {
     this.root.lang = document.documentElement.lang;
     for (const image of this.root.querySelectorAll("img")) if (!image.complete) image.onload = () => this.update();
     this.layOut();
-    this.regions = [...this.root.querySelectorAll<HTMLElement>("[data-name], [data-item]")].flatMap((part) => this.regionOf(part));
+    const parts = this.root.querySelectorAll<HTMLElement>("[data-name], [data-item]");
+    this.regions = [...this.scrollRegions(), ...[...parts].flatMap((part) => this.regionOf(part))];
     this.wanted = this.markup();
     if (this.wanted === this.painted) this.compose();
     else void this.paint();
@@ -89,6 +96,15 @@ export class ElementPanel extends Panel {
     const y = (1 - uv.y) * this.canvas.height;
     const hit = this.regions.find((part) => x >= part.x && x <= part.x + part.width && y >= part.y && y <= part.y + part.height);
     return hit?.name ?? "";
+  }
+
+  /** Scroll the list if that is what a part is for; return whether it is. */
+  scroll(name: string): boolean {
+    const share = SCROLLS[name];
+    if (share === undefined || this.list === null) return false;
+    this.list.scrollTop += share * this.list.clientHeight;
+    this.update();
+    return true;
   }
 
   override dispose(): void {
@@ -110,7 +126,23 @@ export class ElementPanel extends Panel {
       const areRowsInSight = !list || !least || this.boxOf(least).bottom - this.boxOf(rows[0]!).top <= list.clientHeight;
       if (areRowsInSight && (!content || content.scrollHeight <= content.clientHeight)) break;
     }
-    list?.querySelector("[data-focus]")?.scrollIntoView({ block: "nearest" });
+    const focused = list?.querySelector("[data-focus]") ?? null;
+    // A list that was scrolled stays so until the focus moves.
+    if (focused !== this.focused) focused?.scrollIntoView({ block: "nearest" });
+    this.focused = focused;
+  }
+
+  /** Return a button at each end of the list behind which there is more. */
+  private scrollRegions(): Region[] {
+    const { list } = this;
+    if (list === null) return [];
+    const { right, top, bottom } = this.boxOf(list);
+    const left = list.scrollHeight - list.clientHeight - list.scrollTop;
+    const place = { x: right - SCROLL_SIZE / 2, width: SCROLL_SIZE, height: SCROLL_SIZE };
+    return [
+      ...(list.scrollTop > UNSEEN ? [{ ...place, name: "scroll up", y: top }] : []),
+      ...(left > UNSEEN ? [{ ...place, name: "scroll down", y: bottom - SCROLL_SIZE }] : []),
+    ];
   }
 
   private regionOf(part: HTMLElement): Region[] {
@@ -186,11 +218,12 @@ export class ElementPanel extends Panel {
     context.drawImage(picture, 0, 0);
     for (const image of this.root.querySelectorAll("img")) this.place(image);
     for (const clock of clocksIn(this.root)) this.write(clock);
-    if (list && list.scrollHeight > list.clientHeight + 1) {
+    if (list && list.scrollHeight > list.clientHeight + UNSEEN) {
       const { right, top, height } = this.boxOf(list);
       const share = height / list.scrollHeight;
       this.box(right + BAR / 2, top, BAR, height, COLORS.field);
       this.box(right + BAR / 2, top + share * list.scrollTop, BAR, share * height, COLORS.pale);
+      for (const { name, x, y } of this.scrollRegions()) this.drawScroll(x + SCROLL_SIZE / 2, y + SCROLL_SIZE / 2, Math.sign(SCROLLS[name]!));
     }
     const pointed = this.regions.find(({ name }) => name === this.hovered);
     if (pointed) {
@@ -206,6 +239,15 @@ export class ElementPanel extends Panel {
   private box(x: number, y: number, width: number, height: number, color: string): void {
     this.context.fillStyle = color;
     this.context.fillRect(x, y, width, height);
+  }
+
+  /** Draw a disk with an arrow that points down (1) or up (−1). */
+  private drawScroll(x: number, y: number, down: number): void {
+    const { context } = this;
+    const pen = new Pen(context);
+    pen.circle(x, y, SCROLL_SIZE / 2 - 4, COLORS.field);
+    pen.circle(x, y, SCROLL_SIZE / 2 - 4, COLORS.pale, 3);
+    for (const side of [-1, 1]) pen.stroke(x + 13 * side, y - 6 * down, x, y + 8 * down, COLORS.text, 6);
   }
 
   /** Draw a picture as large as fits in its element, once it is loaded. */

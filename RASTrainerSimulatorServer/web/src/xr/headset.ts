@@ -191,6 +191,7 @@ export class Headset {
   }
 
   private choose(name: string): void {
+    if (this.panels.scroll(name)) return;
     switch (this.panels.localAction(name)) {
       case "recenter":
         this.mustRecenter = true;

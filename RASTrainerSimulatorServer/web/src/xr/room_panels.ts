@@ -190,6 +190,11 @@ export class RoomPanels {
     for (const panel of this.touchable) panel.hover(name);
   }
 
+  /** Scroll the menu if that is what the part of a panel is for; return whether it is. */
+  scroll(name: string): boolean {
+    return this.menu.scroll(name);
+  }
+
   setGrab(mayGrab: boolean): void {
     this.mayGrab = mayGrab;
     this.paint();
