@@ -42,9 +42,10 @@ def seen_of(session):
     }
 
 
-def quick_form(_maker, random, _seen):
+def quick_form(maker, random, _seen):
     """Return cases that are soon drawn: balanced forms have tests of their own."""
-    return tuple((int(seed), Fault.BAD_FIDUCIAL) for seed in random.integers(2**31, size=CASES))
+    seeds = map(int, random.integers(2**31, size=CASES))
+    return tuple(maker.case(seed, Fault.BAD_FIDUCIAL) for seed in seeds)
 
 
 def play(asked):
@@ -60,6 +61,10 @@ def play(asked):
             session.begin_drill()
         elif session.drill.is_ready:
             DEEDS[asked.popleft()](session.drill)
+            while not session.drill.is_recorded:
+                session.drill.advance(0.0)
+            # Its pages are of the case before.
+            session.pages.show_start()
             if session.drill.is_ready:
                 print(SAYS + json.dumps(seen_of(session)), flush=True)
 

@@ -14,7 +14,7 @@ from rastrainer.json_records import camel_case
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.net.limits import LIMITS_FILE
 from rastrainer_simulator.virtual.scripted_trial import send_hello
-from Testing.end_to_end.process_nursery import SLICER_SIDE, shared_nursery
+from Testing.end_to_end.fork_server import SLICER_SIDE, shared_fork_server
 from Testing.end_to_end.simulator_process import SERVES, SimulatorProcess, paired_key
 from Testing.end_to_end.stream_trainee import CarriedTrainee, Trainee, WatchingView
 from Testing.end_to_end.virtual_display import VirtualDisplay, VirtualKeyboard
@@ -155,7 +155,7 @@ class SlicerProcess:
         }
         options = [word for name, value in words.items() for word in (f"--{name}", str(value))]
         said = "" if errors is None else errors.name
-        self._process = shared_nursery(SLICER_SIDE).fork(*options, errors=said)
+        self._process = shared_fork_server(SLICER_SIDE).fork(*options, errors=said)
         self.pid = self._process.pid
 
     def kill(self) -> None:

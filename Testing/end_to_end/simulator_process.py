@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer_simulator.net.limits import LIMITS_FILE
-from Testing.end_to_end.process_nursery import SIMULATOR, shared_nursery
+from Testing.end_to_end.fork_server import SIMULATOR, shared_fork_server
 from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.simulator.net.views.served import ViewClient
 from Testing.without_tutorial import skip_tutorial
@@ -50,9 +50,9 @@ class SimulatorProcess:
         self._errors = tempfile.NamedTemporaryFile("w+")  # noqa: SIM115
         if self.command == tuple(COMMAND) and set(others) <= {"env"} and hasattr(os, "fork"):
             words = ("simulator", *settings, *arguments)
-            nursery = shared_nursery(SIMULATOR)
+            server = shared_fork_server(SIMULATOR)
             how = {"errors": self._errors.name, "first": self.first, **others}
-            self._process = nursery.fork(*words, **how)
+            self._process = server.fork(*words, **how)
         else:
             self._process = subprocess.Popen(
                 [*self.command, *settings, *arguments],

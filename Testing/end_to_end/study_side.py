@@ -12,7 +12,7 @@ from rastrainer.study.database.database import PostgresAddress, study_place
 from rastrainer_headless.main import openSession, process
 from rastrainer_headless.scene import HeadlessScene
 from rastrainer_simulator.assets import asset_path
-from Testing.end_to_end.process_nursery import STUDY_SIDE, shared_nursery
+from Testing.end_to_end.fork_server import STUDY_SIDE, shared_fork_server
 
 ROOT = Path(__file__).parents[2]
 STUDY, RECORDS = "study.db", "records"
@@ -37,7 +37,7 @@ class StudySide:
     """Runs it; killed by the `with` statement as by a crash."""
 
     def __init__(self, folder: Path, port: int):
-        self._process = shared_nursery(STUDY_SIDE).fork(str(folder), str(port))
+        self._process = shared_fork_server(STUDY_SIDE).fork(str(folder), str(port))
 
     def __enter__(self) -> StudySide:
         return self

@@ -17,7 +17,7 @@ from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.interrupted_trial import InterruptedTrial
 from rastrainer_simulator.record.trial_archive import SUFFIX, TrialArchive, find_unacknowledged
 from Testing.end_to_end.finished_trials import COLIN, TRAINEE
-from Testing.end_to_end.process_nursery import SIMULATOR, SLICER_SIDE, shared_nursery
+from Testing.end_to_end.fork_server import SIMULATOR, SLICER_SIDE, shared_fork_server
 from Testing.end_to_end.simulator_process import READY
 from Testing.end_to_end.surviving_player import NOT_REPORTED, Killing, SurvivingPlayer
 from Testing.free_port import free_port
@@ -36,7 +36,7 @@ class Lab:
     def start_simulator(self):
         """Return a function that ends it by a signal."""
         words = ("--no-views", "--speed", "10", "--port", str(self.port))
-        simulator = shared_nursery(SIMULATOR).fork(
+        simulator = shared_fork_server(SIMULATOR).fork(
             "simulator", "--records", str(self.records), "--config", self._config, *words
         )
         ready = simulator.next_line()
@@ -47,7 +47,7 @@ class Lab:
     def start_slicer(self):
         """Return Slicer's side, which waits for more trials than there are."""
         words = ("--assets", str(asset_path()), "--output", str(self.output), "--trials", "100000")
-        slicer = shared_nursery(SLICER_SIDE).fork(
+        slicer = shared_fork_server(SLICER_SIDE).fork(
             "--port", str(self.port), *words, "--timeout", "1000"
         )
         slicer.drain_output()

@@ -27,7 +27,7 @@ from rastrainer_simulator.record.trial_archive import SUFFIX, find_unacknowledge
 from Testing.domain.study.played_study import STUDIES
 from Testing.domain.study.study_content import rows_of, written_files
 from Testing.end_to_end.finished_trials import COLIN
-from Testing.end_to_end.process_nursery import SIMULATOR, STUDY_SIDE, Nursery
+from Testing.end_to_end.fork_server import SIMULATOR, STUDY_SIDE, ForkServer
 from Testing.end_to_end.simulator_process import READY
 from Testing.end_to_end.study_side import RECORDS
 from Testing.end_to_end.surviving_player import Killing, SurvivingPlayer
@@ -215,8 +215,8 @@ class Lab:
 def test_a_study_over_three_seats_survives_a_hundred_kills_of_all_its_parts(tmp_path, capsys):
     with (
         PostgresServer() as server,
-        Nursery(SIMULATOR, tmp_path) as simulators,
-        Nursery(STUDY_SIDE, tmp_path) as slicers,
+        ForkServer(SIMULATOR, tmp_path) as simulators,
+        ForkServer(STUDY_SIDE, tmp_path) as slicers,
     ):
         lab = Lab(tmp_path, server, (simulators, slicers))
         lab.run()

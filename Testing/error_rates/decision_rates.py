@@ -6,11 +6,12 @@ import functools
 import itertools
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from statistics import NormalDist
 
 import numpy as np
 from numpy.random import Generator, default_rng
-from scipy.stats import binom
+from scipy.stats import binom, rankdata
 
 from rastrainer.decision.drill_record import CASES, Decision, Fault
 from rastrainer.decision.drill_score import (
@@ -27,7 +28,6 @@ from rastrainer.number_text import fixed
 from rastrainer.scenario.points import NOSE_TIP
 from rastrainer_simulator.decision.cases import (
     BACK,
-    FAULT_DIFFICULTY,
     LEAST_DIFFICULTY,
     LIMIT_MM,
     SOUND_SLOPE,
@@ -35,6 +35,8 @@ from rastrainer_simulator.decision.cases import (
     UNSOUND_SLOPE,
 )
 from rastrainer_simulator.decision.forms import DIFFICULTY_SLACK
+from Testing.error_rates import decision_traffic
+from Testing.error_rates.decision_traffic import Traffic
 from Testing.error_rates.decisions import (
     Ideal,
     Judged,
@@ -51,6 +53,7 @@ from Testing.error_rates.decisions import (
     read,
 )
 from Testing.error_rates.measured import Measured, holds, share_of, share_text
+from Testing.error_rates.row_files import stored_rows
 
 OBSERVERS_HEADER = (
     "observer, 2,000 cases",
@@ -192,7 +195,8 @@ def cheats(_sets: int) -> list[Measured]:
         }.items()
     ]
     rows = _mixed(sound)
-    learned = _learned(cases)[rows]
+    beyond, part = ~sound, np.array([case.form % 2 for case in cases])
+    learned = _learned([_features(case) for case in cases], beyond, part)[rows]
     left = _left(sound[rows])
     named = {
         "the number of points": np.array([case.points for case in cases])[rows],
@@ -208,7 +212,53 @@ def cheats(_sets: int) -> list[Measured]:
         "no cheat: all that is shown, learned from other forms": learned,
         "no cheat: the same, with how many sound ones are left": learned + left,
     }
+    found += _traffic_cheats()
     return [*found, *(_cheat(name, each, sound[rows]) for name, each in evidence.items())]
+
+
+MEASURED = {
+    "the time until a case appears": "waited_ms",
+    "the time of a check": "checked_ms",
+    "the time until the images appear": "sliced_ms",
+    "the number of rows of places": "rows",
+    "the number of the first point": "first_label",
+    "the order of the points": "order",
+    "the size of the images in bytes": "slices_bytes",
+    "the number of points of the contours": "contour_points",
+    "the digits of the fiducials' places": "digits",
+    "the growth of the journal": "journal_bytes",
+    "the time of the journal's file": "journal_ns",
+}
+"""Cheats by measuring at a client or in the folder, with the names of the measured values."""
+
+
+def _traffic_cheats() -> list[Measured]:
+    """Return how many forms are passed by measurements of played drills.
+
+    All together are weighed by a regression that is learned from other forms. It must not tell
+    more than chance does, with 95 %.
+    """
+    played: list[Traffic] = stored_rows(decision_traffic.FILE, Traffic)
+    sound = np.array([each.is_sound == 1 for each in played])
+    values = np.array([[getattr(each, name) for name in MEASURED.values()] for each in played])
+    rows = _mixed(sound)
+    found = [
+        _cheat(name, of_name, sound[rows], MOST_PASSED)
+        for name, of_name in zip(MEASURED, np.moveaxis(values[rows], 2, 0), strict=True)
+    ]
+    part = np.array([each.form % 2 for each in played])
+    # Times have long tails, and the first case waits for its form.
+    ranks = rankdata(values, axis=0) / len(values)
+    learned = _learned(ranks, ~sound, part)
+    whole = _cheat(
+        "all of these, learned from other forms", learned[rows], sound[rows], MOST_PASSED
+    )
+    own, halves_of = area(learned, sound), (np.sum(sound), np.sum(~sound))
+    chance = math.sqrt((sum(halves_of) + 1) / (12.0 * halves_of[0] * halves_of[1]))
+    reach = _NORMAL.inv_cdf(0.975) * chance
+    told = f"{share_text(own)}, chance {share_text(0.5 - reach)} to {share_text(0.5 + reach)}"
+    is_chance = own <= 0.5 + reach
+    return [*found, replace(whole, further=(told,), also=lambda _: is_chance)]
 
 
 def _cheat(
@@ -254,18 +304,18 @@ def _features(case: Shown) -> list[float]:
     return [residual, largest, expected, math.log(case.points), *one_hot]
 
 
-def _learned(cases: Sequence[Shown]) -> np.ndarray:
-    """Return log odds of an error beyond the limit by the shown values, learned from other forms.
+def _learned(
+    features: Sequence[Sequence[float]] | np.ndarray, beyond: np.ndarray, part: np.ndarray
+) -> np.ndarray:
+    """Return log odds of an error beyond the limit by features, learned from the other part.
 
     It is a logistic regression on the features, their squares and products.
     """
-    values = np.array([_features(case) for case in cases])
-    values = (values - values.mean(axis=0)) / values.std(axis=0)
+    values = np.array(features)
+    values = (values - values.mean(axis=0)) / np.maximum(values.std(axis=0), 1e-9)
     pairs = itertools.combinations_with_replacement(values.T, 2)
     columns = np.column_stack([np.ones(len(values)), values, *(a * b for a, b in pairs)])
-    beyond = np.array([not case.is_sound for case in cases], dtype=float)
-    part = np.array([case.form % 2 for case in cases])
-    found = np.empty(len(cases))
+    found = np.empty(len(values))
     for each in (0, 1):
         known, own = columns[part != each], np.zeros(columns.shape[1])
         for _ in range(25):
@@ -460,7 +510,7 @@ COEFFICIENT_SLACK = 0.4
 def difficulties(_sets: int) -> list[Measured]:
     """Return the coefficients of a case's difficulty as fitted to observers of spread ability."""
     spread = float(_difficulties().mean(axis=1).std(ddof=1))
-    named = {each.value: value for each, value in FAULT_DIFFICULTY.items()}
+    named = {each.value: each.difficulty for each in Fault}
     named |= {
         "margin of a sound case": -SOUND_SLOPE,
         "beyond the limit": UNSOUND,
@@ -489,7 +539,7 @@ def _fitted() -> np.ndarray:
     cases = [(case, ideal) for part, ideal in halves() for case in part]
     margins = np.log([case.true_mm / LIMIT_MM for case, _ in cases])
     beyond = (margins > 0.0).astype(float)
-    faults = [[float(case.fault == fault.value) for fault in FAULT_DIFFICULTY] for case, _ in cases]
+    faults = [[float(case.fault == fault.value) for fault in Fault] for case, _ in cases]
     sizes = np.abs(margins)
     columns = np.column_stack([faults, sizes * (1.0 - beyond), beyond, sizes * beyond])
     random, right = default_rng(3), []

@@ -116,8 +116,7 @@ class Watcher:
         )
 
     def form(self, number: int) -> list[Shown]:
-        keys = draw_form(self.maker, default_rng([number, 39]), ())
-        made = (self.maker.case(*key) for key in keys)
+        made = draw_form(self.maker, default_rng([number, 39]), ())
         return [self.shown(number, place, case) for place, case in enumerate(made)]
 
 

@@ -11,6 +11,7 @@ from rastrainer.registration.target_error import common_bias
 from rastrainer.trial.score_reference import fiducial_normals, region_of
 from Testing.error_rates import (
     curricula,
+    decision_traffic,
     decisions,
     drawn_traces,
     hands,
@@ -189,12 +190,13 @@ def test_every_stored_trial_is_reproduced(key):
         (match_warnings.FILE, match_warnings.Chunk, set(match_warnings.keys(CHUNKS)), 5),
         (drawn_traces.FILE, drawn_traces.Drawn, set(drawn_traces.keys(drawn_traces.SEEDS)), 5),
         (decisions.FILE, decisions.Shown, decisions.KEYS, 2),
+        (decision_traffic.FILE, decision_traffic.Traffic, decision_traffic.KEYS, 2),
     ],
-    ids=["cheats", "hands", "methods", "match warnings", "drawn traces", "decisions"],
+    ids=["cheats", "hands", "methods", "match warnings", "drawn traces", "decisions", "traffic"],
 )
 def test_each_stored_row_is_kept_once_and_belongs_to_its_table(path, kind, expected, names):
     rows = [dataclasses.astuple(row)[:names] for row in stored_rows(path, kind)]
     assert len(rows) == len(set(rows))
     assert set(rows) <= expected
-    if kind in (played.Played, hands.HandsTrial, decisions.Shown):
+    if kind in (played.Played, hands.HandsTrial, decisions.Shown, decision_traffic.Traffic):
         assert set(rows) == expected

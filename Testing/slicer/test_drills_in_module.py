@@ -83,6 +83,11 @@ def test_a_delivered_drill_is_stored_once_acknowledged_and_shown_without_any_len
     assert "Harmful decisions: " in module.text("feedbackText")
     with pytest.raises(AssertionError, match="Choose a trial first"):
         module.press("replayButton")
+    module.press("showTablesButton")
+    assert module.text("scoreMessageText") == "The score is now a table in the scene."
+    module.answer("Delete", "No")
+    module.press("deleteTraineeButton")
+    assert "T001 with 0 trials and 1 drills" in " ".join(module.messages[-1].text.split())
     assert {
         arguments["trialId"] for arguments in commands(module, simulator, "AcknowledgeTrial")
     } == {record.trial_id}
@@ -139,7 +144,8 @@ def test_a_drill_is_chosen_as_a_task_and_started_in_the_mode_of_the_section_or_t
     module.press("startTaskButton")
     assert "the study asks for something else first" in module.messages[-1].text
     simulator.responder = lambda _name, _arguments: {}
-    assert module.text("nextStepButton") == "Start the step"
+    # The drill that was started has not arrived yet.
+    assert module.text("nextStepButton") == "Show the drill"
     module.press("nextStepButton")
     assert commands(module, simulator, "StartDrill")[2:] == [{"trainee": "T001", "mode": "hmd"}]
     steps = commands(module, simulator, "StudyStep")
@@ -153,3 +159,4 @@ def test_a_drill_is_chosen_as_a_task_and_started_in_the_mode_of_the_section_or_t
     simulator.send_command("TrialCompleted", delivered(drill(2, mode="hmd", **utc)))
     done = lambda: received(simulator, "StudyStep")[-1]["kind"] == "trial-run"  # noqa: E731
     module.wait_until(done, "the step is done, and the next one is sent")
+    assert module.text("nextStepButton") == "Start the step"

@@ -122,11 +122,12 @@ class Assignment:
     def is_played_as(
         self, scenario: str, task: str, mode: str, method: str, procedure: str
     ) -> bool:
-        """Return whether the assignment accepts a trial of this kind."""
+        """Return whether the assignment accepts a trial of this kind; a drill has no method."""
         return (
             self.scenario in ("", scenario)
             and self.mode in ("", mode)
-            and (self.task, self.method, self.procedure) == (task, method, procedure)
+            and (self.task, self.procedure) == (task, procedure)
+            and method in ("", self.method)
         )
 
 

@@ -62,11 +62,12 @@ def _rows(database: StudyDatabase, table: Table) -> list[tuple]:
 
 def delete_trainee(arguments: argparse.Namespace) -> int:
     with Study.open(arguments.study, must_exist=True) as opened:
-        count = len(opened.history(arguments.pseudonym))
+        trials = counted(len(opened.history(arguments.pseudonym)), "trial")
+        drills = counted(len(opened.drills(arguments.pseudonym)), "drill")
         if not arguments.yes:
             raise InputError(
-                f"{arguments.pseudonym} has {count} trials, which would be lost for good; add "
-                "--yes to delete them."
+                f"{arguments.pseudonym} has {trials} and {drills}, which would be lost for good; "
+                "add --yes to delete them."
             )
         if arguments.records is None:
             raise InputError(

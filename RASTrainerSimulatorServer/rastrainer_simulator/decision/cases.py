@@ -17,12 +17,13 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.random import Generator, default_rng
 
 from rastrainer import transforms
-from rastrainer.decision.drill_record import Fault
+from rastrainer.decision.drill_record import CaseTruth, Fault
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, nearest_vertices
 from rastrainer.head.trial_head import UNMOVED, SkinShift
@@ -44,15 +45,8 @@ MOST_ERROR = 3.0
 uniform up to it, and down to as far below the limit."""
 NEVER_SOUND = (Fault.MIRRORED, Fault.OTHER_PATIENT)
 """Nobody may proceed with such images, however small the error at one target happens to be."""
-TRACED_FAULTS = (
-    Fault.NONE,
-    Fault.MOVED_HEAD,
-    Fault.SCALED,
-    Fault.BENT_TOOL,
-    Fault.SHIFTED_SKIN,
-    Fault.OTHER_PATIENT,
-)
-"""Faults that a trace may have, besides sliding."""
+TOUCHED_FAULTS = Fault.BAD_FIDUCIAL, Fault.SWAPPED, Fault.MIRRORED, Fault.FAR_FIDUCIALS
+"""Faults that a trace cannot have."""
 TRACED_SHARE = 0.3
 FLE_METHODS = (RegistrationMethod.FIDUCIALS, RegistrationMethod.LANDMARKS)
 SKILL_SD = 0.45
@@ -71,69 +65,39 @@ SMALL, MOST_MM, SIZINGS = 0.5, 20.0, 3
 """The first guess of a fault's size, the largest size, and how often the size is corrected."""
 ATTEMPTS = 20
 VERTEX, BACK = "Vertex", "Back of the head"
-FAULT_DIFFICULTY = {
-    Fault.NONE: -1.5,
-    Fault.BAD_FIDUCIAL: -1.5,
-    Fault.SWAPPED: -1.6,
-    Fault.SLID_TRACE: -1.6,
-    Fault.MOVED_HEAD: -1.5,
-    Fault.MIRRORED: -5.0,
-    Fault.SCALED: -1.8,
-    Fault.FAR_FIDUCIALS: -1.5,
-    Fault.BENT_TOOL: -1.3,
-    Fault.SHIFTED_SKIN: -1.0,
-    Fault.OTHER_PATIENT: -1.7,
-}
 SOUND_SLOPE, UNSOUND, UNSOUND_SLOPE = 1.0, 1.65, 3.0
 """Coefficients of `difficulty`, fitted to simulated observers: Testing/error_rates/tables.md."""
 LEAST_DIFFICULTY = -5.0
 
 
-@dataclass(frozen=True, eq=False)
-class DecisionCase:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DecisionCase(CaseTruth):
     """A finished registration to be judged; points in RAS of the images, mm, (n, 3) float.
 
     Attributes:
-        labels: of the touched points.
-        registered_mm: the touched points, as registered.
-        fixed_mm: where these points are in the images.
-        trace_mm: the trace, as registered; empty without one.
-        residuals_mm: (n,) float, of the touched points.
-        residual_mm: root mean square, as shown: of the touched points (FRE), or of the trace.
+        registered_mm, fixed_mm: the touched points, as registered, and where they belong.
+        trace_mm: as registered; empty without one.
         registration: (4, 4) float, World→RAS of the images.
         places: that can be checked, by name.
-        limit_mm: largest acceptable error at the target.
-        difficulty: of a Rasch model, logits.
-        head_to_world: (4, 4) float: where the head is.
         images: (4, 4) float, from the head to its images.
-        skin: how the skin has shifted since the images were taken.
-        mesh: the head.
     """
 
-    seed: int
-    fault: Fault
-    method: RegistrationMethod
     labels: tuple[str, ...]
     registered_mm: np.ndarray
     fixed_mm: np.ndarray
     trace_mm: np.ndarray
-    residuals_mm: np.ndarray
-    residual_mm: float
     expected: TargetError
     registration: np.ndarray
     places: Mapping[str, np.ndarray]
     target_mm: np.ndarray
-    limit_mm: float
-    true_error_mm: float
-    difficulty: float
     head_to_world: np.ndarray
     images: np.ndarray
     skin: SkinShift
     mesh: HeadMesh
 
     @property
-    def is_sound(self) -> bool:
-        return self.true_error_mm <= self.limit_mm
+    def residuals_mm(self) -> np.ndarray:
+        return np.linalg.norm(self.registered_mm - self.fixed_mm, axis=1)
 
     def tip_for(self, place_mm: np.ndarray) -> np.ndarray:
         """Return where the robot goes for a point (3,) of the images, (3,) World, mm.
@@ -142,16 +106,13 @@ class DecisionCase:
         returned where it is as far from the shown skin as it is from the shifted skin.
         """
         to_head = transforms.inverse(self.head_to_world) @ transforms.inverse(self.registration)
-        there = transforms.apply(to_head, place_mm)
-        if self._is_skin(there):
-            there = self.skin.unmeasured(there[None], self.mesh)[0]
+        there = self._shifted(transforms.apply(to_head, place_mm), self.skin.unmeasured)
         return transforms.apply(self.head_to_world, there)
 
     def in_images(self, tip_mm: np.ndarray) -> np.ndarray:
         """Return where the registration shows a tip (3,), World mm, in the images."""
         there = transforms.apply(transforms.inverse(self.head_to_world), tip_mm)
-        if self._is_skin(there):
-            there = self.skin.measured(there[None], self.mesh)[0]
+        there = self._shifted(there, self.skin.measured)
         return transforms.apply(self.registration @ self.head_to_world, there)
 
     def truly(self, place_mm: np.ndarray) -> np.ndarray:
@@ -170,25 +131,24 @@ class DecisionCase:
         cuts = (skin.section(axis, point_mm) for axis in np.eye(3))
         return tuple([] if cut is None else list(cut.discrete) for cut in cuts)
 
-    def _is_skin(self, there: np.ndarray) -> bool:
-        if self.skin.is_none:
-            return False
-        return bool(nearest_vertices(self.mesh, there[None])[0] < UNDER_SKIN_MM)
+    def _shifted(
+        self, there: np.ndarray, shift: Callable[[np.ndarray, HeadMesh], np.ndarray]
+    ) -> np.ndarray:
+        """Return a point (3,) of the head shifted with the skin, if it is there."""
+        is_skin = (
+            not self.skin.is_none and nearest_vertices(self.mesh, there[None])[0] < UNDER_SKIN_MM
+        )
+        return shift(there[None], self.mesh)[0] if is_skin else there
 
 
 @dataclass(frozen=True, eq=False)
 class _Operation:
     """The touches of a virtual operator and the state of head and images; RAS of the head, mm.
 
-    Attributes:
-        points, trace: (n, 3) and (k, 3) float, where the images' anatomy really is.
-        normals: (k, 3) float, outward, of the skin at the trace.
-        astray, drawn: (n, 3) and (k, 3) float, how far off each point of both was measured.
-        order: (n,) int, row of the point that was touched in place of each.
-        images: as in `DecisionCase`.
-        moved: (4, 4) float, where the head was when it was registered.
-        bias: (3,) float, of every touch.
-        shift: of the skin.
+    `points` (n, 3) and `trace` (k, 3), with its outward `normals`, are where the images' anatomy
+    really is; `astray` and `drawn` how far off each of them was measured, besides the common
+    `bias`. `order` has the row of the point that was touched in place of each; `moved` (4, 4) is
+    where the head was meanwhile.
     """
 
     method: RegistrationMethod
@@ -278,28 +238,29 @@ class CaseMaker:
         truth = pose @ transforms.inverse(done.images)
         result = register_by(given, mesh, target[None], truth, starts=1)
         assert result.true_mm is not None
-        registered = transforms.apply(result.matrix, touched)
-        places = dict(self.places)
-        if not len(trace) and done.method is RegistrationMethod.FIDUCIALS:
+        true_mm, rows, places = float(result.true_mm[0]), np.arange(len(fixed)), dict(self.places)
+        if done.method is RegistrationMethod.FIDUCIALS:
+            # The lowest comes first: the order of touching would tell how fiducials were chosen.
+            rows = fixed[:, 2].argsort(kind="stable")
             names = (f"fiducial {label}" for label in done.labels)
-            places.update(zip(names, done.points, strict=True))
+            places.update(zip(names, done.points[rows], strict=True))
         return DecisionCase(
             seed=seed,
             fault=fault,
             method=done.method,
-            labels=done.labels,
-            registered_mm=registered,
-            fixed_mm=fixed,
-            trace_mm=transforms.apply(result.matrix, traced),
-            residuals_mm=np.linalg.norm(registered - fixed, axis=1),
+            limit_mm=LIMIT_MM,
+            true_error_mm=true_mm,
+            expected_error_mm=result.errors[0].expected_mm,
             residual_mm=result.residual_mm,
+            difficulty=difficulty(fault, true_mm / LIMIT_MM),
+            labels=done.labels,
+            registered_mm=transforms.apply(result.matrix, touched)[rows],
+            fixed_mm=fixed[rows],
+            trace_mm=transforms.apply(result.matrix, traced),
             expected=result.errors[0],
             registration=result.matrix,
             places={name: transforms.apply(done.images, place) for name, place in places.items()},
             target_mm=target,
-            limit_mm=LIMIT_MM,
-            true_error_mm=float(result.true_mm[0]),
-            difficulty=difficulty(fault, float(result.true_mm[0]) / LIMIT_MM),
             head_to_world=pose,
             images=done.images,
             skin=done.shift,
@@ -308,33 +269,35 @@ class CaseMaker:
 
     def _without_fault(self, fault: Fault, goal_mm: float, random: Generator) -> _Operation:
         """Return an operation without a fault, with points that let the fault do harm."""
-        skill = math.exp(random.normal(0.0, SKILL_SD))
-        method, rows = RegistrationMethod.FIDUCIALS, np.empty(0, dtype=int)
-        if fault is Fault.SLID_TRACE or (fault in TRACED_FAULTS and random.random() < TRACED_SHARE):
+        skill, is_slid = math.exp(random.normal(0.0, SKILL_SD)), fault is Fault.SLID_TRACE
+        method, traced = RegistrationMethod.FIDUCIALS, np.empty(0, dtype=int)
+        labels = list(range(1, MANY[1] + 1))
+        if is_slid or (fault not in TOUCHED_FAULTS and random.random() < TRACED_SHARE):
             method = RegistrationMethod.LANDMARKS_SURFACE
-            vertices = self._crown if fault is Fault.SLID_TRACE else self._traceable
-            rows = random.choice(vertices, TRACE_POINTS)
+            traced = random.choice(self._crown if is_slid else self._traceable, TRACE_POINTS)
         elif fault is Fault.NONE and random.random() < TRACED_SHARE:
             method = RegistrationMethod.LANDMARKS
         if method is not RegistrationMethod.FIDUCIALS:
             names = random.permutation(list(self.places))
             names = names[: random.integers(LEAST_LANDMARKS, len(names) + 1)]
-            labels, points = tuple(map(str, names)), np.array([self.places[each] for each in names])
+            labels, points = list(names), np.array([self.places[each] for each in names])
         elif fault in (Fault.MIRRORED, Fault.FAR_FIDUCIALS):
-            near = self._near_midline if fault is Fault.MIRRORED else self._cluster
-            points = near(goal_mm, random)
-            labels = tuple(str(number) for number in range(1, len(points) + 1))
+            points = self._unspread(fault, goal_mm, random)
         else:
-            labels, points = self._patch(FEW if fault is Fault.SWAPPED else MANY, random)
+            task = self.scenario.tasks[random.integers(len(self.scenario.tasks))]
+            away = np.linalg.norm(task.fiducials - random.choice(task.fiducials), axis=1)
+            count = random.integers(*(FEW if fault is Fault.SWAPPED else MANY))
+            rows = np.sort(away.argsort(kind="stable")[:count])
+            points = task.fiducials[rows]
         touched_by = method if method in FLE_METHODS else RegistrationMethod.LANDMARKS
-        across = random.normal(0.0, skill * PUBLISHED_NOISE[method], (len(rows), 1))
+        across = random.normal(0.0, skill * PUBLISHED_NOISE[method], (len(traced), 1))
         spread = skill * PUBLISHED_NOISE[touched_by] / math.sqrt(3.0)
-        normals = self.mesh.vertex_normals[rows]
+        normals = self.mesh.vertex_normals[traced]
         return _Operation(
             method=method,
-            labels=labels,
+            labels=tuple(map(str, labels[: len(points)])),
             points=points,
-            trace=self.mesh.vertices[rows],
+            trace=self.mesh.vertices[traced],
             normals=normals,
             astray=random.normal(0.0, spread, points.shape),
             drawn=across * normals,
@@ -354,38 +317,25 @@ class CaseMaker:
         away = np.linalg.norm(self.mesh.vertices - self.places[VERTEX], axis=1)
         return np.flatnonzero(away < CROWN_MM)
 
-    def _patch(
-        self, counts: tuple[int, int], random: Generator
-    ) -> tuple[tuple[str, ...], np.ndarray]:
-        """Return labels and places of neighboring fiducials of a task."""
-        task = self.scenario.tasks[random.integers(len(self.scenario.tasks))]
-        away = np.linalg.norm(task.fiducials - random.choice(task.fiducials), axis=1)
-        rows = np.sort(away.argsort(kind="stable")[: random.integers(*counts)])
-        return tuple(task.labels[row] for row in rows), task.fiducials[rows]
-
-    def _near_midline(self, goal_mm: float, random: Generator) -> np.ndarray:
-        """Return points near a plane that passes the target at half a distance.
+    def _unspread(self, fault: Fault, goal_mm: float, random: Generator) -> np.ndarray:
+        """Return points close to one another, or for mirrored images near a plane.
 
         Points of one plane match their mirror image, so their residual is small; a target on one
-        side of the plane is taken to the other side.
+        side of the plane is taken to the other side. The plane passes it at half a distance.
         """
-        normal = np.array([1.0, *random.normal(0.0, 0.15, 2)])
-        normal /= np.linalg.norm(normal)
-        vertices, side = self.mesh.vertices, random.choice([-1.0, 1.0])
-        off = np.abs((vertices - self.target) @ normal - side * goal_mm / 2.0)
-        off[vertices[:, 2] < vertices[:, 2].min() + ABOVE_BASE_MM] = np.inf
-        return self._some_within(off, MIDLINE_MM, random)
-
-    def _cluster(self, _goal_mm: float, random: Generator) -> np.ndarray:
-        """Return points close to one another."""
-        center = self.mesh.vertices[random.choice(self._traceable)]
-        away = np.linalg.norm(self.mesh.vertices - center, axis=1)
-        return self._some_within(away, random.uniform(*CLUSTER_MM), random)
-
-    def _some_within(self, away: np.ndarray, most: float, random: Generator) -> np.ndarray:
-        """Return vertices that are no farther away, (v,) mm, than so much; at least the nearest."""
+        vertices = self.mesh.vertices
+        if fault is Fault.MIRRORED:
+            normal = np.array([1.0, *random.normal(0.0, 0.15, 2)])
+            normal /= np.linalg.norm(normal)
+            side = random.choice([-1.0, 1.0])
+            away = np.abs((vertices - self.target) @ normal - side * goal_mm / 2.0)
+            away[vertices[:, 2] < vertices[:, 2].min() + ABOVE_BASE_MM] = np.inf
+            most = MIDLINE_MM
+        else:
+            center = vertices[random.choice(self._traceable)]
+            away, most = np.linalg.norm(vertices - center, axis=1), random.uniform(*CLUSTER_MM)
         nearest = away.argsort(kind="stable")[: max(int(np.sum(away <= most)), MANY[1])]
-        return self.mesh.vertices[random.permutation(nearest)[: random.integers(*MANY)]]
+        return vertices[random.permutation(nearest)[: random.integers(*MANY)]]
 
     def _with_fault(
         self, done: _Operation, fault: Fault, goal_mm: float, random: Generator
@@ -398,55 +348,48 @@ class CaseMaker:
             images[0, 3] = 2.0 * self.mesh.middle[0]
             return replace(done, images=images)
         if fault is Fault.SWAPPED:
-            orders = _exchanges(len(done.points))
-            swapped = [replace(done, order=order) for order in orders]
+            pairs = itertools.combinations(range(len(done.points)), 2)
+            swapped = [replace(done, order=_exchanged(done.order, *pair)) for pair in pairs]
             errors = [self._error_mm(each) for each in swapped]
             return swapped[int(np.abs(np.log(np.array(errors) / goal_mm)).argmin())]
-        build = self._sizable(done, fault, random)
+        changes = self._sizable(done, fault, random)
         start, size = done.error(self.mesh, self.target), SMALL
         for _ in range(SIZINGS):
-            change = (build(size).error(self.mesh, self.target) - start) / size
+            change = (replace(done, **changes(size)).error(self.mesh, self.target) - start) / size
             size = min(max(_size_for(goal_mm, start, change), -MOST_MM), MOST_MM)
-        return build(size)
+        return replace(done, **changes(size))
 
     def _sizable(
         self, done: _Operation, fault: Fault, random: Generator
-    ) -> Callable[[float], _Operation]:
-        """Return what makes an operation with a fault of a size, roughly mm."""
+    ) -> Callable[[float], dict[str, Any]]:
+        """Return what changes an operation by a fault of a size, roughly mm."""
         direction = random.normal(size=3)
         direction /= np.linalg.norm(direction)
+        middle, base, strain = self.mesh.middle, self.mesh.base, np.eye(3)
         if fault is Fault.BAD_FIDUCIAL:
             row = np.zeros((len(done.points), 1))
             row[random.integers(len(row))] = 1.0
-            return lambda size: replace(done, astray=done.astray + size * row * direction)
+            return lambda size: {"astray": done.astray + size * row * direction}
         if fault is Fault.BENT_TOOL:
-            return lambda size: replace(done, bias=size * direction)
+            return lambda size: {"bias": size * direction}
         if fault is Fault.SHIFTED_SKIN:
             seed = int(random.integers(2**31))
-            return lambda size: replace(done, shift=SkinShift(max(size, SMALL), seed))
+            return lambda size: {"shift": SkinShift(max(size, SMALL), seed)}
         if fault is Fault.SLID_TRACE:
             hair = SkinShift(1.0, int(random.integers(2**31))).moved(done.trace, self.mesh)
-            return lambda size: replace(done, drawn=done.drawn + size * hair)
+            return lambda size: {"drawn": done.drawn + size * hair}
         if fault is Fault.MOVED_HEAD:
-            base, turn = self.mesh.base, random.normal(0.0, TURN_DEG_PER_MM, 3)
+            turn = random.normal(0.0, TURN_DEG_PER_MM, 3)
 
-            def moved(size: float) -> _Operation:
+            def moved(size: float) -> dict[str, Any]:
                 rotation = transforms.rotations(np.radians(size * turn)[None])[0]
-                move = base + size * direction - rotation @ base
-                return replace(done, moved=transforms.rigid(rotation, move))
+                return {"moved": _about(base, rotation, size * direction)}
 
             return moved
-        strain = np.eye(3)
         if fault is Fault.OTHER_PATIENT:
             strain = random.normal(size=(3, 3))
             strain = (strain + strain.T) / 2.0
-        middle = self.mesh.middle
-
-        def stretched(size: float) -> _Operation:
-            linear = np.eye(3) + size / HALF_HEAD_MM * strain
-            return replace(done, images=transforms.rigid(linear, middle - linear @ middle))
-
-        return stretched
+        return lambda size: {"images": _about(middle, np.eye(3) + size / HALF_HEAD_MM * strain)}
 
 
 def difficulty(fault: Fault, error: float) -> float:
@@ -455,36 +398,30 @@ def difficulty(fault: Fault, error: float) -> float:
     The error is relative to the limit. The method of registration hardly matters.
     """
     margin = math.log(max(error, 1e-3))
-    if margin <= 0.0:
-        found = FAULT_DIFFICULTY[fault] + SOUND_SLOPE * margin
-    else:
-        found = FAULT_DIFFICULTY[fault] + UNSOUND - UNSOUND_SLOPE * margin
-    return max(found, LEAST_DIFFICULTY)
+    start, slope = (UNSOUND, -UNSOUND_SLOPE) if margin > 0.0 else (0.0, SOUND_SLOPE)
+    return max(fault.difficulty + start + slope * margin, LEAST_DIFFICULTY)
 
 
 def places_of(scenario: Scenario, mesh: HeadMesh) -> dict[str, np.ndarray]:
     """Return anatomical places on a head that can be checked, (3,) float, RAS mm, by name."""
-    places = {each.name: np.asarray(each.position_ras, float) for each in scenario.landmarks}
-    places.setdefault(NOSE_TIP, nose_tip(mesh))
+    places = {each.name: np.array(each.position_ras, float) for each in scenario.landmarks}
+    places.setdefault(NOSE_TIP, np.array(nose_tip(mesh), float))
     vertices = mesh.vertices[mesh.vertices[:, 2] > mesh.vertices[:, 2].min() + ABOVE_BASE_MM]
-    for name, (axis, sign) in {
-        VERTEX: (2, 1.0),
-        BACK: (1, -1.0),
-        "Left ear": (0, -1.0),
-        "Right ear": (0, 1.0),
-    }.items():
-        places.setdefault(name, vertices[(sign * vertices[:, axis]).argmax()])
-    return {name: np.array(place, dtype=float) for name, place in places.items()}
+    x, y, z = vertices.T
+    for name, along in {VERTEX: z, BACK: -y, "Left ear": -x, "Right ear": x}.items():
+        places.setdefault(name, vertices[along.argmax()])
+    return places
 
 
-def _exchanges(count: int) -> list[np.ndarray]:
-    """Return the orders (n,) int of points of which two are exchanged."""
-    orders = []
-    for pair in itertools.combinations(range(count), 2):
-        order = np.arange(count)
-        order[list(pair)] = pair[::-1]
-        orders.append(order)
-    return orders
+def _exchanged(order: np.ndarray, one: int, other: int) -> np.ndarray:
+    changed = order.copy()
+    changed[[one, other]] = other, one
+    return changed
+
+
+def _about(center: np.ndarray, linear: np.ndarray, move: np.ndarray | float = 0.0) -> np.ndarray:
+    """Return the matrix (4, 4) of a linear map about a center, and a move after it."""
+    return transforms.rigid(linear, center + move - linear @ center)
 
 
 def _size_for(goal_mm: float, start: np.ndarray, change: np.ndarray) -> float:

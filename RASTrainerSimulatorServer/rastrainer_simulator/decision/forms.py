@@ -33,11 +33,8 @@ SEED_LIMIT = 2**53
 
 def draw_form(
     maker: CaseMaker, random: Generator, seen: Collection[int]
-) -> tuple[tuple[int, Fault], ...]:
-    """Return the seeds and faults of a form's cases, none of them seen before.
-
-    It takes seconds: leave it to a worker.
-    """
+) -> tuple[DecisionCase, ...]:
+    """Return the cases of a form, none of whose seeds was seen before; it takes seconds."""
     used = set(seen)
 
     def drawn(is_sound: bool) -> DecisionCase:
@@ -61,7 +58,7 @@ def draw_form(
         changed[place] = drawn(form[place].is_sound)
         if _off(changed) < off:
             form = changed
-    return tuple((case.seed, case.fault) for case in form)
+    return tuple(form)
 
 
 def _off(form: list[DecisionCase]) -> float:

@@ -17,9 +17,8 @@ import numpy as np
 
 import rastrainer
 from rastrainer import transforms
-from rastrainer.decision.case_table import COLUMNS, cells
 from rastrainer.decision.drill_record import DrillRecord
-from rastrainer.decision.drill_rows import drill_rows
+from rastrainer.decision.drill_rows import COLUMNS, cells, drill_rows
 from rastrainer.errors import InputError
 from rastrainer.files.ply import write_ply
 from rastrainer.files.point_files import write_markups

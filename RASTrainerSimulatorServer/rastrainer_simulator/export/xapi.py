@@ -5,9 +5,8 @@ from __future__ import annotations
 import uuid
 from typing import Any
 
-from rastrainer.decision.case_table import COLUMNS, cells
 from rastrainer.decision.drill_record import DrillRecord
-from rastrainer.decision.drill_rows import drill_rows
+from rastrainer.decision.drill_rows import COLUMNS, cells, drill_rows
 from rastrainer.study.outcomes import mode_title, task_title
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers
 from rastrainer.study.protocol.study_protocol import pass_mark_of

@@ -11,7 +11,7 @@ from rastrainer.commands import CommandName
 from rastrainer.journal.entries import FeedChange, PhaseChange, Reach, Rejected
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.arm import start_tip
-from rastrainer_simulator.flow.session.arm_move import ArmMove, way_over_head
+from rastrainer_simulator.flow.session.arm_move import ArmMove
 from rastrainer_simulator.flow.session.operator_device import SHOW, TILT
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
@@ -96,8 +96,9 @@ class ArmScreen:
 
     def _begin_move(self, goal: Vector, above: Vector) -> None:
         """Have the arm move over the head to a place above a goal, and down to it; World, m."""
-        session = self._session
-        way = way_over_head(session.state.tip, above, goal, self._start[2])
+        tip, session = self._session.state.tip, self._session
+        high = max(tip[2], above[2], self._start[2])
+        way = [(*tip[:2], high), (*above[:2], high), above, goal]
         self._move = ArmMove(session.move_tip, way)
 
     def _advance_move(self, dt: float) -> None:

@@ -6,9 +6,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rastrainer.protocol import Phase, RegistrationMethod
-from rastrainer_simulator.decision.drill import Drill
 from rastrainer_simulator.flow.arm_screen import ArmScreen
-from rastrainer_simulator.flow.pages.case import TIP, case_page, check_tip, place_name
+from rastrainer_simulator.flow.pages.case import TIP, case_page, check_tip, drill_of, place_name
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
 from rastrainer_simulator.presentation.screen import ErrorArrow, Screen, ScreenMessage, Tone
 from rastrainer_simulator.state import SimulationState, TouchStage, TrainingState
@@ -59,21 +58,16 @@ class DrillScreen(ArmScreen):
     def _state(self) -> SimulationState:
         return shown_in_drill(self._session.state)
 
-    @property
-    def _drill(self) -> Drill:
-        drill = self._session.drill
-        assert drill is not None, "The screen is shown while there is a drill."
-        return drill
-
     def screen(self) -> Screen:
         """Show the fiducials where they truly are: the head says no more than a real one."""
-        session, drill = self._session, self._drill
+        session, drill = self._session, drill_of(self._session)
         case = session.placed_case
         is_marked = case.method is RegistrationMethod.FIDUCIALS
-        places = map(in_meters, case.truly(case.fixed_mm)) if is_marked else ()
+        # Rounded: more digits would tell how the fiducials were chosen.
+        true_mm = case.truly(case.fixed_mm).round(1).tolist() if is_marked else ()
         balls = [
             ErrorArrow(place, place, Tone.PLAIN, name)
-            for name, place in zip(case.labels, places, strict=False)
+            for name, place in zip(case.labels, map(in_meters, true_mm), strict=False)
         ]
         names = {
             ControlName.TOUCH: "hint.check tip",
@@ -95,13 +89,15 @@ class DrillScreen(ArmScreen):
 
     def advance(self, dt: float) -> None:
         """Send the arm to a place that has been checked, and the view there when it has arrived."""
-        session, drill = self._session, self._drill
+        session, drill = self._session, drill_of(self._session)
         seen = drill.case, len(drill.checks)
         if self._seen != seen:
             self._seen, self._move, self._stopped_at = seen, None, None
             self._place = drill.checks[-1] if drill.checks else ""
             if self._place not in ("", TIP):
                 self._begin_move(*self._goal(self._place))
+                # The sticks still choose in the page that closes now.
+                return
         was_moving = self._is_moving
         self._advance_move(dt)
         if was_moving and not self._is_moving:

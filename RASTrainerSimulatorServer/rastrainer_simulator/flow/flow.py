@@ -10,8 +10,13 @@ from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, GhostR
 from rastrainer_simulator.decision.drill import Drill
 from rastrainer_simulator.flow.arm_screen import ArmEvents
 from rastrainer_simulator.flow.drill_screen import DrillScreen, shown_in_drill
-from rastrainer_simulator.flow.pages.case import case_page, decision_page, leave_drill
-from rastrainer_simulator.flow.pages.decide import open_drill
+from rastrainer_simulator.flow.pages.case import (
+    case_page,
+    decision_page,
+    leave_drill,
+    open_drill,
+    truth_page,
+)
 from rastrainer_simulator.flow.pages.experiment import open_experiment
 from rastrainer_simulator.flow.pages.introduction import practiced_page, tutorial_done_page
 from rastrainer_simulator.flow.pages.result import ResultPage, waiting_page
@@ -58,7 +63,7 @@ class Flow:
         self._procedure_screen = ProcedureScreen(session, self._arm, self._trial_screen)
         self._tutorial_screen = TutorialScreen(session, self._arm)
         self._drill_screen = DrillScreen(session, self._arm)
-        self._late: tuple[Drill, int] | None = None
+        self._seen_case: tuple[Drill, int, str] | None = None
         self._seen = ("", Phase.IDLE)
         self._seen_result: TrialResult | None = None
         self._touch = TouchStage.FAR
@@ -112,7 +117,7 @@ class Flow:
         self._had_slicer = self._had_slicer or is_connected
         is_lost = self._had_slicer and not is_connected
         session.notices.warn("slicer", "warning.slicer" if is_lost else "")
-        self._follow_clock()
+        self._follow_drill()
         self._advance_work(dt)
 
     def _advance_work(self, dt: float) -> None:
@@ -254,19 +259,26 @@ class Flow:
         is_at_procedure = self._procedure_screen.is_open
         return self._procedure_screen if is_at_procedure else self._trial_screen
 
-    def _follow_clock(self) -> None:
-        """Warn of the end of a drill's case; open the decision's page once the clock is down."""
+    def _follow_drill(self) -> None:
+        """Warn of the end of a case, ask for its decision then, and tell the truth after it."""
         session, clock = self._session, self._session.drill_clock
         is_hurried = clock is not None and clock.tone is Tone.WARNING
         session.notices.warn("clock", "case.hurry" if is_hurried else "", seconds=HURRY_S)
         drill = session.drill
         if drill is None:
             return
-        case = drill, drill.number
         if drill.header.scenario.name != session.scenario.name:
             self._leave_drill()
-        elif clock is not None and drill.left_s <= 0.0 and self._late != case:
-            self._late = case
+            return
+        stage = "late" if clock is not None and drill.left_s <= 0.0 else ""
+        if drill.is_ready and drill.decided is not None:
+            stage = "decided"
+        before, self._seen_case = self._seen_case, (drill, drill.number, stage)
+        if self._seen_case == before:
+            return
+        if stage == "decided":
+            session.pages.show(truth_page(session))
+        elif stage:
             session.pages.show(case_page(session))
             session.pages.open(decision_page(session), ignore_input_briefly=True)
 

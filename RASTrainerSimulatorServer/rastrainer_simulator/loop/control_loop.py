@@ -7,7 +7,7 @@ import threading
 import time
 import uuid
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -29,7 +29,7 @@ from rastrainer_simulator.loop.timing import (
     raise_thread_priority,
     sleep_until,
 )
-from rastrainer_simulator.record.trial_archive import ArchivedTrial, TrialArchive
+from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
 from rastrainer_simulator.state import (
     NEUTRAL_STICKS,
@@ -141,9 +141,9 @@ class ControlLoop:
         if self.thread.is_alive():
             self.thread.join()
 
-    def deliver(self, drill: ArchivedTrial) -> None:
-        """Offer a finished drill of decisions until a client acknowledges it."""
-        self._writer.submit(self.archive.add, drill)
+    def write(self, work: Callable[[], None]) -> Future[None]:
+        """Have something written in the thread that writes to the disk, after all before it."""
+        return self._writer.submit(work)
 
     def hold_sticks(self, sticks: OperatorInput) -> None:
         self._sticks = replace(sticks, commands=())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -19,9 +19,14 @@ from rastrainer.journal.entries import (
     AcceptedTouch,
     Acknowledged,
     Attempt,
+    CaseClock,
+    CaseDecided,
+    CheckedPlace,
     Continued,
     Entry,
     FinalRegistration,
+    JournalHeader,
+    Line,
     PhaseChange,
     Scored,
     Stamp,
@@ -32,7 +37,7 @@ from rastrainer.journal.journal_file import Integrity, JournalReading, read_jour
 from rastrainer.journal.recording import WholeRecording
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.procedure.record import UsedRegistration
-from rastrainer.protocol import PROCEDURE_PHASES, AbortReason, Phase
+from rastrainer.protocol import DECIDE, PROCEDURE_PHASES, AbortReason, Phase
 from rastrainer.trial.record import AbortedTrial, TouchedPoint, TrialRecord
 from rastrainer_simulator.core.interrupted_trial import (
     InterruptedTrial,
@@ -51,7 +56,7 @@ JOURNAL_PIECE_BYTES = 1 << 18
 
 _KIND = re.compile(rb'^\{"n":\d+,"previous":"[0-9a-f]{64}","kind":"([a-z]+)"', re.MULTILINE)
 _DELIVERED = frozenset({b"registered", b"attempt", b"drill"})
-_OVER = frozenset({b"registered", b"aborted", b"attempt"})
+_OVER = _DELIVERED | {b"aborted"}
 _AFTER_THE_TRIAL = _DELIVERED | {b"registration", b"scored", b"acknowledged"}
 
 
@@ -134,6 +139,8 @@ def interrupted_attempt(reading: JournalReading) -> AbortedTrial | None:
     otherwise ending the simulator would be a way to discard a bad trial.
     """
     lines = tuple(reading.lines())
+    if lines and reading.header.task == DECIDE:
+        return _abandoned(reading.header, lines, _drill_time_s(lines), Phase.RUNNING)
     if not lines or InterruptedTrial.of(lines) is None:
         return None
     header, trajectory = reading.header, WholeRecording.of(lines).trajectory()
@@ -157,6 +164,32 @@ def interrupted_attempt(reading: JournalReading) -> AbortedTrial | None:
     else:
         # Samples are taken while the trial's time runs.
         elapsed_s = float(trajectory.times_s[-1]) if len(trajectory.times_s) else 0.0
+    return _abandoned(
+        header,
+        lines,
+        elapsed_s,
+        phase,
+        points=points,
+        rejected_touches=len(trajectory.refused),
+        undone_touches=trajectory.undone,
+        traced=len(trajectory.traced),
+    )
+
+
+def _drill_time_s(lines: Sequence[Line]) -> float:
+    """Return the time of a drill's decided cases and of its present one."""
+    decided_s = present_s = 0.0
+    for _at, entry in lines:
+        if isinstance(entry, CaseDecided):
+            decided_s, present_s = decided_s + entry.case["timeS"], 0.0
+        elif isinstance(entry, CaseClock | CheckedPlace):
+            present_s = entry.time_s
+    return decided_s + present_s
+
+
+def _abandoned(
+    header: JournalHeader, lines: Sequence[Line], elapsed_s: float, phase: Phase, **done: Any
+) -> AbortedTrial:
     record = AbortedTrial(
         **of_header(header),
         started_utc=lines[0].at.utc,
@@ -164,11 +197,8 @@ def interrupted_attempt(reading: JournalReading) -> AbortedTrial | None:
         elapsed_s=elapsed_s,
         phase=phase.value,
         reason=AbortReason.ABANDONED.value,
-        points=points,
-        rejected_touches=len(trajectory.refused),
-        undone_touches=trajectory.undone,
         versions=header.versions,
-        traced=len(trajectory.traced),
+        **{"points": (), "rejected_touches": 0, "undone_touches": 0, **done},
     )
     return record_from_json(AbortedTrial, record_to_json(record))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -13,6 +13,7 @@ from markupsafe import Markup
 from rastrainer.decision import drill_score
 from rastrainer.decision.drill_record import DecidedCase, Decision, Fault
 from rastrainer.decision.drill_rows import drill_rows
+from rastrainer.protocol import DECIDE
 from rastrainer.registration.distributions import Proportion, proportion
 from rastrainer.study.database.values import moment
 from rastrainer.study.outcomes import Outcome
@@ -35,20 +36,17 @@ COLOR = charts.OTHER_COLORS[0]
 
 @dataclass(frozen=True)
 class Decisions:
-    """Results of the drills of a study.
+    """Results of the drills of a study: `rows` and `cases` by trainee, in order of time.
 
-    Attributes:
-        rows: of the drills, by trainee in order of time.
-        cases: of all drills of each trainee.
-        missed: by fault, of the cases over the limit: how many were not recognized as such; the
-            largest share first.
-        trained: drills before and after training, compared.
+    `missed` are of the cases over the limit those with `proceed`, by fault, the largest share
+    first; `trained` compares drills before and after training.
     """
 
     rows: dict[str, list[TrialRow]]
     cases: dict[str, list[DecidedCase]]
     missed: dict[Fault, Proportion]
     trends: dict[Outcome, CohortTrend | None]
+    abandoned: int
     trained: tuple[ModeComparison, ...]
 
     @property
@@ -82,6 +80,7 @@ def decisions_of(data: StudyData) -> Decisions | None:
         cases,
         dict(sorted(missed.items(), key=lambda each: (-each[1].share, -each[1].total))),
         dict(zip(TESTED, cohort_trends(series), strict=True)),
+        sum(record.task == DECIDE for record in data.aborted),
         _before_and_after(data, rows),
     )
 
@@ -107,23 +106,22 @@ def decisions(found: Decisions | None) -> Markup:
         return Markup()
     scores = {name: drill_score.drill_score(own) for name, own in sorted(found.cases.items())}
     cases = [case for own in found.cases.values() for case in own]
-    drills = {
-        outcome: {
+    drills = [
+        {
             name: [(float(row.number), row.values[outcome.name]) for row in own]
             for name, own in found.rows.items()
         }
         for outcome in TESTED
-    }
+    ]
     longest = max(map(len, found.rows.values()))
     compared = len(found.trained[0].trainees) if found.trained else 0
-    columns = [
-        [score.sensitivity.value for score in scores.values()],
-        [score.criterion.value for score in scores.values()],
-        [score.mean_cost for score in scores.values()],
-        [score.score for score in scores.values()],
-        [score.ability.value for score in scores.values()],
-        [score.brier for score in scores.values()],
-    ]
+    columns = zip(
+        *(
+            (s.sensitivity.value, s.criterion.value, s.mean_cost, s.score, s.ability.value, s.brier)
+            for s in scores.values()
+        ),
+        strict=True,
+    )
     return render(
         "decisions",
         found=found,
@@ -135,10 +133,8 @@ def decisions(found: Decisions | None) -> Markup:
         scoring=drill_score,
         reliability=charts.reliability_chart(_shares(cases, lambda case: case.confidence)),
         sureness=_mean(
-            [
-                float(np.mean([c.confidence - 100 * c.is_right for c in own]))
-                for own in found.cases.values()
-            ]
+            float(np.mean([c.confidence - 100 * c.is_right for c in own]))
+            for own in found.cases.values()
         ),
         named=_shares(
             [case for case in cases if case.is_right and not case.is_sound],
@@ -158,7 +154,7 @@ def decisions(found: Decisions | None) -> Markup:
         verdicts=list(TrendVerdict),
         curves=[
             charts.learning_curves(outcome.heading, COLOR, own, "drill")
-            for outcome, own in drills.items()
+            for outcome, own in zip(TESTED, drills, strict=True)
         ],
         effect=detectable_effect(compared) if compared > 1 else None,
         compared=compared,
@@ -178,13 +174,14 @@ def _shares(
     return {name: proportion(sum(own), len(own)) for name, own in counted.items()}
 
 
-def _mean(values: Sequence[float]) -> Estimate | None:
+def _mean(values: Iterable[float]) -> Estimate | None:
     """Return the mean over trainees; None of a single one."""
-    return mean(np.array(values)) if len(values) > 1 else None
+    of_all = np.fromiter(values, float)
+    return mean(of_all) if len(of_all) > 1 else None
 
 
 def _block(found: Decisions, number: int) -> tuple[int, int, list[Estimate | None], Proportion]:
     """Return number, trainees, means of the outcomes, and who passed, of all drills of a number."""
     rows = [own[number - 1] for own in found.rows.values() if len(own) >= number]
-    means = [_mean([row.values[outcome.name] for row in rows]) for outcome in TESTED]
+    means = [_mean(row.values[outcome.name] for row in rows) for outcome in TESTED]
     return number, len(rows), means, proportion(sum(row.acceptable for row in rows), len(rows))

@@ -12,6 +12,7 @@ from markupsafe import Markup
 import rastrainer
 from rastrainer.files.writing import make_folder, write_text
 from rastrainer.number_text import with_units
+from rastrainer.protocol import DECIDE
 from rastrainer.study.outcomes import MAIN_OUTCOMES, MOTION_OUTCOMES
 from rastrainer.study.study_data import StudyData
 from rastrainer.study.tidy_csv import cases_csv, trials_csv
@@ -46,9 +47,10 @@ def report_html(
     data: StudyData, made_utc: str | None = None, progress: Progress = no_progress
 ) -> str:
     """Return the page, in the order of its readers: answers, the paper's tables, and the rest."""
+    decided = decisions_of(data)
+    data = replace(data, aborted=tuple(each for each in data.aborted if each.task != DECIDE))
     left_out, everything = left_out_methods(data), data
     of_methods = target_errors.compare_methods(target_errors.as_conditions(data))
-    decided = decisions_of(data)
     data = with_ctps(with_one_method(data))
     pairs = list(itertools.combinations(sorted(data.modes), 2))
     main = [compare_modes(data, MAIN_OUTCOMES, *pair) for pair in pairs]

@@ -34,10 +34,9 @@ class Skill:
 
     Attributes:
         gain_per_s: how briskly the remaining distance is closed.
-        aim_sd_mm: standard deviation of the aim on the skin, along each of its two directions.
+        aim_sd_mm: of the aim on the skin, along each of its two directions.
         settled_mm: largest distance of the tip from its aim for a touch.
-        drift_mm_s: standard deviation of the slow voluntary error of the velocity, most of it below
-            2 Hz, along each axis.
+        drift_mm_s: SD of the voluntary error of the velocity, along each axis; mostly below 2 Hz.
         tremor_mm: RMS of the hand's physiological tremor, along each axis.
         stick_travel_mm: of the thumb from the stick's center to its end; None for a hand whose
             position the tip follows, as with a mouse.

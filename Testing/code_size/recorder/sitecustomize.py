@@ -9,6 +9,7 @@ import os
 import sys
 import threading
 import time
+from functools import partial
 from inspect import CO_OPTIMIZED
 from pathlib import Path
 
@@ -50,7 +51,13 @@ class Recorder:
         self._written.write_text("\n".join(sorted(lines)), encoding="utf-8")
 
 
-if folder := os.environ.get("RASTRAINER_CALLED"):
+def record(folder: str) -> None:
     recorder = Recorder(Path(folder))
     threading.setprofile(recorder.note)
     sys.setprofile(recorder.note)
+
+
+if place := os.environ.get("RASTRAINER_CALLED"):
+    record(place)
+    # A forked process has no thread but one.
+    os.register_at_fork(after_in_child=partial(record, place))

@@ -233,3 +233,23 @@ def test_a_goal_that_drills_cannot_have_is_refused(changes):
         InputError, match="assignment decides: method, procedure, mark and the goal"
     ):
         curriculum(**changes)
+
+
+def test_a_drill_that_never_arrived_leaves_a_gap_in_the_numbers_of_its_simulator(study):
+    for number in (1, 2, 5):
+        study.add_drill(drill(number, number=number, series="11111111-2222-4333-8444-555555555555"))
+    assert study.undelivered() == {"11111111-2222-4333-8444-555555555555": ((3, 4),)}
+
+
+def test_counted_drills_are_not_read_again_for_a_studys_progress(study, monkeypatch):
+    study.create_trainee()
+    plan = {"tasks": ["task-1"], "modes": ["desktop"], "trialRunMin": 0, "questionnaires": []}
+    progress = enrolled(study, drills=["before-all", "after-all"], **plan)
+    study.add_drill(drill(1, hour=10))
+    progress.count_played("T001")
+    read = []
+    name = "rastrainer.study.protocol.study_progress.decoded_record"
+    monkeypatch.setattr(name, lambda *given: read.append(given))
+    progress.progress("T001")
+    progress.count_played("T001")
+    assert not [kind for kind, _text in read if kind is type(drill())]

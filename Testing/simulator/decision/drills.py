@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import time
+from concurrent.futures import Executor, Future
 from contextlib import contextmanager
+from dataclasses import replace
+from functools import cache
 from unittest import mock
 
 from rastrainer.decision.drill_record import CASES, FAULTS, Decision, Fault
 from rastrainer.journal.folder import DRILL_SUFFIX
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.decision import forms
+from rastrainer_simulator.decision.cases import CaseMaker
 from rastrainer_simulator.decision.drill import begin_drill
 from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
 from rastrainer_simulator.loop.control_loop import ControlLoop
@@ -17,14 +23,22 @@ PATIENCE_S = 120.0
 SEED = 2**62 + 1234567
 
 
-def cheap_form(_maker, random, seen):
-    """Draw keys as `draw_form`, without making their cases."""
+@cache
+def _cases(name):
+    """Return a case of every fault on a scenario, quickly made."""
+    maker = CaseMaker(load_scenario(asset_path("scenarios", name)))
+    return {fault: maker.case(1, fault) for fault in (Fault.NONE, *FAULTS)}
+
+
+def cheap_form(maker, random, seen):
+    """Draw cases as `draw_form` does; those of a fault differ by their seeds alone."""
     keys: dict[int, Fault] = {}
     while len(keys) < CASES:
         seed = int(random.integers(2**53))
         if seed not in seen:
             keys[seed] = FAULTS[len(keys) // 2 % len(FAULTS)] if len(keys) % 2 else Fault.NONE
-    return tuple(keys.items())
+    made = _cases(maker.scenario.name)
+    return tuple(replace(made[fault], seed=seed) for seed, fault in keys.items())
 
 
 @contextmanager
@@ -33,12 +47,25 @@ def cheap_forms():
         yield
 
 
+class AtOnce(Executor):
+    """Does everything before it returns, as a disk would that takes no time."""
+
+    def submit(self, work, /, *given, **named):
+        future = Future()
+        try:
+            future.set_result(work(*given, **named))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
 class Seat:
     """A folder of records, and the loop that delivers its drills."""
 
     def __init__(self, simulation, folder):
         self.folder = folder
         self.loop = ControlLoop(simulation, folder, speed=None)
+        self.loop._writer = AtOnce()
 
     @property
     def history(self):
@@ -53,8 +80,6 @@ class Seat:
         return shown(begin_drill(self.folder, trainee, "desktop", self.loop, seed, seen))
 
     def delivered(self):
-        """Return the offered records; the journal's thread has written everything before."""
-        self.loop._writer.submit(lambda: None).result()
         return self.loop.archive.unacknowledged()
 
 

@@ -20,10 +20,11 @@ from rastrainer.journal.folder import (
 )
 from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, encode_line, read_journal
 from rastrainer.json_records import record_from_json, record_to_json
+from rastrainer.trial.record import AbortedTrial
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.decision.drill import CLOCK_S, TIP, continue_drill
+from rastrainer_simulator.decision.drill import CLOCK_S, TIP, continue_drill, continues_on
 from rastrainer_simulator.record.journal_writer import RecordError, RecordsFolder
 from rastrainer_simulator.record.trial_archive import TrialArchive, find_unacknowledged
 from Testing.simulator.decision.drills import SEED, Seat, cheap_forms, decide_all, shown
@@ -95,7 +96,8 @@ def test_the_clock_runs_while_a_case_is_undecided_and_each_check_takes_its_time(
     drill.check(TIP)
     assert drill.checks == (first, TIP)
     assert drill.left_s == pytest.approx(CASE_S - 1.5 - 2 * CHECK_S)
-    decided = drill.decide(Decision.PROCEED, 90, Fault.SCALED)
+    drill.decide(Decision.PROCEED, 90, Fault.SCALED)
+    decided = drill.decided
     assert decided.time_s == pytest.approx(1.5 + 2 * CHECK_S)
     assert (decided.checks, decided.suspected, decided.confidence) == ((first, TIP), None, 90)
     drill.advance(50.0)
@@ -111,7 +113,8 @@ def test_when_the_time_is_over_nothing_is_checked_and_the_trainee_still_decides(
     assert drill.left_s == 0.0
     with pytest.raises(InputError, match="no time left for a check"):
         drill.check(TIP)
-    assert drill.decide(Decision.REGISTER_AGAIN, 50, Fault.SLID_TRACE).time_s > CASE_S
+    drill.decide(Decision.REGISTER_AGAIN, 50, Fault.SLID_TRACE)
+    assert drill.decided.time_s > CASE_S
     assert seat.begin("P02").case.places
     with pytest.raises(InputError, match="no place 'elsewhere'"):
         seat.begin("P03").check("elsewhere")
@@ -332,16 +335,39 @@ def test_the_history_has_a_trainees_drills_and_the_one_to_continue(copied, simul
     seat = Seat(simulation, copied)
     (past,) = seat.history.drills("P01")
     assert seat.history.drills("P02") == ()
-    assert seat.history.open_drill("P01", setup) is None
+    assert seat.history.left_drills("P01") == []
     drill = seat.begin(seed=5, seen={case.seed for case in past.cases})
-    path = seat.history.open_drill("P01", setup)
+    ((path, header),) = seat.history.left_drills("P01")
     assert path.stem.endswith(drill.trial_id)
-    assert seat.history.open_drill("P02", setup) is None
-    other = replace(setup, scenario_sha256="0" * 64)
-    assert seat.history.open_drill("P01", other) is None
+    assert (header.number, header.series) == (2, past.series)
+    assert seat.history.left_drills("P02") == []
+    assert continues_on(header, setup)
+    assert not continues_on(header, replace(setup, scenario_sha256="0" * 64))
+    assert not continues_on(replace(header, versions={"rastrainer": "0.0.0"}), setup)
     decide_all(drill)
-    assert seat.history.open_drill("P01", setup) is None
+    assert seat.history.left_drills("P01") == []
     first, second = seat.history.drills("P01")
     assert {case.seed for case in first.cases}.isdisjoint(case.seed for case in second.cases)
     assert seat.history.own("P01") == seat.history.trend("P01", "desktop") == ()
     seat.loop.stop()
+
+
+def test_a_drill_that_cannot_be_continued_is_delivered_as_abandoned_with_its_number(seat):
+    drill = seat.begin()
+    drill.advance(1.0)
+    drill.check(TIP)
+    drill.decide(Decision.STOP, 70, None)
+    drill.next_case()
+    shown(drill).advance(1.5)
+    drill.close()
+    seat.loop.archive.add_interrupted(seat.path)
+    (abandoned,) = seat.delivered()
+    assert isinstance(abandoned, AbortedTrial)
+    assert (abandoned.trial_id, abandoned.task, abandoned.number) == (drill.trial_id, "decide", 1)
+    assert (abandoned.elapsed_s, abandoned.reason) == (pytest.approx(12.5), "abandoned")
+    assert abandoned.is_kept
+    assert not abandoned.counts_as_failed
+    assert seat.history.left_drills("P01") == []
+    assert TrialArchive(seat.folder).unacknowledged() == (abandoned,)
+    seat.loop.archive.add_interrupted(seat.path)
+    assert len(read_journal(seat.path).of_kind("attempt")) == 1

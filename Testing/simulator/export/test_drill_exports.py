@@ -11,9 +11,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rastrainer.decision.case_table import COLUMNS
 from rastrainer.decision.drill_record import DecidedCase, Decision, Fault
-from rastrainer.decision.drill_rows import drill_rows
+from rastrainer.decision.drill_rows import COLUMNS, drill_rows
 from rastrainer.decision.drill_score import DRILL_SCORE_VERSION, drill_score
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.study.database.study import Study

@@ -25,8 +25,6 @@ from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.pages import (
     case,
     controls,
-    decide,
-    drill_result,
     experiment,
     introduction,
     result,
@@ -365,7 +363,7 @@ def _drill(scenario, is_decided: bool) -> SimpleNamespace:
 
 
 def _drill_pages(session) -> Iterator[Page]:
-    yield decide.introduction_page(session)
+    yield case.introduction_page(session)
     session.drill = _drill(session.scenario, is_decided=False)
     yield case.case_page(session)
     yield case.places_page(session)
@@ -376,7 +374,7 @@ def _drill_pages(session) -> Iterator[Page]:
     yield case.leave_page(session)
     session.drill = _drill(session.scenario, is_decided=True)
     yield case.truth_page(session)
-    yield drill_result.drill_result_page(session, session.drill.cases)
+    yield case.drill_result_page(session, session.drill.cases)
     session.drill = None
 
 

@@ -14,36 +14,29 @@ from rastrainer.decision.drill_record import Decision, Fault
 from rastrainer.study_messages import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.decision import drill, forms, prepared_cases
-from rastrainer_simulator.decision.cases import CaseMaker
+from rastrainer_simulator.decision import drill, forms
+from rastrainer_simulator.decision.cases import CaseMaker, DecisionCase
 from rastrainer_simulator.presentation.screen import SliceMark, Tone
 
 
 @pytest.fixture(scope="module")
-def form(setup):
+def cases(setup):
     """A short form: a case that must be registered again, and a sound one."""
     maker = CaseMaker(setup.scenario)
 
-    def first(fault: Fault, is_sound: bool) -> tuple[int, Fault]:
+    def first(fault: Fault, is_sound: bool) -> DecisionCase:
         made = (maker.case(seed, fault) for seed in itertools.count())
         fits = (each for each in made if each.is_sound == is_sound and not len(each.trace_mm))
-        return next(fits).seed, fault
+        return next(fits)
 
     return first(Fault.MOVED_HEAD, False), first(Fault.BAD_FIDUCIAL, True)
 
 
-@pytest.fixture(scope="module")
-def cases(setup, form):
-    maker = CaseMaker(setup.scenario)
-    return [maker.case(*key) for key in form]
-
-
 @pytest.fixture(autouse=True)
-def _short_drills(form):
+def _short_drills(cases):
     with (
-        mock.patch.object(drill, "CASES", len(form)),
-        mock.patch.object(prepared_cases, "CASES", len(form)),
-        mock.patch.object(forms, "draw_form", return_value=form),
+        mock.patch.object(drill, "CASES", len(cases)),
+        mock.patch.object(forms, "draw_form", return_value=cases),
     ):
         yield
 
@@ -152,7 +145,7 @@ def test_fiducials_are_drawn_where_they_truly_are(trainee, cases):
     marks = {each.name: each.end for each in trainee.presenter.screen.errors}
     assert set(marks) == set(cases[0].labels)
     for label, place in zip(cases[0].labels, cases[0].fixed_mm, strict=True):
-        assert marks[label] == pytest.approx(cases[0].truly(place) / MM_PER_M)
+        assert marks[label] == pytest.approx(cases[0].truly(place) / MM_PER_M, abs=1e-4)
 
 
 def test_the_tip_is_shown_in_the_images_where_the_registration_puts_it(trainee, cases):

@@ -14,12 +14,13 @@ from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.controls import Controls, ControlsListener
-from Testing.simulator.decision.drills import PATIENCE_S, cheap_forms
+from Testing.simulator.decision.drills import PATIENCE_S, AtOnce, cheap_forms
 from Testing.simulator.record.test_interrupted_trial import on_full_disk
 
 
 @pytest.fixture(autouse=True)
-def _cheap_forms():
+def _quick_drills(loop, monkeypatch):
+    monkeypatch.setattr(loop, "_writer", AtOnce())
     with cheap_forms():
         yield
 
@@ -70,21 +71,22 @@ def play(session, drill):
 def test_an_open_drill_has_to_be_continued_by_its_trainee_alone_until_it_is_over(
     session, loop, outside
 ):
-    assert not session.has_open_drill
+    assert session.open_drill is None
     drill = begin(session)
     drill.decide(Decision.STOP, 60)
     session.leave_drill()
-    assert (session.drill, session.has_open_drill) == (None, True)
+    assert session.drill is None
+    assert session.open_drill is not None
     again = begin(session)
     assert (again.trial_id, again.decided) == (drill.trial_id, drill.decided)
     session.trainee = "P02"
-    assert not session.has_open_drill
+    assert session.open_drill is None
     assert begin(session).trial_id != drill.trial_id
     session.leave_drill()
     restarted = start(loop, outside)
-    assert restarted.has_open_drill
+    assert restarted.open_drill is not None
     play(restarted, last := begin(restarted))
-    assert not restarted.has_open_drill
+    assert restarted.open_drill is None
     (record,) = restarted.history.drills("P01")
     assert (record.trial_id, len(record.cases)) == (drill.trial_id, CASES)
     following = begin(restarted)
@@ -124,6 +126,24 @@ def test_a_drill_whose_journal_was_altered_is_left_and_another_begins(session, l
     session = start(loop, outside)
     assert begin(session).trial_id != drill.trial_id
     assert any("the drill cannot be continued" in text for text in told(session))
+    session.leave_drill()
+
+
+def test_a_drill_of_another_version_is_abandoned_once_another_begins_and_the_trainee_is_told(
+    session, loop, monkeypatch
+):
+    drill = begin(session)
+    session.leave_drill()
+    monkeypatch.setattr("rastrainer.__version__", "9.9.9")
+    assert session.open_drill is None
+    again = begin(session)
+    assert again.trial_id != drill.trial_id
+    assert "Your unfinished drill on" in "".join(told(session))
+    (abandoned,) = loop.archive.unacknowledged()
+    assert (abandoned.trial_id, abandoned.number) == (drill.trial_id, 1)
+    assert again.header.number == 2
+    session.leave_drill()
+    assert begin(session).trial_id == again.trial_id
     session.leave_drill()
 
 

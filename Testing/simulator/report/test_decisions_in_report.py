@@ -9,10 +9,13 @@ import pytest
 from scipy.stats import norm, page_trend_test, t, ttest_rel
 
 from rastrainer.decision.drill_record import Decision, Fault
+from rastrainer.json_records import record_from_json
 from rastrainer.study.study_data import StudyData
 from rastrainer.study.tidy_csv import cases_csv
+from rastrainer.trial.record import AbortedTrial
 from rastrainer_simulator.report.decisions import COST, SENSITIVITY, decisions, decisions_of
 from rastrainer_simulator.report.report import report_html, write_report
+from Testing.domain.trial.trial_records import make_aborted
 from Testing.drawn_drills import draw_drill, draw_drills
 from Testing.error_rates import drills as error_rates
 from Testing.simulator.report.test_report import cohort, words_of
@@ -239,3 +242,13 @@ def test_the_error_rates_are_of_the_d_prime_and_costs_of_the_program(data):
         hits = sum(case.is_right for case in over)
         alarms = sum(not case.is_right for case in drill.cases if case.is_sound)
         assert error_rates.sensitivity(hits, alarms) == pytest.approx(row.values["sensitivity"])
+
+
+def test_abandoned_drills_are_told_beside_the_others_and_are_no_trials(data):
+    left = record_from_json(AbortedTrial, make_aborted(task="decide", touches=0))
+    with without_charts():
+        told = words_of(report_html(replace(data, aborted=(left,)), "today"))
+        assert told.replace(" 1 drill more was abandoned.", "") == words_of(
+            report_html(data, "today")
+        )
+    assert "1 drill more was abandoned" in told

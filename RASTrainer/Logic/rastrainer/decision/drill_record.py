@@ -13,7 +13,7 @@ from enum import Enum
 from typing import Annotated
 
 from rastrainer import json_checks
-from rastrainer.protocol import DECIDE, Mode, RegistrationMethod
+from rastrainer.protocol import DECIDE, NUMBER_LIMIT, Mode, RegistrationMethod
 from rastrainer.trial.record import VERSIONS_LIMIT, Utc
 
 CASES = 20
@@ -39,26 +39,27 @@ class Fault(str, Enum):
     """The cause of a case's error.
 
     The error of a repeatable fault is gone after another registration; the cause of any other has
-    to be found first.
+    to be found first. A case whose error is at the limit has the difficulty, logits.
     """
 
     is_repeatable: bool
+    difficulty: float
 
-    NONE = "none", True
-    BAD_FIDUCIAL = "bad fiducial", True
-    SWAPPED = "swapped fiducials", True
-    SLID_TRACE = "slid trace", True
-    MOVED_HEAD = "moved head", True
-    MIRRORED = "mirrored images", False
-    SCALED = "wrong scale", False
-    FAR_FIDUCIALS = "far fiducials", False
-    BENT_TOOL = "bent tool", False
-    SHIFTED_SKIN = "shifted skin", False
-    OTHER_PATIENT = "other patient", False
+    NONE = "none", True, -1.5
+    BAD_FIDUCIAL = "bad fiducial", True, -1.5
+    SWAPPED = "swapped fiducials", True, -1.6
+    SLID_TRACE = "slid trace", True, -1.6
+    MOVED_HEAD = "moved head", True, -1.5
+    MIRRORED = "mirrored images", False, -5.0
+    SCALED = "wrong scale", False, -1.8
+    FAR_FIDUCIALS = "far fiducials", False, -1.5
+    BENT_TOOL = "bent tool", False, -1.3
+    SHIFTED_SKIN = "shifted skin", False, -1.0
+    OTHER_PATIENT = "other patient", False, -1.7
 
-    def __new__(cls, value: str, is_repeatable: bool) -> Fault:
+    def __new__(cls, value: str, is_repeatable: bool, difficulty: float) -> Fault:
         fault = str.__new__(cls, value)
-        fault._value_, fault.is_repeatable = value, is_repeatable
+        fault._value_, fault.is_repeatable, fault.difficulty = value, is_repeatable, difficulty
         return fault
 
 
@@ -69,19 +70,14 @@ _Millimeters = Annotated[float, json_checks.number(0, 1e4, "mm")]
 
 
 @dataclass(frozen=True, kw_only=True)
-class DecidedCase:
-    """A case of a drill, and what was decided.
+class CaseTruth:
+    """The truth about a case, and the shown figures of its registration.
 
     Attributes:
-        seed: of the case; it is never drawn twice for a trainee.
+        seed: never drawn twice for a trainee.
         limit_mm: largest acceptable error at the target.
-        true_error_mm, expected_error_mm: at the target; the expected one was shown.
-        residual_mm: root mean square, as shown (FRE, or of the trace).
+        residual_mm: root mean square, of the touched points (FRE) or of the trace.
         difficulty: of a Rasch model, logits: a trainee whose ability equals it is right in half.
-        checks: names of the checked places, in order; "tip" is where the trainee held the tip.
-        confidence: stated probability that the decision is right, percent.
-        suspected: cause that the trainee suspects; None after `proceed`.
-        time_s: simulated time from the case's start to the decision, with the checks' time.
     """
 
     seed: Annotated[int, json_checks.whole_number(0, 2**63 - 1)]
@@ -92,17 +88,30 @@ class DecidedCase:
     expected_error_mm: _Millimeters
     residual_mm: _Millimeters
     difficulty: Annotated[float, json_checks.number(-20, 20)]
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether the true error is within the limit, with a fault or without."""
+        return self.true_error_mm <= self.limit_mm
+
+
+@dataclass(frozen=True, kw_only=True)
+class DecidedCase(CaseTruth):
+    """A case of a drill, and what was decided.
+
+    Attributes:
+        checks: names of the checked places, in order; "tip" is where the trainee held the tip.
+        confidence: stated probability that the decision is right, percent.
+        suspected: cause that the trainee suspects; None after `proceed`.
+        time_s: simulated time from the case's start to the decision, with the checks' time.
+    """
+
     checks: Annotated[tuple[str, ...], json_checks.list_of(0, MAX_CHECKS, "checks")] = ()
     has_read_images: bool = False
     decision: Decision
     confidence: Annotated[int, json_checks.whole_number(50, 100)]
     suspected: Fault | None = None
     time_s: _Seconds
-
-    @property
-    def is_sound(self) -> bool:
-        """Whether the true error is within the limit, with a fault or without."""
-        return self.true_error_mm <= self.limit_mm
 
     @property
     def is_right(self) -> bool:
@@ -115,7 +124,7 @@ class DrillRecord:
 
     Attributes:
         trial_id: UUID, under which it is delivered and stored once, as a trial is.
-        journal_sha256: as of a trial's record.
+        journal_sha256, number, series: as of a trial's record; drills are numbered apart.
     """
 
     trial_id: Annotated[str, json_checks.trial_id]
@@ -129,7 +138,14 @@ class DrillRecord:
         default_factory=dict
     )
     journal_sha256: Annotated[str, json_checks.text(64, 0)] = ""
+    number: Annotated[int, json_checks.whole_number(0, NUMBER_LIMIT)] = 0
+    series: Annotated[str, json_checks.text(36, 0)] = ""
 
     @property
     def task(self) -> str:
         return DECIDE
+
+    @property
+    def record(self) -> DrillRecord:
+        """The drill itself: it has no results besides, as a stored trial has."""
+        return self

@@ -10,6 +10,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import NormalDist
+from typing import NamedTuple
 
 from rastrainer.decision.drill_record import CASES, DecidedCase, Decision, Fault
 from rastrainer.registration.distributions import proportion
@@ -42,17 +43,12 @@ def case_cost(case: DecidedCase) -> float:
     return checks + (AGAIN_COST if is_again else STOP_COST) + (VAIN_COST if is_vain else 0.0)
 
 
-@dataclass(frozen=True)
-class DrillEstimate:
+class DrillEstimate(NamedTuple):
     """A value with its 95 % interval."""
 
     value: float
     low: float
     high: float
-
-    def times(self, factor: float) -> DrillEstimate:
-        low, high = sorted((factor * self.low, factor * self.high))
-        return DrillEstimate(factor * self.value, low, high)
 
     @property
     def interval(self) -> tuple[float, float]:
@@ -105,6 +101,9 @@ def drill_score(cases: Sequence[DecidedCase]) -> DrillScore:
     harmful = sum(case.decision is Decision.PROCEED for case in signals)
     vain = sum(case.decision is not Decision.PROCEED for case in noise)
     hits, alarms = _probit(len(signals) - harmful, len(signals)), _probit(vain, len(noise))
+    # Halves; of the hits, the other way round.
+    missed = DrillEstimate(*(-0.5 * z for z in (hits.value, hits.high, hits.low)))
+    refused = DrillEstimate(*(0.5 * z for z in alarms))
     mean_cost = sum(map(case_cost, cases)) / len(cases)
     saved = (BELIEVER_COST - mean_cost) / (BELIEVER_COST - IDEAL_COST)
     return DrillScore(
@@ -112,7 +111,7 @@ def drill_score(cases: Sequence[DecidedCase]) -> DrillScore:
         harmful=harmful,
         vain=vain,
         sensitivity=difference(hits, alarms),
-        criterion=difference(hits.times(-0.5), alarms.times(0.5)),
+        criterion=difference(missed, refused),
         mean_cost=mean_cost,
         score=100.0 * min(1.0, max(0.0, saved)),
         brier=sum((c.confidence / 100.0 - c.is_right) ** 2 for c in cases) / len(cases),

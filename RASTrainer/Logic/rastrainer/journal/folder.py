@@ -204,13 +204,13 @@ class JournalNumber:
 UNNUMBERED = JournalNumber()
 
 
-def newest_journal(folder: Path) -> Path | None:
-    """Return the journal of the latest trial, or None.
+def newest_journal(folder: Path, suffix: str = SUFFIX) -> Path | None:
+    """Return the journal of the latest trial, or drill, or None.
 
     Trials of a folder are numbered, because a clock that is set back gives a later trial an earlier
-    name.
+    name; so are drills, apart from them.
     """
-    paths = folder.glob(f"*{SUFFIX}")
+    paths = folder.glob(f"*{suffix}")
     return max(paths, key=lambda path: (number_of(path).number, path.name), default=None)
 
 

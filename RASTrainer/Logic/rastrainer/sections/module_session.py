@@ -154,6 +154,7 @@ class ModuleSession:
             kept.connect(lambda trial: self.study.leadAgain(trial.trainee))
         for kept in unscored:
             kept.connect(self._showTrainees)
+            kept.connect(lambda record: self.training.endDrill(record.trainee))
         self.training.changed.connect(self._noticeNewTrial)
         self.replay.shown.connect(self.registration.reset)
         self.replay.procedureShown.connect(self.procedure.showOutcome)

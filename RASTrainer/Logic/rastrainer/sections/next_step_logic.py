@@ -15,12 +15,24 @@ from rastrainer.slicer.program.simulator_program import ProgramState
 from rastrainer.slicer.translation import _
 from rastrainer.study.protocol.steps import StepProgress, instruction
 
-NextAction = Enum(
-    "NextAction",
-    "WAIT START_SIMULATOR CONNECT CONNECT_TO_RUNNING CREATE_TRAINEE CHOOSE_TRAINEE "
-    "START_TRIAL_RUN START_TASK START_STUDY_STEP EXPLAIN_REPEAT ANSWER PAUSE RESUME SHOW_RESULT",
-)
-"""Actions of the button."""
+
+class NextAction(str, Enum):
+    """Actions of the button."""
+
+    WAIT = "wait"
+    START_SIMULATOR = "start simulator"
+    CONNECT = "connect"
+    CONNECT_TO_RUNNING = "connect to running"
+    CREATE_TRAINEE = "create trainee"
+    CHOOSE_TRAINEE = "choose trainee"
+    START_TRIAL_RUN = "start trial run"
+    START_TASK = "start task"
+    START_STUDY_STEP = "start study step"
+    EXPLAIN_REPEAT = "explain repeat"
+    ANSWER = "answer"
+    PAUSE = "pause"
+    RESUME = "resume"
+    SHOW_RESULT = "show result"
 
 
 class Section(str, Enum):
@@ -54,6 +66,7 @@ class WorkflowState:
         runningSentence: says that a simulator not started from here is running; empty if none is.
         hasPracticed: the trainee has played before, be it the trial run alone.
         isLearning: the trainee does the tutorial before the trial run.
+        isDeciding: the trainee's drill was started, and has not arrived.
         isUnscored: the trial that was registered last could not be kept or scored.
         hasNewResult: a trial of the trainee was scored and has not been viewed.
         progress: in the study; None for a trainee who practices freely.
@@ -70,6 +83,7 @@ class WorkflowState:
     hasTrainees: bool = False
     hasPracticed: bool = False
     isLearning: bool = False
+    isDeciding: bool = False
     taskTitle: str = ""
     trial: TrialStatus = field(default_factory=TrialStatus)
     isLoading: bool = False
@@ -163,6 +177,12 @@ _STUDY_STEPS = {
 
 
 def _trial(now: WorkflowState) -> NextStep:
+    isStudyStep = now.progress is not None and now.progress.next_step is not None
+    if now.isDeciding:
+        text = _("{trainee} does a drill at the simulator; one that was left goes on from here.")
+        action = NextAction.START_STUDY_STEP if isStudyStep else NextAction.START_TASK
+        text = text.format(trainee=now.trainee)
+        return NextStep(action, _("Show the drill"), text, Section.TRAINING)
     if now.progress is not None and now.progress.next_step is not None:
         step, repeat = now.progress.next_step, now.progress.repeat_sentence
         action, title = _STUDY_STEPS[StepKind(step.kind)]

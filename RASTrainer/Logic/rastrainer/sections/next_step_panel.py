@@ -100,6 +100,7 @@ class NextStepPanel(Panel):
             isElsewhere=ui.hostLineEdit.text.strip() not in THIS_COMPUTER,
             runningSentence=simulator.running.sentence if simulator.running.canConnect else "",
             isLearning=bool(self._now.trainee) and session.training.learner == self._now.trainee,
+            isDeciding=bool(self._now.trainee) and session.training.decider == self._now.trainee,
             taskTitle=session.taskTitle,
             trial=trial,
             isLoading=session.training.loadings > 0,

@@ -15,7 +15,6 @@ from rastrainer.number_text import fixed
 from rastrainer.sections.application import TABLES, askWhereToSave, fitThreeDViews, showTable
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, connectClick
-from rastrainer.sections.trainees_logic import recordOf
 from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.score_tables import (
     GroupComparison,
@@ -79,14 +78,15 @@ class ScorePanel(Panel):
     def showTables(self) -> None:
         """Show the section's content as tables of the scene."""
         trial, cohort, scene = self._trial, self._session.cohort, slicer.mrmlScene
-        if trial is None:
-            return
-        showStandings(scene, standings(self._trainees.study, trial, cohort))
-        showRows(scene, Role.MOTION, motionRows(trial))
-        rows = [*scoreRows(trial), *ctpsRows(trial, cohort)]
+        rows = [] if self._drill is None else drillRows(self._drill)
+        if trial is not None:
+            showStandings(scene, standings(self._trainees.study, trial, cohort))
+            showRows(scene, Role.MOTION, motionRows(trial))
+            rows = [*scoreRows(trial), *ctpsRows(trial, cohort)]
         table = showRows(scene, Role.SCORE, rows)
         showTable(self._session.layout, table)
-        self._showMessage(_("Score, Comparison and Motion metrics are now tables in the scene."))
+        text = _("Score, Comparison and Motion metrics are now tables in the scene.")
+        self._showMessage(_("The score is now a table in the scene.") if trial is None else text)
 
     def exportScores(self) -> None:
         from rastrainer.study.tidy_csv import write_histories
@@ -146,7 +146,7 @@ class ScorePanel(Panel):
             self._showMessage(str(error))
             return
         text, entries = _("{task}, {day}"), list[tuple[str, str]]()
-        for number, record in ((number, recordOf(result)) for number, result in results):
+        for number, record in ((number, result.record) for number, result in results):
             day, task = record.started_utc[:16].replace("T", " "), task_title(record.task)
             task = f"{number}: {task}" if number else task
             entries.insert(0, (text.format(task=task, day=day), record.trial_id))
@@ -160,7 +160,7 @@ class ScorePanel(Panel):
         self._session.replay.retryFeedback()
         try:
             study, results = self._trainees.study, self._trainees.results()
-            found = {recordOf(result).trial_id: result for _number, result in results}
+            found = {result.record.trial_id: result for _number, result in results}
             result = found.get(trialId)
             self._trial = trial = result if isinstance(result, StoredTrial) else None
             self._drill = drill = result if isinstance(result, DrillRecord) else None
@@ -183,7 +183,7 @@ class ScorePanel(Panel):
         # Once for each trial, so that messages about an export or a report stay.
         if trialId != self._named:
             self._named = trialId
-            self._showMessage(_title(None if result is None else recordOf(result)))
+            self._showMessage(_title(None if result is None else result.record))
         self._showFeedback()
 
     def _showFeedback(self) -> None:
@@ -212,7 +212,7 @@ class ScorePanel(Panel):
         hasTrial = self._trial is not None
         reason = _("Choose a trial first.")
         busy = _("Wait until the current work is done.")
-        setEnabled(ui.showTablesButton, hasTrial, reason)
+        setEnabled(ui.showTablesButton, hasTrial or self._drill is not None, reason)
         setEnabled(ui.replayButton, hasTrial or isAtWork, reason)
         setEnabled(ui.exportScoresButton, not isAtWork, busy)
         setEnabled(ui.reportButton, not isAtWork, busy)

@@ -22,7 +22,6 @@ from rastrainer.study.curriculum.standing import CurriculumStanding
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial, Trainee, moment
 from rastrainer.study_messages import CurriculumMessage
-from rastrainer.trial.record import TrialRecord
 from rastrainer.work_progress import Progress, no_progress
 
 if TYPE_CHECKING:
@@ -166,11 +165,7 @@ class TraineeLogic:
         ]
         drills = self.study.drills(self.chosen) if self.chosenTrainee() else ()
         found += [("", drill) for drill in drills]
-        return sorted(found, key=lambda each: moment(recordOf(each[1]).started_utc))
-
-
-def recordOf(result: StoredTrial | DrillRecord) -> TrialRecord | DrillRecord:
-    return result.record if isinstance(result, StoredTrial) else result
+        return sorted(found, key=lambda each: moment(each[1].record.started_utc))
 
 
 def calibration(study: Study) -> TreCalibration:

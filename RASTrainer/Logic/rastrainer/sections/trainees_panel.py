@@ -17,7 +17,7 @@ from rastrainer.protocol import TRIAL_RUN, Mode
 from rastrainer.sections.application import CALIBRATION, CURVE, askWhereToSave, showChart
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, connectClick
-from rastrainer.sections.trainees_logic import calibration, recordOf
+from rastrainer.sections.trainees_logic import calibration
 from rastrainer.slicer.scene.tables import showCalibration, showLearningCurve
 from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS, Setting
 from rastrainer.slicer.translation import _
@@ -175,12 +175,13 @@ class TraineesPanel(Panel):
             self._showMessage(text.format(count=count, path=path))
 
     def deleteTrainee(self) -> None:
-        name, trials = self._logic.chosen, len(self._logic.history())
+        name, results = self._logic.chosen, self._logic.results()
+        trials = sum(isinstance(result, StoredTrial) for _number, result in results)
         question = _(
-            "Delete {name} with {trials} trials from the study and from the journals on this "
-            "computer, permanently? This cannot be undone; export the trainee first if the "
-            "data may be needed. Earlier exports and backups are yours to delete."
-        ).format(name=name, trials=trials)
+            "Delete {name} with {trials} trials and {drills} drills from the study and from the "
+            "journals on this computer, permanently? This cannot be undone; export the trainee "
+            "first if the data may be needed. Earlier exports and backups are yours to delete."
+        ).format(name=name, trials=trials, drills=len(results) - trials)
         if slicer.util.confirmYesNoDisplay(toolTip(question), _("Delete the trainee")):
             erased = self._deletion.run(self._logic.delete)
             if erased is None:
@@ -263,7 +264,7 @@ class TraineesPanel(Panel):
         elif self._isStateShown or not ui.traineeText.text:
             text = _("Choose who is training, or create a new trainee.")
             self._showMessage(text, isState=True)
-        tips = [recordOf(result).started_utc for _number, result in results]
+        tips = [result.record.started_utc for _number, result in results]
         fillTable(ui.historyTable, [_historyRow(*each) for each in results], tips)
 
     def _showMessage(self, sentence: str, isState: bool = False) -> None:
@@ -284,7 +285,7 @@ def _aborted(aborted: Sequence[AbortedTrial]) -> str:
 
 
 def _historyRow(number: str, result: StoredTrial | DrillRecord) -> tuple[str, ...]:
-    record = recordOf(result)
+    record = result.record
     task, start = task_title(record.task), record.started_utc[5:16].replace("T", " ")
     if record.mode != Mode.DESKTOP.value:
         task = f"{task}, {short_mode_title(record.mode)}"

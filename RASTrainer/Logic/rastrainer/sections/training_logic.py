@@ -135,6 +135,7 @@ class TrainingLogic(Listening):
         answered: emits the error of each command, empty if it was accepted.
         sceneShown: emits the `Scenario` of an open trial whose head and fiducials are now shown.
         learner: the trainee doing the tutorial before the trial run; empty if none.
+        decider: the trainee whose drill was started from here and has not arrived; empty if none.
         loadings: how many scenarios the simulator is loading for Slicer; it refuses trials then.
     """
 
@@ -148,7 +149,7 @@ class TrainingLogic(Listening):
     ) -> None:
         """`later` changes the scene, one part after the other."""
         self.changed, self.answered, self.sceneShown = Signal(), Signal(), Signal()
-        self.learner = ""
+        self.learner = self.decider = ""
         self._scene, self._link, self._findScenario = scene, link, findScenario
         self._clock, self._later = clock, later
         self._said, self._saidAt = TrialStatus(), 0.0
@@ -189,7 +190,9 @@ class TrainingLogic(Listening):
             raise InputError(_("Choose a task first."))
         who = {"trainee": trainee, "mode": mode}
         if task == DECIDE:
-            self.command(CommandName.START_DRILL, who)
+            self._link.send(
+                CommandName.START_DRILL, who, lambda reply: self._noteDrill(reply, trainee)
+            )
         elif task == TRIAL_RUN and isTutorialFirst:
             self._link.send(
                 CommandName.START_TUTORIAL, who, lambda reply: self._startUnlessTutorial(reply, who)
@@ -244,6 +247,17 @@ class TrainingLogic(Listening):
         else:
             self.command(CommandName.START_TASK, {"task": TRIAL_RUN, **who})
 
+    def _noteDrill(self, reply: Reply, trainee: str) -> None:
+        if reply.ok:
+            self.decider = trainee
+        self.answered.emit(reply.error)
+        self.changed.emit()
+
+    def endDrill(self, trainee: str) -> None:
+        if self.decider == trainee:
+            self.decider = ""
+            self.changed.emit()
+
     def _follow(self, state: Mapping[str, Any]) -> None:
         before = replace(self.status, elapsedS=0.0)
         self._said, self._saidAt = readStatus(state), self._clock()
@@ -259,7 +273,7 @@ class TrainingLogic(Listening):
     def _showScene(self) -> None:
         """Have the scene of the open trial shown, unless it is."""
         if self._said.isOpen:
-            self.learner = ""
+            self.learner = self.decider = ""
             if self._said.trialId != self._shownTrial:
                 self._shownTrial = self._said.trialId
                 forgetStoredTouches(self._scene)

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Iterator
 from importlib import import_module, util
 
-_OURS = re.compile(r"^from (rastrainer[\w.]*) import", re.MULTILINE)
+_OURS = re.compile(r"^from (rastrainer[\w.]*) import (\([^)]*\)|.*)", re.MULTILINE)
 
 
 class Turns:
@@ -52,8 +52,12 @@ def importInTurns(name: str) -> Iterator[None]:
         return
     spec = util.find_spec(name)
     source = getattr(spec and spec.loader, "get_source", lambda _name: "")(name)
-    for each in _OURS.findall(source or ""):
-        if each != name:
-            yield from importInTurns(each)
+    for module, names in _OURS.findall(source or ""):
+        if module != name:
+            yield from importInTurns(module)
+        if hasattr(sys.modules.get(module), "__path__"):
+            found = (f"{module}.{each}" for each in re.findall(r"\w+", names))
+            for each in filter(util.find_spec, found):
+                yield from importInTurns(each)
     import_module(name)
     yield

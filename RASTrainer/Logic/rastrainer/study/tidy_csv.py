@@ -7,9 +7,8 @@ import io
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from rastrainer.decision.case_table import COLUMNS, cells
 from rastrainer.decision.drill_record import DrillRecord
-from rastrainer.decision.drill_rows import drill_rows
+from rastrainer.decision.drill_rows import COLUMNS, cells, drill_rows
 from rastrainer.errors import InputError
 from rastrainer.files.writing import write_text
 from rastrainer.procedure.errors import SplitError, TrajectoryErrors

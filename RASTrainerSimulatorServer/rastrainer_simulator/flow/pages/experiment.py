@@ -16,7 +16,7 @@ from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.scenario import method_of, playable_methods
 from rastrainer.study_messages import AssignmentStanding, StudyStep
 from rastrainer.trial.scoring import PASS_MARK
-from rastrainer_simulator.flow.pages.decide import introduction_page, open_drill
+from rastrainer_simulator.flow.pages.case import introduction_page, open_drill
 from rastrainer_simulator.flow.pages.trainee_id import (
     clicked_id_page,
     keyboard_page,
@@ -193,7 +193,7 @@ class DecidePage(ExperimentPage):
 
     def content(self) -> PageContent:
         session, step = self.session, self.session.step
-        is_open, reason = session.has_open_drill, chosen_trial.drill_obstacle(session)
+        is_open, reason = session.open_drill is not None, chosen_trial.drill_obstacle(session)
         rows = (
             self.button(
                 "continue" if is_open else "begin",

@@ -43,25 +43,18 @@ class ArmMove:
 
     def advance(self, dt: float, tip: Vector, sticks: OperatorInput) -> None:
         self._left_s -= dt
-        away = distance(tip, self.way[0])
-        while len(self.way) > 1 and away < PASSED_M:
+        self._stalled_s += dt
+        while len(self.way) > 1 and distance(tip, self.way[0]) < PASSED_M:
             del self.way[0]
-            away = distance(tip, self.way[0])
+        away = distance(tip, self.way[0])
         if self._commanded != self.way[0]:
-            self._commanded, self._nearest, self._stalled_s = self.way[0], math.inf, 0.0
+            self._commanded, self._nearest = self.way[0], math.inf
             self.move_tip([MM_PER_M * value for value in self.way[0]], SPEED_MM_S)
         if away < self._nearest - REACHED_M / 10.0:
-            self._nearest, self._stalled_s = away, 0.0
-        self._stalled_s += dt
+            self._nearest, self._stalled_s = away, dt
         is_stalled = self._stalled_s > STALLED_S or self._left_s < 0.0
         is_taken_over = max(map(abs, sticks.translation)) > TAKEN_OVER
         is_there = len(self.way) == 1 and away < REACHED_M
         self.is_over = is_there or is_taken_over or is_stalled
         if is_stalled and not is_taken_over:
             self.blocked_mm = MM_PER_M * distance(tip, self.way[-1])
-
-
-def way_over_head(tip: Vector, above: Vector, goal: Vector, height: float) -> list[Vector]:
-    """Return the way of a tip up to a height (World, m), across, down to a place and to a goal."""
-    high = max(tip[2], above[2], height)
-    return [(*tip[:2], high), (*above[:2], high), above, goal]

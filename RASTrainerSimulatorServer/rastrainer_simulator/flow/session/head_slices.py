@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -22,8 +22,10 @@ if TYPE_CHECKING:
 
 LONGER, LONGEST_MM = 5.0, 8.0
 """Factor by which residuals are drawn longer, unless one exceeds the second number."""
-SPACING_MM = 1.5
-"""Distance between the points of a drawn contour."""
+CONTOUR_POINTS, SPARED = 320, 80
+"""Points of a drawn contour, and below how many of them each case goes without: of all heads alike,
+so that the size of a message tells no head from another.
+"""
 SIDES = "RAS", "LPI"
 """Letters of the patient's sides along each axis, and against it."""
 PLANES: Mapping[str, tuple[tuple[int, float], tuple[int, float]]] = {
@@ -33,11 +35,6 @@ PLANES: Mapping[str, tuple[tuple[int, float], tuple[int, float]]] = {
 }
 """Right and up of each slice, as an axis of RAS and its sign, in the radiological convention; in
 the order of the axes across which they cut."""
-
-
-def drawn_longer(case: DecisionCase) -> float:
-    """Return the factor by which the residuals are drawn longer."""
-    return LONGER if max(case.residuals_mm, default=0.0) <= LONGEST_MM else 1.0
 
 
 def head_slices(
@@ -51,51 +48,47 @@ def head_slices(
     drawn = _contours(case, tuple(np.round(through_mm, 3).tolist()))
     everything = np.concatenate([*(line for lines in drawn for line in lines), case.fixed_mm])
     middle = (everything.min(axis=0) + everything.max(axis=0)) / 2.0
+    residuals, errors = case.residuals_mm, case.registered_mm - case.fixed_mm
+    longer = LONGER if residuals.max() <= LONGEST_MM else 1.0
+    ends = np.stack([case.fixed_mm, case.fixed_mm + longer * errors], axis=1)
+    marked = [
+        *([(SliceMark.TRACE, case.trace_mm)] if len(case.trace_mm) else ()),
+        *((SliceMark.RESIDUAL, both) for both in ends),
+        (SliceMark.POINT, case.fixed_mm),
+        *((mark, place[np.newaxis]) for mark, place in places.items()),
+    ]
     slices = tuple(
         Slice(
             texts.say(f"slices.{plane}"),
             tuple(_side(axis, way * sign) for axis, sign in axes for way in (-1.0, 1.0)),
-            tuple(_flat(mark, line - middle, axes) for mark, line in _lines(case, lines, places)),
+            tuple(
+                _flat(mark, line - middle, axes)
+                for mark, line in (*((SliceMark.SKIN, line) for line in lines), *marked)
+            ),
         )
         for (plane, axes), lines in zip(PLANES.items(), drawn, strict=True)
     )
     marks = dict.fromkeys(line.mark for each in slices for line in each.lines)
-    longer = drawn_longer(case)
     keys = {each: f"slices.{each.value}" for each in marks}
     if longer == 1.0:
-        keys |= {SliceMark.RESIDUAL: "match.residual"}
+        keys[SliceMark.RESIDUAL] = "match.residual"
     legend = tuple(SliceLegend(each, texts.say(keys[each], longer=longer)) for each in marks)
-    return HeadSlices(texts.say("slices.text", name=name, ways=_ways(texts, case)), slices, legend)
+    main = np.abs(errors).argmax(axis=1)
+    ways = texts.listed(
+        texts.say("slices.residual of", label=label, residual=mm, side=_side(axis, error[axis]))
+        for label, mm, axis, error in zip(case.labels, residuals, main, errors, strict=True)
+    )
+    return HeadSlices(texts.say("slices.text", name=name, ways=ways), slices, legend)
 
 
 @lru_cache(maxsize=16)
 def _contours(case: DecisionCase, place_mm: tuple[float, ...]) -> list[list[np.ndarray]]:
     """Return the skin cut through a place by each plane, with as few points as a picture needs."""
-    return [[_thinned(line) for line in lines] for lines in case.contours(np.array(place_mm))]
-
-
-def _thinned(line: np.ndarray) -> np.ndarray:
-    steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
-    number = np.floor(np.concatenate([[0.0], np.cumsum(steps)]) / SPACING_MM)
-    kept = np.concatenate([[True], np.diff(number) > 0])
-    kept[-1] = True
-    return np.asarray(line[kept])
-
-
-def _lines(
-    case: DecisionCase, skin: list[np.ndarray], places: Mapping[SliceMark, np.ndarray]
-) -> Iterator[tuple[SliceMark, np.ndarray]]:
-    for line in skin:
-        yield SliceMark.SKIN, line
-    if len(case.trace_mm):
-        yield SliceMark.TRACE, case.trace_mm
-    for fixed, registered in zip(case.fixed_mm, case.registered_mm, strict=True):
-        end = fixed + drawn_longer(case) * (registered - fixed)
-        yield SliceMark.RESIDUAL, np.array([fixed, end])
-    if len(case.fixed_mm):
-        yield SliceMark.POINT, case.fixed_mm
-    for mark, place in places.items():
-        yield mark, place[np.newaxis]
+    kept, cuts = CONTOUR_POINTS - case.seed % SPARED, case.contours(np.array(place_mm))
+    return [
+        [line[np.linspace(0, len(line) - 1, kept).round().astype(int)] for line in lines]
+        for lines in cuts
+    ]
 
 
 def _flat(
@@ -107,20 +100,3 @@ def _flat(
 
 def _side(axis: int, sign: float) -> str:
     return SIDES[int(sign < 0.0)][axis]
-
-
-def _ways(texts: Texts, case: DecisionCase) -> str:
-    """Return the residuals in words: of each point its length and its main direction."""
-    errors = case.registered_mm - case.fixed_mm
-    main = np.abs(errors).argmax(axis=1)
-    return texts.listed(
-        texts.say(
-            "slices.residual of",
-            label=label,
-            residual=residual,
-            side=_side(axis, error[axis]),
-        )
-        for label, residual, axis, error in zip(
-            case.labels, case.residuals_mm, main, errors, strict=True
-        )
-    )

@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import Future
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,7 +31,7 @@ from rastrainer.protocol import (
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
 from rastrainer.study_messages import CurriculumMessage, StudyStep
-from rastrainer_simulator.decision.drill import Drill, begin_drill, continue_drill
+from rastrainer_simulator.decision.drill import Drill, begin_drill, continue_drill, continues_on
 from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
 from rastrainer_simulator.flow.session.open_pages import OpenPages, Page
 from rastrainer_simulator.flow.session.operator_device import OperatorDevice
@@ -234,27 +236,31 @@ class TrainingSession:
         return outcome
 
     @property
-    def has_open_drill(self) -> bool:
-        """Whether the trainee has a drill to continue on this scenario."""
-        setup = self.control_loop.setup
-        return self.history.open_drill(self.trainee_id, setup) is not None
+    def open_drill(self) -> Path | None:
+        """The journal of the drill that the trainee has to continue on this scenario."""
+        left, setup = self.history.left_drills(self.trainee_id), self.control_loop.setup
+        return next((path for path, header in left if continues_on(header, setup)), None)
 
     def begin_drill(self) -> None:
-        """Begin a drill of decisions for the trainee; one that is open has to be continued."""
+        """Continue the trainee's drill, or begin one; then all that were left are abandoned."""
         self.leave_drill()
         if self.reload.is_under_way:
             self.complain(self.say("being set up"))
             return
-        trainee, loop, history = self.trainee_id, self.control_loop, self.history
+        trainee, loop, history, path = self.trainee_id, self.control_loop, self.history, None
         seen = {case.seed for drill in history.drills(trainee) for case in drill.cases}
-        path = history.open_drill(trainee, loop.setup)
-        if path is not None:
-            with self.complaining():
+        with self.complaining():
+            if (path := self.open_drill) is not None:
                 self.drill = continue_drill(path, loop, seen)
                 return
         with self.complaining():
             seed, records = self.services.draw_seed(), self.services.records
             self.drill = begin_drill(records, trainee, self.mode, loop, seed, seen)
+            for left, header in history.left_drills(trainee):
+                loop.write(partial(loop.archive.add_interrupted, left)).result()
+                history.drill_changed(header.trial_id)
+                told = self.say("decide.abandoned", scenario=header.scenario.name)
+                self.notices.add(told, Tone.WARNING)
             history.drill_changed(self.drill.trial_id)
 
     @property
@@ -281,6 +287,7 @@ class TrainingSession:
         drill, self.drill = self.drill, None
         if drill is not None:
             drill.close()
+            self.history.drill_changed(drill.trial_id)
 
     def _advance_drill(self, dt: float, drill: Drill) -> None:
         was_finished = drill.is_finished
@@ -288,7 +295,7 @@ class TrainingSession:
             drill.advance(dt)
         if drill.is_finished and not was_finished:
             self.history.drill_changed(drill.trial_id)
-            self.services.assigned.note_registered(drill.trainee, DECIDE, drill.mode)
+            self.services.assigned.note_registered(drill.trainee, DECIDE, drill.header.mode)
 
     def prefer(self, **changes: Any) -> None:
         before = self.control_loop.setup.settings

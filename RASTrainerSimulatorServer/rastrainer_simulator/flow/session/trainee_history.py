@@ -14,12 +14,11 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
-import rastrainer
 from rastrainer.decision.drill_record import DrillRecord
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import make_folder, write_text
-from rastrainer.journal.entries import DrillEnd, JournalHeader, iso
+from rastrainer.journal.entries import Attempt, DrillEnd, JournalHeader, iso
 from rastrainer.journal.folder import DRILL_SUFFIX, TUTORIAL_SUFFIX, journals_of
 from rastrainer.journal.journal_file import (
     MAX_LINE_BYTES,
@@ -34,7 +33,6 @@ from rastrainer.protocol import TRIAL_RUN, AbortReason, Phase, RegistrationMetho
 from rastrainer.trial.record import AbortedTrial, TrialRecord
 from rastrainer.trial.scoring import PASS_MARK, passes
 from rastrainer.trial.trial_row import TrialRow
-from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 
@@ -151,17 +149,13 @@ class TraineeHistory:
         records = [record for _, record in self._drills.values() if record is not None]
         return tuple(record for record in records if record.trainee == trainee)
 
-    def open_drill(self, trainee: str, setup: SimulationSetup) -> Path | None:
-        """Return the journal of the drill that a trainee has to continue on a scenario.
-
-        A drill of another version of the program is none: its cases may be other ones.
-        """
-        for path, (header, record) in self._drills.items():
-            is_same = header.versions.get("rastrainer") == rastrainer.__version__
-            is_here = is_same and not setup.difference(header) and path.exists()
-            if record is None and header.trainee == trainee and is_here:
-                return path
-        return None
+    def left_drills(self, trainee: str) -> list[tuple[Path, JournalHeader]]:
+        """Return the journals of a trainee's drills that are neither finished nor abandoned."""
+        return [
+            (path, header)
+            for path, (header, record) in self._drills.items()
+            if record is None and header.trainee == trainee and path.exists()
+        ]
 
     def own(self, trainee: str) -> tuple[OwnTrial, ...]:
         """Return the trainee's scored trials except trial runs, and the failures, oldest first."""
@@ -195,9 +189,12 @@ class TraineeHistory:
         with contextlib.suppress(OSError, DamagedLineError, InputError):
             with path.open("rb") as file:
                 first = decode_line(file.readline(MAX_LINE_BYTES).rstrip(b"\n"), 1, NO_LINE)
-            end = _last_entries(path).get(DrillEnd.kind)
-            record = None if end is None else record_from_json(DrillRecord, end.get("record"))
+            last, record = _last_entries(path), None
+            if DrillEnd.kind in last:
+                record = record_from_json(DrillRecord, last[DrillEnd.kind].get("record"))
             self._drills[path] = record_from_json(JournalHeader, first), record
+            if Attempt.kind in last:
+                del self._drills[path]
 
     def _note_journal(self, path: Path) -> None:
         try:

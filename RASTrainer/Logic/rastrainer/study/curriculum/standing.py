@@ -16,13 +16,7 @@ from rastrainer.protocol import DECIDE, AssignmentState, GoalKind
 from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.database.values import day_of, moment
 from rastrainer.study.protocol.steps import trial_title
-from rastrainer.study_messages import (
-    FIDUCIALS,
-    WHOLE_WAY,
-    Assignment,
-    AssignmentStanding,
-    CurriculumMessage,
-)
+from rastrainer.study_messages import WHOLE_WAY, Assignment, AssignmentStanding, CurriculumMessage
 from rastrainer.trial import wording
 from rastrainer.trial.scoring import passes
 from rastrainer.trial.trial_feedback import competence_of
@@ -110,8 +104,8 @@ def _counts_for(trial: TrialRow, assignment: Assignment) -> bool:
     procedure = assignment.procedure if trial.is_aborted else ""
     if trial.procedure is not None:
         procedure = trial.procedure.analysis.procedure
-    method = trial.method or FIDUCIALS
-    return assignment.is_played_as(trial.scenario, trial.task, trial.mode, method, procedure)
+    kind = trial.scenario, trial.task, trial.mode, trial.method, procedure
+    return assignment.is_played_as(*kind)
 
 
 def _standing(

@@ -300,7 +300,7 @@ class Study(AbstractContextManager["Study"]):
         query = "SELECT 1 FROM deleted_trials WHERE trial_sha256 = ?"
         return self.database.row(query, _sha256(trial_id)) is not None
 
-    def _note_delivery(self, record: AbortedTrial | TrialRecord) -> None:
+    def _note_delivery(self, record: AbortedTrial | TrialRecord | DrillRecord) -> None:
         """Note that a trial has arrived; one without a number, from elsewhere, leaves no trace."""
         if record.number and record.series:
             self.database.insert(
@@ -311,8 +311,7 @@ class Study(AbstractContextManager["Study"]):
         text = json_text(delivered or record_to_json(record))
         if len(text) > RECORD_LIMIT_BYTES:
             raise InputError("The trial record is larger than 1 MiB, the most that is stored.")
-        if not isinstance(record, DrillRecord):
-            self._note_delivery(record)
+        self._note_delivery(record)
         if not self.has_trainee(record.trainee):
             self.create_trainee(record.trainee)
         found = {name: getattr(record, name, None) for name in TABLES[table].columns}

@@ -228,6 +228,7 @@ class StudyProgress:
         self, pseudonym: str, progress: steps.StepProgress, step: StudyStep
     ) -> steps.StepEntry | None:
         """Return the entry of the next step's trial or drill, or None; a repeat needs a reason."""
+        since, counted = self._since(pseudonym, progress), progress.counted_trials
         found: list[tuple[TrialRecord | DrillRecord, str]]
         if step.kind == StepKind.TRIAL:
             rows = self._database.rows(
@@ -239,13 +240,20 @@ class StudyProgress:
             played = ((decoded_record(TrialRecord, text), utc) for text, utc in rows)
             found = [(each, utc) for each, utc in played if _is_played_as_asked(step, each)]
         elif step.kind == StepKind.DECIDE:
-            query = f"SELECT record_json, stored_utc FROM drills WHERE trainee_id = ({TRAINEE_ID})"
-            rows = self._database.rows(query, pseudonym)
-            decided = ((decoded_record(DrillRecord, text), utc) for text, utc in rows)
+            drills = self._database.rows(
+                "SELECT started_utc, trial_id, record_json, stored_utc FROM drills "
+                f"WHERE trainee_id = ({TRAINEE_ID})",
+                pseudonym,
+            )
+            # Only drills that may count are decoded, which takes longer than all the rest.
+            decided = (
+                (decoded_record(DrillRecord, text), utc)
+                for started_utc, trial_id, text, utc in drills
+                if moment(started_utc) >= since and trial_id not in counted
+            )
             found = [(each, utc) for each, utc in decided if each.mode == step.mode]
         else:
             return None
-        since, counted = self._since(pseudonym, progress), progress.counted_trials
         begun = [
             (started, record.trial_id, stored_utc)
             for record, stored_utc in found

@@ -1,6 +1,6 @@
 """Programs as separate processes that have already imported everything: many can be killed.
 
-A nursery is a process that imports a program's modules and then forks. What it forks runs the
+A fork server is a process that imports a program's modules and then forks. What it forks runs the
 program's `main` and is a process like any other: with its own sockets, files and threads.
 """
 
@@ -63,7 +63,7 @@ SLICER_SIDE = ("rastrainer_headless.main",)
 STUDY_SIDE = ("Testing.end_to_end.study_side",)
 
 
-class Nursery:
+class ForkServer:
     """Forks programs; ended by the `with` statement, and everything it has forked with it."""
 
     def __init__(self, program: tuple[str, ...], folder: Path):
@@ -80,7 +80,7 @@ class Nursery:
         self._forked: list[Forked] = []
         assert self._process.stdout.readline() == "ready\n"
 
-    def __enter__(self) -> Nursery:
+    def __enter__(self) -> ForkServer:
         return self
 
     def __exit__(self, *_exception: object) -> None:
@@ -118,18 +118,18 @@ class Nursery:
 
 
 @cache
-def shared_nursery(program: tuple[str, ...]) -> Nursery:
-    """Return the nursery of a program that all tests of this process use."""
-    nursery = Nursery(program, Path(tempfile.mkdtemp(prefix="nursery-")))
-    atexit.register(nursery.__exit__)
-    return nursery
+def shared_fork_server(program: tuple[str, ...]) -> ForkServer:
+    """Return the fork server of a program that all tests of this process use."""
+    server = ForkServer(program, Path(tempfile.mkdtemp(prefix="fork-server-")))
+    atexit.register(server.__exit__)
+    return server
 
 
 class Forked:
-    """One program of a nursery, to be used like a `Popen`."""
+    """One program of a fork server, to be used like a `Popen`."""
 
-    def __init__(self, nursery: Nursery, pid: int, pipe: Path):
-        self._nursery = nursery
+    def __init__(self, server: ForkServer, pid: int, pipe: Path):
+        self._server = server
         self.pid = pid
         self.returncode: int | None = None
         self.stdout = pipe.open(encoding="utf-8")
@@ -148,7 +148,7 @@ class Forked:
     def poll(self) -> int | None:
         """Return its exit status, None while it runs."""
         if self.returncode is None:
-            self.returncode = self._nursery.ask({"wait": self.pid})
+            self.returncode = self._server.ask({"wait": self.pid})
         return self.returncode
 
     def send_signal(self, number: int) -> None:
