@@ -33,6 +33,10 @@ _BOTTOM = 0.09
 _ELEVATION_DEG = 30.0
 _AROUND_MM = 8.0
 _CLEARLY_FACING = 0.25
+_LABEL = np.array([108.0, 30.0])
+"""Width and height of a label, pixels."""
+_CORNERS = np.array([[1, 1], [-1, 1], [1, -1], [-1, -1]])
+"""Places of a label next to its point: to the right or left, above or below."""
 _INK = (0.12, 0.14, 0.18)
 _SKIN = (0.86, 0.83, 0.8)
 
@@ -69,9 +73,16 @@ def writeResidualPicture(
         view = page.add_axes(place)
         view.axis("off")
         view.imshow(pixels, extent=(-half[0], half[0], -half[1], half[1]), aspect="auto")
+        balls, ends = (
+            (x - head.middle) @ across.T * _VIEW[0] / half[0] / 2 for x in (points, tips)
+        )
+        labels: list[np.ndarray] = []
         for row in np.flatnonzero(isLabeled):
-            # On the other side than the arrow.
-            right, up = np.where(across @ (tips - points)[row] > 0.0, -1, 1)
+            others = [*balls[rows[rows != row]], *(balls + ends)[rows] / 2, *ends[rows], *labels]
+            middles = balls[row] + _CORNERS * (_LABEL / 2 + 10)
+            away = np.abs((middles[:, None] - others) / _LABEL).max(axis=-1).min(axis=1)
+            (right, up), middle = _CORNERS[away.argmax()], middles[away.argmax()]
+            labels.append(middle)
             view.annotate(
                 f"{registration.labels[row]}: {registration.residuals_mm[row]:.1f}",
                 across @ (points[row] - head.middle),
