@@ -35,11 +35,13 @@ PARTS = (
         "formulas",
         "the registration's formulas and intervals hold for thousands of drawn trials",
         ("domain/registration", "error_rates/test_method_errors.py", "icp_peers"),
+        3,
     ),
     Part(
         "study",
         "a study on PostgreSQL and with many writers stores everything exactly once",
         ("domain", "slicer", "simulator/board"),
+        11,
     ),
     Part(
         "error rates",
@@ -73,6 +75,7 @@ PARTS = (
             "web/test_headset.py",
             "web/test_headset_panels.py",
         ),
+        4,
     ),
     Part(
         "page",
@@ -93,6 +96,7 @@ PARTS = (
         "drill",
         "a drill of decisions by each device and by ear, with Slicer's side and without",
         ("web/test_whole_drill.py",),
+        17,
     ),
     Part(
         "kills",

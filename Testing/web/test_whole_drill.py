@@ -25,7 +25,7 @@ def check_record(played: list[PlayedCase], record: DrillRecord) -> None:
         PlayedCase(
             float(f"{case.residual_mm:.2f}"),
             float(f"{case.true_error_mm:.1f}"),
-            *case.checks,
+            "".join(case.checks),
             case.decision,
             case.confidence,
             None if case.suspected is None else case.suspected.value,
