@@ -96,7 +96,6 @@ PARTS = (
         "drill",
         "a drill of decisions by each device and by ear, with Slicer's side and without",
         ("web/test_whole_drill.py",),
-        17,
     ),
     Part(
         "kills",

@@ -78,7 +78,9 @@ WITH_SLICER = "keys", "a tracked hand", "the mouse", "by ear"
 def test_a_drill_is_played_whole_recorded_as_shown_and_delivered_once(name, browser, tmp_path):
     device = DEVICES.get(name, BY_EAR)
     with (
-        at_page(device, browser, tmp_path, speech=device is BY_EAR) as trainee,
+        at_page(
+            device, browser, tmp_path, "--speed", device.speed, speech=device is BY_EAR
+        ) as trainee,
         Study.open(tmp_path / STUDY) as study,
         ExitStack() as stack,
     ):
