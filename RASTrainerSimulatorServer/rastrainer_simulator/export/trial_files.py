@@ -94,7 +94,7 @@ def _write_trial(
     write_text(place / f"{whole}_motion.tsv", "\n".join(lines) + "\n")
     write_json(place / f"{whole}_motion.json", _motion_json(task, trajectory))
     rows = [("name", "component", "type", "tracked_point", "units"), *CHANNELS]
-    write_text(place / f"{whole}_channels.tsv", tsv(rows))
+    write_text(place / f"{whole}_channels.tsv", _tsv(rows))
     found = [
         *((touch.time_s, 0.0, "touch", touch.label) for touch in trajectory.touches),
         *((touch.time_s, 0.0, "refused_touch", touch.label) for touch in trajectory.refused),
@@ -106,7 +106,7 @@ def _write_trial(
         for onset, duration, kind, label in sorted(found)
     ]
     events.insert(0, ("onset", "duration", "trial_type", "fiducial"))
-    write_text(place / f"{start}_{end}_events.tsv", tsv(events))
+    write_text(place / f"{start}_{end}_events.tsv", _tsv(events))
     write_json(place / f"{start}_{end}_events.json", _EVENTS_JSON)
 
 
@@ -151,12 +151,12 @@ def _write_drills(drills: Sequence[DrillRecord], labels: Mapping[str, str], fold
         name = f"{subject}_task-{DECIDE}_acq-{drill.mode}_run-{row.number:02d}_beh.tsv"
         make_folder(folder / subject / "beh")
         found = [["n/a" if cell is None else str(cell) for cell in cells(c)] for c in drill.cases]
-        write_text(folder / subject / "beh" / name, tsv([list(COLUMNS), *found]))
+        write_text(folder / subject / "beh" / name, _tsv([list(COLUMNS), *found]))
     if drills:
         write_json(folder / f"task-{DECIDE}_beh.json", _DRILL_JSON)
 
 
-def tsv(rows: Sequence[Sequence[str]]) -> str:
+def _tsv(rows: Sequence[Sequence[str]]) -> str:
     """Return rows as text; a cell has no white space but spaces, and is never empty."""
     return "".join("\t".join(" ".join(c.split()) or "n/a" for c in row) + "\n" for row in rows)
 
@@ -193,7 +193,7 @@ def _write_dataset(folder: Path, data: StudyData, labels: Mapping[str, str]) -> 
     )
     rows = [("participant_id", "species", "pseudonym")]
     rows += [(f"sub-{label}", "homo sapiens", name) for name, label in labels.items()]
-    write_text(folder / "participants.tsv", tsv(rows))
+    write_text(folder / "participants.tsv", _tsv(rows))
     write_json(
         folder / "participants.json",
         {"pseudonym": {"Description": "The trainee's name in the study."}},

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import itertools
 from math import inf, sqrt
-from operator import sub
 
 from rastrainer_simulator.robot.closure import (
     ElbowCircle,
@@ -53,7 +52,7 @@ def close(
         found = _branch(arm, place, wrist, tool, roll, last)
         if found is None:
             continue
-        if max(map(abs, map(sub, found, last))) <= farthest:
+        if all(-farthest <= now - then <= farthest for now, then in zip(found, last, strict=True)):
             return found
         theta = theta or found
     return theta

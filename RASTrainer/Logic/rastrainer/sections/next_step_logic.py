@@ -177,14 +177,14 @@ _STUDY_STEPS = {
 
 
 def _trial(now: WorkflowState) -> NextStep:
-    isStudyStep = now.progress is not None and now.progress.next_step is not None
+    step = None if now.progress is None else now.progress.next_step
     if now.isDeciding:
         text = _("{trainee} does a drill at the simulator; one that was left goes on from here.")
-        action = NextAction.START_STUDY_STEP if isStudyStep else NextAction.START_TASK
+        action = NextAction.START_TASK if step is None else NextAction.START_STUDY_STEP
         text = text.format(trainee=now.trainee)
         return NextStep(action, _("Show the drill"), text, Section.TRAINING)
-    if now.progress is not None and now.progress.next_step is not None:
-        step, repeat = now.progress.next_step, now.progress.repeat_sentence
+    if now.progress is not None and step is not None:
+        repeat = now.progress.repeat_sentence
         action, title = _STUDY_STEPS[StepKind(step.kind)]
         if repeat:
             action, title = NextAction.EXPLAIN_REPEAT, _("Reason for the repeat…")

@@ -247,7 +247,7 @@ class TrainingSession:
         if self.reload.is_under_way:
             self.complain(self.say("being set up"))
             return
-        trainee, loop, history, path = self.trainee_id, self.control_loop, self.history, None
+        trainee, loop, history = self.trainee_id, self.control_loop, self.history
         seen = {case.seed for drill in history.drills(trainee) for case in drill.cases}
         with self.complaining():
             if (path := self.open_drill) is not None:

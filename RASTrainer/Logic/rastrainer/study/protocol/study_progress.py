@@ -228,36 +228,29 @@ class StudyProgress:
         self, pseudonym: str, progress: steps.StepProgress, step: StudyStep
     ) -> steps.StepEntry | None:
         """Return the entry of the next step's trial or drill, or None; a repeat needs a reason."""
-        since, counted = self._since(pseudonym, progress), progress.counted_trials
-        found: list[tuple[TrialRecord | DrillRecord, str]]
+        columns = "SELECT started_utc, trial_id, stored_utc, record_json"
+        kind: type[TrialRecord | DrillRecord]
         if step.kind == StepKind.TRIAL:
+            kind = TrialRecord
             rows = self._database.rows(
-                "SELECT record_json, stored_utc FROM trials "
+                f"{columns} FROM trials "
                 f"WHERE trainee_id = ({TRAINEE_ID}) AND mode = ? AND task = ? AND method = ? "
                 "AND trial_id IN (SELECT trial_id FROM results WHERE kind != ?)",
                 *(pseudonym, step.mode, step.task, step.method, TRUTH),
             )
-            played = ((decoded_record(TrialRecord, text), utc) for text, utc in rows)
-            found = [(each, utc) for each, utc in played if _is_played_as_asked(step, each)]
         elif step.kind == StepKind.DECIDE:
-            drills = self._database.rows(
-                "SELECT started_utc, trial_id, record_json, stored_utc FROM drills "
-                f"WHERE trainee_id = ({TRAINEE_ID})",
-                pseudonym,
-            )
-            # Only drills that may count are decoded, which takes longer than all the rest.
-            decided = (
-                (decoded_record(DrillRecord, text), utc)
-                for started_utc, trial_id, text, utc in drills
-                if moment(started_utc) >= since and trial_id not in counted
-            )
-            found = [(each, utc) for each, utc in decided if each.mode == step.mode]
+            kind, query = DrillRecord, f"{columns} FROM drills WHERE trainee_id = ({TRAINEE_ID})"
+            rows = self._database.rows(query, pseudonym)
         else:
             return None
+        since, counted = self._since(pseudonym, progress), progress.counted_trials
         begun = [
-            (started, record.trial_id, stored_utc)
-            for record, stored_utc in found
-            if (started := moment(record.started_utc)) >= since and record.trial_id not in counted
+            (started, trial_id, stored_utc)
+            for started_utc, trial_id, stored_utc, text in rows
+            if (started := moment(started_utc)) >= since
+            and trial_id not in counted
+            # Last, as decoding takes longer than all the rest.
+            and _is_played_as_asked(step, decoded_record(kind, text))
         ]
         if not begun:
             return None
@@ -298,7 +291,9 @@ class StudyProgress:
         )
 
 
-def _is_played_as_asked(step: StudyStep, record: TrialRecord) -> bool:
+def _is_played_as_asked(step: StudyStep, record: TrialRecord | DrillRecord) -> bool:
+    if isinstance(record, DrillRecord):
+        return record.mode == step.mode
     procedure = "" if record.procedure is None else record.procedure.procedure
     return (
         procedure == step.procedure
