@@ -15,7 +15,7 @@ from rastrainer.igtl.content import Transform
 from rastrainer.igtl.message import Message, MessageReader, pack
 from rastrainer.protocol import PROTOCOL_VERSION
 from Testing.benchmarks.row import cpu_share, resident_mb, row
-from Testing.end_to_end.simulator_process import SimulatorProcess
+from Testing.end_to_end.simulator_process import StartedSimulator
 
 PROBE = Message("Echo", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 10, 20, 30)))
 PAUSE_S = 0.013
@@ -42,7 +42,7 @@ def rows(quick: bool) -> list[dict]:
         os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
         _start_time(Path(records))
         starts = [_start_time(Path(records)) for _ in range(2 if quick else 5)]
-        with SimulatorProcess(Path(records)) as simulator, Client(port=simulator.port) as slicer:
+        with StartedSimulator(Path(records)) as simulator, Client(port=simulator.port) as slicer:
             hello = {"protocolVersion": PROTOCOL_VERSION, "client": "3D Slicer"}
             slicer.send_command("Hello", hello)
             echoes = 1e3 * np.array(_echo_times(simulator.port, 100 if quick else 1000))
@@ -66,7 +66,7 @@ def rows(quick: bool) -> list[dict]:
 
 def _start_time(records: Path) -> float:
     begin = time.perf_counter()
-    with SimulatorProcess(records):
+    with StartedSimulator(records):
         return time.perf_counter() - begin
 
 

@@ -17,7 +17,7 @@ from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.slicer.link.link_status import LinkState
 from Testing.benchmarks.row import row
-from Testing.end_to_end.simulator_process import SimulatorProcess
+from Testing.end_to_end.simulator_process import StartedSimulator
 from Testing.slicer.host.activity import ActivityWatch
 from Testing.slicer.host.host import Host
 
@@ -60,7 +60,7 @@ def rows(quick: bool) -> list[dict]:
     seconds = 4 if quick else 20
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        simulator = stack.enter_context(SimulatorProcess(folder / "records"))
+        simulator = stack.enter_context(StartedSimulator(folder / "records"))
         player = stack.enter_context(Client(port=simulator.port))
         host = Host(folder / "slicer")
         stack.callback(host.close)

@@ -23,7 +23,7 @@ from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.state import NEUTRAL_STICKS, Motion, OperatorCommand, OperatorInput
 from Testing.benchmarks.loop_health import WatchedLoop
 from Testing.benchmarks.row import resident_mb, row, row_of_figures
-from Testing.end_to_end.simulator_process import SimulatorProcess
+from Testing.end_to_end.simulator_process import StartedSimulator
 
 DT = 0.004
 SEED = 7
@@ -205,7 +205,7 @@ def _on_time(duration_s: float) -> list[dict]:
     """
     with (
         tempfile.TemporaryDirectory() as records,
-        SimulatorProcess(Path(records)) as simulator,
+        StartedSimulator(Path(records)) as simulator,
         _annoyed(simulator.port),
         _clients(simulator.port) as (jogger, watcher),
         WatchedLoop(watcher) as watched,

@@ -35,10 +35,12 @@ class SimulatorProcess:
         port: where it listens; 0 where it connects.
         pid: of the process.
         command: that starts it.
+        is_forked: whether it may be forked.
         first: done in a forked simulator before it starts, in Python.
     """
 
     command = tuple(COMMAND)
+    is_forked = hasattr(os, "fork")
     first = ""
 
     def __init__(self, records: Path, *arguments: str, **others: Any):
@@ -48,7 +50,7 @@ class SimulatorProcess:
         settings = ["--port", "0", "--records", str(records), "--config", str(config)]
         # A pipe that no one reads would be full after some minutes.
         self._errors = tempfile.NamedTemporaryFile("w+")  # noqa: SIM115
-        if self.command == tuple(COMMAND) and set(others) <= {"env"} and hasattr(os, "fork"):
+        if self.is_forked and self.command == tuple(COMMAND) and set(others) <= {"env"}:
             words = ("simulator", *settings, *arguments)
             server = shared_fork_server(SIMULATOR)
             how = {"errors": self._errors.name, "first": self.first, **others}
@@ -97,6 +99,12 @@ class SimulatorProcess:
     def _captured_output(self) -> str:
         self._errors.seek(0)
         return self._errors.read()
+
+
+class StartedSimulator(SimulatorProcess):
+    """A simulator that has imported nothing before it starts, to be measured."""
+
+    is_forked = False
 
 
 def _keep_views(config: Path) -> None:
