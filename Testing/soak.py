@@ -50,7 +50,7 @@ PARTS = (
     ),
     Part(
         "cohorts",
-        "played cohorts resume after kills, and give the same trials on every engine",
+        "played cohorts resume after kills, with the same trials",
         ("simulator/virtual",),
     ),
     Part(

@@ -8,9 +8,14 @@ from __future__ import annotations
 
 import functools
 import json
+import multiprocessing
 import os
+import signal
+import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TypeVar
@@ -27,74 +32,59 @@ from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.setup import DEFAULT_SCENARIO, scenario_sha256
 from rastrainer_simulator.virtual.play import PlaySettings, play_job
 from rastrainer_simulator.virtual.population import Population, trial_jobs
-from rastrainer_simulator.virtual.worker_pool import (
-    ATTEMPTS,
-    WorkerDiedError,
-    died_message,
-    run_on_workers,
-)
 
 Job = TypeVar("Job")
 Result = TypeVar("Result")
 
-PROCESSES, DASK = "processes", "dask"
-_AS_MANY_ATTEMPTS = {"distributed.scheduler.allowed-failures": ATTEMPTS - 1}
+ATTEMPTS = 3
+"""How often in succession, without a result between, worker processes may be killed."""
 
 
 def run_jobs(
-    function: Callable[[Job], Result],
-    jobs: Iterable[Job],
-    engine: str = PROCESSES,
-    workers: int | None = None,
-    address: str | None = None,
-    name_of: Callable[[Job], str] = str,
+    function: Callable[[Job], Result], jobs: Iterable[Job], workers: int | None = None
 ) -> Iterator[Result]:
-    """Yield the result of each job, in their order.
+    """Yield the result of each job, in their order; one of a single worker is of this process.
 
-    A job whose process is killed is repeated by another one, unless `workers` is 1 and it is this
-    process. `engine` is `processes`, or `dask` (package `distributed`); `address` names a Dask
-    scheduler, for more than one machine; a local cluster by default.
+    `function` can be pickled. If a worker process is killed, the jobs that have no result yet are
+    done again.
     """
     workers = workers or os.cpu_count() or 1
-    if engine == DASK:
-        yield from _on_dask(function, jobs, workers, address, name_of)
-    elif workers == 1:
+    if workers == 1:
         yield from map(function, jobs)
-    else:
-        yield from run_on_workers(function, jobs, workers, name_of)
+        return
+    left, killed = list(jobs)[::-1], 0
+    while left:
+        # Not forked: collision meshes and threads of numpy do not survive that.
+        context = multiprocessing.get_context("spawn")
+        pool = ProcessPoolExecutor(workers, context, _end_with_parent)
+        try:
+            for result in pool.map(function, left[::-1]):
+                left.pop()
+                killed = 0
+                yield result
+        except BrokenProcessPool:
+            killed += 1
+            if killed == ATTEMPTS:
+                raise InputError(
+                    f"Worker processes were killed {ATTEMPTS} times. The computer may be short of "
+                    "memory: try fewer workers, or --workers 1 to see the error itself. The trials "
+                    "played so far are stored, and the same command resumes."
+                ) from None
+        finally:
+            pool.shutdown(cancel_futures=True)
 
 
-def _on_dask(
-    function: Callable[[Job], Result],
-    jobs: Iterable[Job],
-    workers: int,
-    address: str | None,
-    name_of: Callable[[Job], str],
-) -> Iterator[Result]:
-    try:
-        import dask
-        from distributed import Client, KilledWorker
-    except ImportError:
-        raise InputError(
-            "The engine dask needs the package distributed: pip install distributed."
-        ) from None
-    try:
-        if address is None:
-            with dask.config.set(_AS_MANY_ATTEMPTS):
-                client = Client(n_workers=workers, threads_per_worker=1, dashboard_address=None)
-        else:
-            client = Client(address, timeout="3s")
-    except OSError as error:
-        raise InputError(f"There is no Dask scheduler at {address}: {error}.") from None
-    jobs = list(jobs)
-    with client:
-        for job, future in zip(jobs, client.map(function, jobs, pure=False), strict=True):
-            try:
-                yield future.result()
-            except KilledWorker:
-                # Dask blames every job of the worker, even if it had just finished.
-                cause = " or another trial at the same worker"
-                raise WorkerDiedError(died_message(name_of(job), cause)) from None
+def _end_with_parent() -> None:
+    """Let a worker process end when its parent is killed, and leave Ctrl-C to the parent."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    assert parent is not None, "A worker process has a parent."
+
+    def follow() -> None:
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=follow, daemon=True).start()
 
 
 DATABASE, TRUTH, PROTOCOL, RECORDS = "study.db", "truth.json", "protocol.json", "records"
@@ -119,9 +109,7 @@ def simulate_cohort(
     folder: Path,
     settings: PlaySettings,
     with_journals: bool = False,
-    engine: str = PROCESSES,
     workers: int | None = None,
-    address: str | None = None,
     on_trial: Callable[[int], None] = lambda _count: None,
 ) -> CohortRun:
     """Play the study of a protocol with virtual trainees and store it in a folder.
@@ -161,11 +149,7 @@ def simulate_cohort(
         jobs = [*trial_jobs(protocol, population, trainees, seed)]
         missing = [job for job in jobs if not store.has_played(job.trial_id)]
         counts["found"] = len(jobs) - len(missing)
-        trials = run_jobs(
-            *(function, missing, engine, workers, address),
-            name_of=lambda job: f"The trial of {job.trainee}, {job.task} ({job.mode}),",
-        )
-        for trial in trials:
+        for trial in run_jobs(function, missing, workers):
             if trial.analysis is None:
                 store.add_stuck(trial.job.trial_id)
             else:

@@ -11,11 +11,10 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.report.report import report_html
-from rastrainer_simulator.virtual.cohort import DATABASE, run_jobs, simulate_cohort
+from rastrainer_simulator.virtual.cohort import DATABASE, simulate_cohort
 from rastrainer_simulator.virtual.play import PlaySettings
 from Testing.simulator.report.without_charts import without_charts
 from Testing.simulator.virtual.conftest import AIM_FACTOR, BRISK
-from Testing.simulator.virtual.small_jobs import squared
 
 
 def numbers(trial):
@@ -55,20 +54,6 @@ def test_the_scatter_of_the_aim_is_recovered_from_the_registrations(data):
         aimed = np.sqrt(2) * factor * BRISK.aim_sd_mm
         assert fle_of[mode] == pytest.approx(aimed, rel=0.3)
     assert fle_of["hmd"] > 1.5 * fle_of["desktop"]
-
-
-@pytest.mark.parametrize(
-    ("engine", "workers"), [("processes", 2), pytest.param("dask", 1, marks=pytest.mark.soak)]
-)
-def test_every_engine_returns_the_results_in_job_order(engine, workers):
-    found = list(run_jobs(squared, range(20), engine, workers))
-    assert found == [number * number for number in range(20)]
-
-
-@pytest.mark.soak
-def test_a_scheduler_that_is_missing_is_reported():
-    with pytest.raises(InputError, match="no Dask scheduler at tcp"):
-        list(run_jobs(squared, [1], "dask", address="tcp://127.0.0.1:1"))
 
 
 def test_a_folder_that_is_not_empty_is_left_alone(protocol, population, tmp_path):
