@@ -7,6 +7,7 @@ described in `docs/trial-journal.md`.
 from __future__ import annotations
 
 import contextlib
+import logging
 import os
 import time
 from collections.abc import Iterable, Mapping, Sequence
@@ -37,6 +38,8 @@ from rastrainer.journal.journal_file import (
     read_journal,
 )
 
+_log = logging.getLogger(__name__)
+
 
 class RecordError(RASTrainerError):
     """The journal could not be written; the message is shown to the trainee."""
@@ -63,6 +66,7 @@ class Journal:
         self._size: int | None = None
         self._is_new = True
         self._unwritten: list[Mapping[str, Any]] = []
+        self._has_failed = False
 
     @classmethod
     def reopened(cls, reading: JournalReading) -> Journal:
@@ -104,8 +108,13 @@ class Journal:
                 with contextlib.suppress(OSError):
                     os.ftruncate(self._descriptor, self._size)
             self.close()
-            raise RecordError(f"{self.path.name}: {error.strerror or error}") from error
+            reason = f"{self.path.name}: {error.strerror or error}"
+            if not self._has_failed:
+                _log.error("Nothing is recorded: %s", reason)
+            self._has_failed = True
+            raise RecordError(reason) from error
         self._count, self.last_hash, self._size = count, last_hash, size + len(data)
+        self._has_failed = False
         self._unwritten.clear()
 
     def write_lines(self, lines: Iterable[Line], sync: bool) -> None:

@@ -151,12 +151,14 @@ def test_two_programs_cannot_write_to_one_journal_at_once(written):
         theirs.write([{"kind": "acknowledged"}], sync=True)
 
 
-def test_a_folder_that_cannot_be_created_is_reported_and_the_entries_are_kept(tmp_path):
+def test_a_folder_that_cannot_be_created_is_reported_and_the_entries_are_kept(tmp_path, caplog):
     blocked = tmp_path / "records"
     blocked.write_text("a file where the folder should be")
     journal = Journal(blocked / "trial.journal")
-    with pytest.raises(RecordError):
-        journal.write(TRIAL[:2], sync=True)
+    for new in (TRIAL[:2], []):
+        with pytest.raises(RecordError):
+            journal.write(new, sync=True)
+    assert [record.message[:19] for record in caplog.records] == ["Nothing is recorded"]
     blocked.unlink()
     journal.write(TRIAL[2:], sync=True)
     assert without_chain(read_journal(journal.path).entries) == TRIAL
