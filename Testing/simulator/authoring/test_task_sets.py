@@ -72,7 +72,7 @@ def test_proposed_sets_pass_the_check_and_can_be_touched_in_999_of_1000_other_tr
     draft, options = HeadDraft(head, "test"), ScenarioOptions(name, "test", "none")
     planning = PlanningSetup(without_tasks(draft, options), head)
     others, can_be = planning.poses(range(60_000, 60_012))[1:], []
-    for seed in range(100, 120):
+    for seed in range(100, 110):
         tasks = propose_tasks(planning, seed)
         assert check_tasks(planning, tasks) == [], seed
         for task in tasks:
