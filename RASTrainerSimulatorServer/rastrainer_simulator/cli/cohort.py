@@ -46,7 +46,9 @@ def simulate(arguments: argparse.Namespace) -> int:
         result = simulate_cohort(
             *(protocol, _population(arguments), arguments.trainees, arguments.seed),
             *(arguments.output, PlaySettings(arguments.scenario, arguments.step)),
-            *(arguments.records, arguments.workers, show_progress),
+            arguments.records,
+            arguments.workers,
+            show_progress,
         )
     except KeyboardInterrupt:
         print(

@@ -101,9 +101,10 @@ class ArmScreen:
         way = [(*tip[:2], high), (*above[:2], high), above, goal]
         self._move = ArmMove(session.move_tip, way)
 
-    def _advance_move(self, dt: float) -> None:
+    def _advance_move(self) -> None:
         if self._move is not None and self._is_moving:
-            self._move.advance(dt, self._session.state.tip, self._session.controls.held)
+            state = self._session.state
+            self._move.advance(state.sim_time, state.tip, self._session.controls.held)
 
     @property
     def _state(self) -> SimulationState:

@@ -87,7 +87,7 @@ class DrillScreen(ArmScreen):
         hints = self._hints(movement, names)
         return self._shown(self._instruction(), status, hints, errors=tuple(balls))
 
-    def advance(self, dt: float) -> None:
+    def advance(self) -> None:
         """Send the arm to a place that has been checked, and the view there when it has arrived."""
         session, drill = self._session, drill_of(self._session)
         seen = drill.case, len(drill.checks)
@@ -99,7 +99,7 @@ class DrillScreen(ArmScreen):
                 # The sticks still choose in the page that closes now.
                 return
         was_moving = self._is_moving
-        self._advance_move(dt)
+        self._advance_move()
         if was_moving and not self._is_moving:
             self._stopped_at = session.state.tip
             self._look_at_tip()

@@ -127,7 +127,7 @@ class Flow:
         elif session.tutorial is not None:
             self._advance_tutorial(dt, session.tutorial)
         elif session.drill is not None:
-            self._drill_screen.advance(dt)
+            self._drill_screen.advance()
         elif self._trial_screen.has_practice_just_ended():
             self._trial_screen.open_menu()
 

@@ -71,7 +71,7 @@ class TutorialScreen(ArmScreen):
             self._move = None
             if distance(session.state.tip, self._start) > NEAR_M:
                 self._begin_move(self._start, self._start)
-        self._advance_move(dt)
+        self._advance_move()
         if self._is_moving:
             return
         tutorial.use(session.operator.learned(session.mode))
