@@ -53,6 +53,10 @@ COMMANDS_AT_ONCE = 16
 """Commands of one client that are submitted to the control loop at a time."""
 WAITING_COMMANDS, WAITING_COMMAND_BYTES = 4096, 2**20
 """Further commands that may wait for their turn; another is refused."""
+COMMANDS_OF_ALL = 1024
+"""Commands of all clients that are submitted at a time, also of those that have left; another is
+refused. Else a peer that comes again and again could fill the memory."""
+TOO_MANY = "Too many commands wait: wait for their answers."
 OFFERS_AT_ONCE = 8
 """Trials in one round of offers."""
 _NUMBERS = 2**32
@@ -82,7 +86,7 @@ class ClientCommands:
             arguments = check_arguments(command.name, decode_json_object(command.body))
             is_full = len(self._waiting) >= WAITING_COMMANDS
             if is_full or self._waiting_bytes > WAITING_COMMAND_BYTES:
-                raise InputError("Too many commands wait: wait for their answers.")
+                raise InputError(TOO_MANY)
         except InputError as error:
             self._reply(command, Answer(0, False, str(error)))
             return
@@ -171,6 +175,7 @@ class SimulatorLink:
         self._answers = answers
         self._slicer_left = slicer_left
         self._commands: dict[ClientConnection, ClientCommands] = {}
+        self._submitted: deque[str] = deque()
 
     def connected(self, connection: ClientConnection) -> None:
         self._commands[connection] = ClientCommands(connection, self._submit)
@@ -246,8 +251,14 @@ class SimulatorLink:
         if not is_offered:
             sentence = "This trial was not offered over this connection."
             return answered(Answer(0, False, sentence))
+        if len(self._submitted) >= COMMANDS_OF_ALL:
+            return answered(Answer(0, False, TOO_MANY))
         submit = self._submit_checked if name in CHECKED else self._submit_command
-        return submit(name, arguments, connection.name)
+        future = submit(name, arguments, connection.name)
+        self._submitted.append(name)
+        # In any thread: a deque can be shared.
+        future.add_done_callback(lambda _done: self._submitted.pop())
+        return future
 
     def _greet(self, connection: ClientConnection, arguments: Mapping[str, Any]) -> Answer:
         spoken = {
