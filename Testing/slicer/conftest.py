@@ -5,14 +5,16 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.head.mesh import write_head_mesh
-from rastrainer.scenario.points import LABELS, PlannedTarget, Task, task_file
+from rastrainer.scenario.points import PlannedTarget, Task, task_file
 from rastrainer.scenario.scenario import Perturbation, Scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.program.child_process import OwnProcess, runHere
+from rastrainer.trial.scoring import SAFETY_METRICS
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.scene import HeadlessScene
 from Testing.domain.scenario.made_up_scenario import ball_head
+from Testing.domain.trial import trial_records
 from Testing.slicer.host.fixtures import (  # noqa: F401
     fresh_module,
     host,
@@ -142,35 +144,19 @@ def make_record(scenario):
             scenario.perturbed_head_to_world(seed),
             scenario.task(task).fiducials + random.normal(0.0, 0.7, (15, 3)),
         )
-        points = [
-            {
-                "label": label,
-                "positionMm": position.tolist(),
-                "simTimeS": 6.0 * (row + 1),
-                "utc": f"2026-03-02T10:00:{row:02d}Z",
-            }
-            for row, (label, position) in enumerate(zip(LABELS, touched, strict=True))
-        ]
-        return {
-            "trialId": trial_id,
-            "trainee": "T-001",
-            "task": task,
-            "mode": "desktop",
-            "scenario": "ball",
-            "startedUtc": "2026-03-02T09:59:50Z",
-            "completedUtc": "2026-03-02T10:00:20Z",
-            "completionTimeS": 90.0,
-            "touchRule": "on skin",
-            "points": points,
-            "rejectedTouches": 1,
-            "undoneTouches": 1,
-            "versions": {"simulator": "0.1.0"},
-            "motion": {
-                "unintended_contact_time_s": 0.0,
-                "unintended_contact_path_mm": 0.0,
-                "pressing_depth_mm": 0.2,
-            },
-            **changes,
-        }
+        record = trial_records.make_record(
+            trialId=trial_id,
+            task=task,
+            scenario="ball",
+            startedUtc="2026-03-02T09:59:50Z",
+            completedUtc="2026-03-02T10:00:20Z",
+            completionTimeS=90.0,
+            touchRule="on skin",
+            motion=dict.fromkeys(SAFETY_METRICS, 0.0) | {"pressing_depth_mm": 0.2},
+        )
+        for row, (point, place) in enumerate(zip(record["points"], touched.tolist(), strict=True)):
+            utc = f"2026-03-02T10:00:{row:02d}Z"
+            point.update(positionMm=place, simTimeS=6.0 * (row + 1), utc=utc)
+        return record | changes
 
     return make

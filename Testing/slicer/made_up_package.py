@@ -69,20 +69,6 @@ def write_package(folder: Path, cli: str, lock: Sequence[str] = ()) -> Simulator
     return SimulatorPackage(folder)
 
 
-def write_checkout(folder: Path, cli: str) -> SimulatorPackage:
-    """Write a repository with the simulator's sources, and an empty lock next to its module."""
-    roots = {"rastrainer": "RASTrainer/Logic", "rastrainer_simulator": "RASTrainerSimulatorServer"}
-    for place, text in simulator_files(cli).items():
-        path = folder / roots[place.split("/")[0]] / place
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
-    (folder / "pyproject.toml").touch()
-    package = SimulatorPackage.of(folder / "RASTrainer")
-    package.folder.mkdir(parents=True)
-    (package.folder / LOCK).write_text(NOTHING, encoding="utf-8")
-    return package
-
-
 class PackageIndex:
     """Serves wheels as an index does; to be used in a `with` statement."""
 

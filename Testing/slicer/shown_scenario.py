@@ -8,11 +8,6 @@ from Testing.slicer.work_at_once import in_turns
 def show_whole(scene, scenario):
     """Show a scenario, and fill its nodes; return the sentences about files that are unusable."""
     showScenario(scene, scenario)
-    return load_files(scene)
-
-
-def load_files(scene):
-    """Fill all nodes of the scene that wait for their files; return as `show_whole`."""
     work, problems = BackgroundWork(), []
     loader = SceneFileLoader(scene, work)
     loader.problemFound.connect(problems.append)

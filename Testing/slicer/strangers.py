@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import http.server
 import socket
 import threading
 import time
@@ -42,24 +41,6 @@ def stranger(behavior: Behavior, port: int = 0) -> Iterator[int]:
                 with contextlib.suppress(OSError):
                     each.shutdown(socket.SHUT_RDWR)
                 each.close()
-            thread.join()
-
-
-@contextlib.contextmanager
-def web_server(port: int = 0) -> Iterator[int]:
-    """Serve pages as Python's own server does; yield the port."""
-
-    class Quiet(http.server.BaseHTTPRequestHandler):
-        def log_message(self, *_arguments: object) -> None:
-            """Log nothing."""
-
-    with http.server.ThreadingHTTPServer(("127.0.0.1", port or free_port()), Quiet) as server:
-        thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.01})
-        thread.start()
-        try:
-            yield server.server_address[1]
-        finally:
-            server.shutdown()
             thread.join()
 
 

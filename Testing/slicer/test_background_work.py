@@ -8,17 +8,11 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.slicer import background_work
-from rastrainer.slicer.background_work import TIME_S, Job, inBackground
-from Testing.slicer.host.event_loop import process_events_keeping_lock, wait_keeping_lock
+from rastrainer.slicer.background_work import TIME_S, Job
+from Testing.slicer.work_at_once import in_turns
 
 MAIN = threading.get_ident()
 USUAL_SWITCH_INTERVAL_S = 0.005
-
-
-def run(work):
-    while work.isBusy:
-        work.yieldTime()
-        work.process()
 
 
 def test_results_arrive_on_the_main_thread_in_the_order_of_the_jobs(work):
@@ -30,7 +24,7 @@ def test_results_arrive_on_the_main_thread_in_the_order_of_the_jobs(work):
             lambda result: seen.append((*result, threading.get_ident())),
         )
     assert seen == []
-    run(work)
+    in_turns(work)
     assert [number for number, _there, _here in seen] == [0, 1, 2]
     assert all(there != MAIN and here == MAIN for _number, there, here in seen)
     assert begun == [True] * 3
@@ -46,17 +40,9 @@ def test_an_error_is_reported_a_mistake_also_raised_and_the_next_job_runs(work):
     work.do(lambda: 1 // 0, received.append, lambda error: received.append(type(error)))
     work.do(lambda: "done", received.append)
     with pytest.raises(ZeroDivisionError):
-        run(work)
-    run(work)
+        in_turns(work)
+    in_turns(work)
     assert received == ["The disk is full.", ZeroDivisionError, "done"]
-
-
-def test_a_result_handler_may_queue_more_work(work):
-    received = []
-    work.do(lambda: "first", lambda _result: work.do(lambda: "third", received.append))
-    work.do(lambda: "second", received.append)
-    run(work)
-    assert received == ["second", "third"]
 
 
 def test_closing_delivers_results_that_come_soon_and_starts_no_further_job(work, monkeypatch):
@@ -86,21 +72,6 @@ def test_closing_does_not_wait_forever(work):
     assert received == []
 
 
-@pytest.mark.usefixtures("host")
-def test_jobs_proceed_although_slicer_holds_the_gil_while_waiting_for_events():
-    has_turned = threading.Event()
-
-    def count():
-        return sum(number % 7 for number in range(2_000_000))
-
-    def turn(_step, _share):
-        process_events_keeping_lock()
-        wait_keeping_lock()
-        has_turned.set()
-
-    assert inBackground(lambda _tell: (has_turned.wait(60), count()), turn) == (True, count())
-
-
 def test_while_jobs_run_no_garbage_is_collected_and_the_gil_is_released_soon(work):
     was_enabled, interval_s, seen = gc.isenabled(), sys.getswitchinterval(), []
     gc.enable()
@@ -121,30 +92,3 @@ def test_while_jobs_run_no_garbage_is_collected_and_the_gil_is_released_soon(wor
     sys.setswitchinterval(interval_s)
     if not was_enabled:
         gc.disable()
-
-
-def test_a_job_canceled_by_its_user_is_aborted():
-    ended = threading.Event()
-
-    def work(tell):
-        try:
-            while True:
-                tell("Counting", 0.5)
-        finally:
-            ended.set()
-
-    def cancel(step, _share):
-        if step:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        inBackground(work, cancel)
-    assert ended.wait(120.0)
-
-
-def test_jobs_start_only_after_deferred_calls(work):
-    seen = []
-    work.later(lambda: seen.append("later"))
-    work.do(lambda: seen.append("work"), lambda _none: seen.append("taken"))
-    run(work)
-    assert seen == ["later", "work", "taken"]

@@ -4,13 +4,9 @@ import contextlib
 import os
 import signal
 import sys
-from pathlib import Path
 
 import pytest
 
-import rastrainer
-import rastrainer_simulator as simulator
-from rastrainer.python_environment import private_command
 from rastrainer.slicer.program import child_process
 from rastrainer.slicer.program.child_process import ChildProcess, runChild
 from rastrainer.slicer.program.simulator_program import ProgramState, SimulatorProgram
@@ -87,30 +83,6 @@ def number(path):
 def kill(pid):
     with contextlib.suppress(ProcessLookupError):
         os.kill(pid, signal.SIGKILL)
-
-
-def test_killing_only_the_launcher_would_leave_the_real_python_alive(python, tmp_path):
-    child = ChildProcess([python, "-c", WRITER, tmp_path])
-    wait_until(lambda: "begun" in child.takeLines(), lambda: None, LONG_S)
-    os.kill(child.process.pid, signal.SIGTERM)
-    wait_until(lambda: child.process.poll() is not None, lambda: None, LONG_S)
-    assert runs(number(tmp_path / "pid"))
-    wait_until(child.poll, lambda: None, LONG_S)
-    ends(tmp_path / "pid")
-
-
-def test_slicers_python_has_no_simulator_package_except_in_the_private_folder(python, tmp_path):
-    code = "import {}\nprint('it has it')"
-    for name in ("rastrainer_simulator", "rastrainer_headless"):
-        refused = runChild([python, "-c", code.format(name)], lambda *_step: None)
-        assert refused.lastLine == f"ModuleNotFoundError: Slicer's Python has no package {name}."
-    own = runChild([python, "-c", code.format("rastrainer.igtl.client")], lambda *_step: None)
-    assert own.lastLine == "it has it"
-    sources = [str(Path(package.__file__).parents[1]) for package in (rastrainer, simulator)]
-    (tmp_path / "sources.pth").write_text("".join(f"{source}\n" for source in sources))
-    (tmp_path / "it.py").write_text(code.format("rastrainer_simulator"))
-    allowed = runChild(private_command(python, tmp_path, "it"), lambda *_step: None)
-    assert allowed.lastLine == "it has it"
 
 
 def test_canceled_work_ends_with_the_real_python(python, tmp_path):

@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 from PySide6 import QtCore
 
-from rastrainer.slicer.background_work import AbandonedWorkError, CancelableUntilBegun
 from rastrainer.study import trainee_data
 from rastrainer.study.database.study import Study
 from Testing.slicer.host.cancels import cancels
@@ -86,20 +85,3 @@ def test_a_deletion_that_has_begun_continues_and_says_so(panel, journal, monkeyp
     assert "can no longer be canceled" in received[-1][1]
     assert "was deleted with 0 trials and 1 journals" in panel.text("traineeText")
     assert (journal.exists(), stored(panel)) == (False, [])
-
-
-def test_canceling_too_late_is_ignored_and_beginning_too_late_changes_nothing():
-    class CanceledError(Exception):
-        pass
-
-    def cancel(_step, _share):
-        raise CanceledError
-
-    late = CancelableUntilBegun(cancel)
-    late.begin()
-    late.progress("", 0.0)
-    early = CancelableUntilBegun(cancel)
-    with pytest.raises(CanceledError):
-        early.progress("", 0.0)
-    with pytest.raises(AbandonedWorkError):
-        early.begin()

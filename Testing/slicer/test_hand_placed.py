@@ -38,13 +38,10 @@ def test_lists_of_the_wrong_length_and_a_seventh_list_are_left_out_and_named(sce
     ]
 
 
-def test_a_scene_without_such_a_list_reports_which_lists_there_are(scene):
+def test_a_scene_without_such_a_list_and_a_list_without_an_order_are_refused_by_name(scene):
     add_list(scene, "Short", 14)
     with pytest.raises(InputError, match=r"no point list of 15.*Short is left out: it has 14"):
         handPlacedLists(scene, None)
-
-
-def test_a_list_whose_labels_give_no_order_is_refused_by_its_name(scene):
     add_list(scene, "Mixed", labels=["nose", *[str(number) for number in range(2, 16)]])
     with pytest.raises(InputError, match=r"The point list Mixed cannot be used: .* no number"):
         handPlacedLists(scene, None)

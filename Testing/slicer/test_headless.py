@@ -8,21 +8,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import vtk
 from slicer.util import arrayFromTransformMatrix
+from vtk.util.numpy_support import vtk_to_numpy
 
 from rastrainer import transforms
 from rastrainer.igtl.content import Point, Points
-from rastrainer.json_records import record_from_json
 from rastrainer.protocol import DeviceName
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.nodes import Role, labelsOf, worldPoints
 from rastrainer.slicer.scene.trial_scene import FIXED_REFERENCE, isApplied
 from rastrainer.study.database.study import Study
-from rastrainer.trial.analysis import analyze_trial
-from rastrainer.trial.record import TrialRecord
 from rastrainer_headless import main as headless
 from rastrainer_headless import residual_picture
-from rastrainer_headless.main import results_json, writeOutput
 from rastrainer_headless.scene import HeadlessScene
 from Testing.slicer.scene_bundle import load_bundle
 from Testing.slicer.simulator_double import SimulatorDouble
@@ -78,10 +76,7 @@ def colin_record(make_record):
 
 
 def arguments(output, port, *more):
-    return [
-        "--port", str(port), "--output", str(output),
-        "--assets", str(ASSETS), *more,
-    ]  # fmt: skip
+    return ["--port", str(port), "--output", str(output), "--assets", str(ASSETS), *more]
 
 
 def lines_of(text, event):
@@ -94,19 +89,17 @@ def test_a_trial_is_played_and_its_files_are_written(colin_record, tmp_path, cap
         words = arguments(tmp_path, simulator.port, "--timeout", "300")
         assert headless.main(words) == 0
     text = capfd.readouterr().out
-    states = {line["state"] for line in lines_of(text, "status")}
-    assert states & {"greeting", "connected"}
     (trial,) = lines_of(text, "trial")
     (line,) = (tmp_path / "results.jsonl").read_text().splitlines()
     written = json.loads(line)
     assert trial["results"] == written
     assert written["truth"]["trueTreMm"] < 2.0
-    assert written["ctps"]["equation3"] == written["ctps"]["published"] / 2
     (output,) = lines_of(text, "output")
     assert all(Path(output[name]).stat().st_size > 1000 for name in ("scene", "picture", "study"))
     with Study.open(tmp_path / "study.db") as study:
         assert study.trial(TRIAL).true_tre_mm == written["truth"]["trueTreMm"]
     check_saved_scene(tmp_path / "trial.mrb", written)
+    check_picture(Path(output["picture"]))
 
 
 def check_saved_scene(path, results):
@@ -122,32 +115,29 @@ def check_saved_scene(path, results):
     assert labelsOf(touched) == labelsOf(fixed)
     residuals = np.linalg.norm(worldPoints(touched) - worldPoints(fixed), axis=1)
     np.testing.assert_allclose(residuals, results["fits"]["rigid"]["residualsMm"], atol=2e-3)
-    head = Role.HEAD_MODEL.find(scene)
-    assert head.GetPolyData().GetNumberOfPolys() > 40_000
+    assert Role.HEAD_MODEL.find(scene).GetPolyData().GetNumberOfPolys() > 40_000
     images = Role.HEAD_VOLUME.find(scene)
     assert images.GetImageData().GetDimensions() == (204, 228, 178)
     red = scene.GetNodeByID("vtkMRMLSliceCompositeNodeRed")
     assert red.GetBackgroundVolumeID() == images.GetID()
-    assert Role.RESIDUALS.find(scene).GetNumberOfRows() == 15
     assert Role.FITS.find(scene).GetNumberOfRows() == 3
     assert Role.RESIDUAL_ARROWS.find(scene).GetPolyData() is not None
     assert scene.GetFirstNodeByName("ToolTipToWorld") is None
 
 
-def test_files_are_written_for_a_trial_whose_true_error_was_not_revealed(
-    colin_record, tmp_path, monkeypatch
-):
-    captions = []
-    monkeypatch.setattr(
-        residual_picture, "writeResidualPicture", lambda *words: captions.extend(words[-1])
-    )
-    scenario = load_scenario(COLIN)
-    analysis = analyze_trial(record_from_json(TrialRecord, colin_record), scenario)
-    files = writeOutput(tmp_path, HeadlessScene(), scenario, analysis)
-    assert results_json(analysis)["truth"] is None
-    assert Path(files["scene"]).stat().st_size > 1000
-    assert "expected TRE" in captions[1]
-    assert "true TRE" not in captions[1]
+def check_picture(path):
+    """Look for the head, its points and the legend."""
+    reader = vtk.vtkPNGReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    image = reader.GetOutput()
+    assert image.GetDimensions()[:2] == (residual_picture.WIDTH, residual_picture.HEIGHT)
+    scalars = vtk_to_numpy(image.GetPointData().GetScalars())
+    pixels = scalars.reshape(residual_picture.HEIGHT, residual_picture.WIDTH, -1)[..., :3]
+    saturation, edge = np.ptp(pixels.astype(int), axis=2), int(0.9 * residual_picture.WIDTH)
+    assert (pixels[:, :edge].max(axis=2) < 250).mean() > 0.3
+    assert (saturation[:, :edge] > 60).sum() > 15 * 100
+    assert (saturation[:, edge:] > 60).sum() > 5000
 
 
 def test_trials_that_do_not_arrive_exit_with_status_1_and_a_message(simulator, tmp_path, capfd):
@@ -157,23 +147,14 @@ def test_trials_that_do_not_arrive_exit_with_status_1_and_a_message(simulator, t
     assert "\n" not in error
 
 
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        (["--assets", "nowhere"], "There is no file nowhere"),
-        (["--port", "0"], "port must be a number from 1 to 65535"),
-        (["--trials", "0"], "at least one trial"),
-        (["--timeout", "nan"], "seconds above 0"),
-    ],
-)
-def test_bad_arguments_exit_with_status_2_and_a_message(changes, words, tmp_path, capfd):
-    assert headless.main(arguments(tmp_path, 18944, *changes)) == 2
-    error = capfd.readouterr().err.strip()
-    assert words in error
-    assert "Traceback" not in error
-
-
-def test_an_unusable_output_folder_is_reported_and_left_alone(tmp_path, capfd):
+def test_bad_arguments_exit_with_status_2_and_an_unusable_folder_is_left_alone(tmp_path, capfd):
+    for *changes, words in (
+        ("--assets", "nowhere", "There is no file nowhere"),
+        ("--trials", "0", "at least one trial"),
+        ("--timeout", "nan", "seconds above 0"),
+    ):
+        assert headless.main(arguments(tmp_path, 18944, *changes)) == 2
+        assert words in capfd.readouterr().err
     (tmp_path / "study.db").write_text("my notes")
     assert headless.main(arguments(tmp_path / "study.db" / "folder", 18944)) == 2
     assert "cannot be made" in capfd.readouterr().err

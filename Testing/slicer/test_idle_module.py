@@ -22,7 +22,7 @@ def idle_activity(host):
     return watch
 
 
-def test_without_a_connection_and_with_all_sections_open_nothing_is_written_or_drawn_again(host):
+def test_idle_nothing_is_written_or_drawn_again_and_behind_another_module_no_timer_runs(host):
     host.open()
     for name in vars(host.widget.ui):
         if name.endswith(("CollapsibleButton", "GroupBox")) and "collapsed" in dir(host.find(name)):
@@ -30,17 +30,23 @@ def test_without_a_connection_and_with_all_sections_open_nothing_is_written_or_d
     watch = idle_activity(host)
     assert (watch.writes, watch.drawn) == ([], [])
     assert 0 < watch.ticks <= TICKS
+    host.leave()
+    assert idle_activity(host).ticks == 0
+    # Changes are shown at once all the same.
+    host.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Mine")
+    host.wait_until(lambda: host.widget.logic.session.restS(False) is None, "it rests again")
 
 
 def test_connected_nothing_is_written_or_drawn_again_and_a_state_is_shown_without_a_poll(
-    host, simulator
+    fresh_module, simulator
 ):
+    host = fresh_module
+
     def tell(instruction):
         state = String(json.dumps({"phase": "idle", "instruction": instruction}))
         simulator.send(DeviceName.SIM_STATE, state)
         host.wait_until(lambda: instruction in host.text("trainingText"), "the state arrives")
 
-    host.open()
     connect_module(host, simulator)
     tell("Ask for a trial.")
     watch = idle_activity(host)
@@ -51,41 +57,13 @@ def test_connected_nothing_is_written_or_drawn_again_and_a_state_is_shown_withou
     assert watch.ticks <= watch.clock // 5 + 2
 
 
-def test_behind_another_module_without_a_connection_no_timer_runs(host):
-    host.open()
-    host.leave()
-    assert idle_activity(host).ticks == 0
-    # Changes are shown at once all the same.
-    host.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Mine")
-    host.wait_until(lambda: host.widget.logic.session.restS(False) is None, "it rests again")
-
-
-def test_a_sentence_is_shown_and_hidden_in_a_closed_section_without_a_layout(host):
-    from rastrainer.widgets.controls import setText
-
-    host.open()
-    label = host.find("pairingText")
-    host.find("simulatorCollapsibleButton").collapsed = True
-    setText(label, "A code.")
-    host.idle_for(0.2)
-    with ActivityWatch() as watch:
-        setText(label, "A code.")
-    assert watch.writes == []
-    host.find("simulatorCollapsibleButton").collapsed = False
-    assert label.visible
-    setText(label, "")
-    assert not label.visible
-
-
-def test_visibility_depends_on_the_layout_and_on_the_module(host):
+def test_visibility_depends_on_the_layout_and_on_the_module(fresh_module):
     from rastrainer.sections.application import isAnythingVisible
 
     for layout, is_entered, in_slices, is_seen in (
         ("FourUpView", True, False, True),
         ("FourUpView", False, False, True),
-        ("OneUp3DView", False, False, True),
         ("OneUp3DView", False, True, True),
-        ("OneUpRedSliceView", True, False, True),
         ("OneUpRedSliceView", False, False, False),
         ("OneUpRedSliceView", False, True, True),
         ("OneUpPlotView", False, True, False),
@@ -94,7 +72,7 @@ def test_visibility_depends_on_the_layout_and_on_the_module(host):
         number = getattr(slicer.vtkMRMLLayoutNode, f"SlicerLayout{layout}")
         slicer.app.layoutManager().setLayout(number)
         assert isAnythingVisible(is_entered, in_slices) is is_seen
-        host.minimize()
+        fresh_module.minimize()
         assert not isAnythingVisible(is_entered, in_slices)
-        host.minimize(False)
+        fresh_module.minimize(False)
         assert isAnythingVisible(is_entered, in_slices) is is_seen

@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 import slicer
-from PySide6 import QtGui
 
 from rastrainer import transforms
 from rastrainer.protocol import DeviceName
-from rastrainer.slicer.head.volume import imageOfNode
 from rastrainer.slicer.scene.nodes import Role
 from Testing.domain.igtl.sent_pose import transform_of
 from Testing.slicer.recorded_trial import COLIN27
@@ -39,7 +37,7 @@ def wait_for_images(host):
     host.finish_work()
 
 
-def test_the_mri_is_behind_head_and_fiducials_and_a_target_is_placed_on_it(host, tmp_path):
+def test_the_mri_is_behind_head_and_fiducials_and_a_target_is_placed_on_it(host):
     show_scenario(host)
     node = images(host)
     manager = slicer.app.layoutManager()
@@ -47,30 +45,10 @@ def test_the_mri_is_behind_head_and_fiducials_and_a_target_is_placed_on_it(host,
         composite = manager.sliceWidget(name).mrmlSliceCompositeNode()
         assert composite.GetBackgroundVolumeID() == node.GetID()
     np.testing.assert_allclose(place(host.scene), COLIN27.target.position_ras, atol=1e-3)
-    host.window_screenshot(tmp_path / "window.png")
-    gray, skin = gray_and_skin(tmp_path / "window.png")
-    assert gray > 40_000
-    assert skin > 300
     host.press("placeTargetButton")
     host.place(*TARGET)
     target = host.find("planComboBox").currentNode()
     np.testing.assert_allclose(target.GetNthControlPointPosition(0), TARGET)
-    volume = imageOfNode(node)
-    i, j, k = np.rint(np.linalg.inv(volume.ijkToRas) @ [*TARGET, 1.0])[:3].astype(int)
-    assert 40 < volume.values[i, j, k] < 200
-
-
-def gray_and_skin(path):
-    """How many pixels of the views are gray as tissue, and how many have the head's color."""
-    picture = QtGui.QImage(str(path)).convertToFormat(QtGui.QImage.Format.Format_RGB888)
-    rows = np.frombuffer(picture.constBits(), np.uint8).reshape(picture.height(), -1)
-    colors = rows[:, : 3 * picture.width()].reshape(picture.height(), -1, 3)[:, 440:].astype(int)
-    spread = np.ptp(colors, axis=2)
-    brightness = colors.mean(axis=2)
-    is_gray = (spread < 4) & (brightness > 30) & (brightness < 225)
-    red, green, blue = np.moveaxis(colors, 2, 0)
-    is_skin = (red > 150) & (red - green > 20) & (green - blue > 10)
-    return np.count_nonzero(is_gray), np.count_nonzero(is_skin)
 
 
 @pytest.fixture

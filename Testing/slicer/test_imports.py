@@ -88,12 +88,11 @@ def test_the_start_of_slicer_imports_no_library_and_hardly_anything_of_ours(foun
     assert any(importer == "RASTrainer" for importer, *_more in found["at_start"])
 
 
-def test_opening_the_module_imports_neither_scipy_nor_parts_of_vtk(found):
+def test_opening_the_module_imports_no_library_and_nothing_that_only_a_button_or_process_needs(
+    found,
+):
     assert heavy(found["imported"], "scipy", "vtk", "vtkmodules") == []
     assert len(found["opened"]) > 100
-
-
-def test_opening_the_module_imports_nothing_that_only_a_button_or_a_process_needs(found):
     prefixes = tuple(f"rastrainer.{each}" for each in ONLY_WHEN_NEEDED)
     assert [name for name in found["opened"] if name.startswith(prefixes)] == []
 

@@ -42,8 +42,7 @@ def panel(host, make_record):
 
 def open_score(host, record):
     host.open()
-    for section in ("trainees", "score"):
-        host.find(f"{section}CollapsibleButton").collapsed = False
+    host.unfold("feedbackText")
     store_trial_on_colin(host, record, 3)
     host.press("createTraineeButton")
     return host
@@ -84,11 +83,14 @@ def test_feedback_and_replay_read_the_journal_in_another_process(panel, records,
     # A replay in the scene is not read again.
     panel.press("worstTouchButton")
     assert journals.pids() == pids
+    panel.wait_until(lambda: "clearance" in panel.text("replayText"), "it is described")
 
 
 def test_cancel_ends_the_process_that_reads_the_journal(panel, records, journals):
     choose_trial(panel)
     wait_for_feedback(panel)
+    panel.press("replayButton")
+    assert "only on the computer whose simulator recorded it" in panel.messages[-1].text
     endless_journal(records)
     with cancels(panel, "replayButton", journals.pids):
         panel.press("replayButton")

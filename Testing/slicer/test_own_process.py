@@ -2,9 +2,7 @@
 
 import logging
 import os
-import subprocess
 import sys
-import threading
 from pathlib import Path
 
 import numpy as np
@@ -13,17 +11,21 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.slicer.head.extraction import findHead
 from rastrainer.slicer.head.volume import HeadSettings
-from rastrainer.slicer.program.child_process import LOGIC, OwnProcess
+from rastrainer.slicer.program.child_process import OwnProcess
 from Testing.slicer.head.phantoms import phantom
 
 pytestmark = pytest.mark.usefixtures("own_processes")
 
 FIND_HEAD = "rastrainer.slicer.head.extraction:findHead"
 PYTHON = Path(sys.executable)
-REFUSES = """
+FAILS = """
+import os
 from rastrainer.errors import InputError
-def work(progress):
+def refuse(progress):
     raise InputError("“µ” cannot be used.")
+def end(progress):
+    print("Out of paper.", flush=True)
+    os._exit(1)
 """
 WHOSE = "import os\ndef work(progress):\n    return os.getpid()\n"
 
@@ -43,20 +45,15 @@ def test_a_head_found_in_a_separate_process_equals_one_found_in_this_process():
     assert received[-1] == ("Closing tunnels", 0.7)
 
 
-def test_unusable_input_is_refused_in_the_same_words(tmp_path, monkeypatch):
-    (tmp_path / "refusing.py").write_text(REFUSES, encoding="utf-8")
+def test_refused_input_is_reported_in_the_same_words_and_an_early_end_by_its_last_line(
+    tmp_path, monkeypatch
+):
+    (tmp_path / "failing.py").write_text(FAILS, encoding="utf-8")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     with pytest.raises(InputError, match=r"^“µ” cannot be used\.$"):
-        OwnProcess(PYTHON)("refusing:work", ignore)
-
-
-def test_a_process_that_ends_before_finishing_is_reported(tmp_path, monkeypatch):
-    (tmp_path / "failing.py").write_text(
-        "import os\ndef work(progress):\n    print('Out of paper.', flush=True)\n    os._exit(1)\n"
-    )
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+        OwnProcess(PYTHON)("failing:refuse", ignore)
     with pytest.raises(InputError, match=r"ended before it was done: Out of paper\."):
-        OwnProcess(PYTHON)("failing:work", ignore)
+        OwnProcess(PYTHON)("failing:end", ignore)
 
 
 def test_where_no_process_can_be_started_the_work_is_done_here(tmp_path, monkeypatch, caplog):
@@ -65,40 +62,3 @@ def test_where_no_process_can_be_started_the_work_is_done_here(tmp_path, monkeyp
     with caplog.at_level(logging.WARNING):
         assert OwnProcess(tmp_path / "nowhere")("only_here:work", ignore) == os.getpid()
     assert "cannot be started: " in caplog.text
-
-
-def test_canceled_work_ends(tmp_path, monkeypatch):
-    (tmp_path / "endless.py").write_text(
-        "import time\n"
-        "def work(path, progress):\n"
-        "    while True:\n"
-        "        progress('Waiting', 0.5)\n"
-        "        open(path, 'a').close()\n"
-        "        time.sleep(0.01)\n"
-    )
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    before = threading.enumerate()
-
-    def cancel(step, _share):
-        if step:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        OwnProcess(PYTHON)("endless:work", cancel, str(tmp_path / "touched"))
-    # The thread that looks after the end of the process ends with it.
-    begun = [thread for thread in threading.enumerate() if thread not in before]
-    for thread in begun:
-        thread.join(120.0)
-    assert not any(thread.is_alive() for thread in begun)
-
-
-def test_showing_a_head_imports_no_scipy_and_finding_it_neither_slicer_nor_qt():
-    program = (
-        "import sys; sys.modules['slicer'] = sys.modules['qt'] = None\n"
-        f"sys.path.insert(0, {str(LOGIC)!r})\n"
-        "import rastrainer.slicer.head.volume\n"
-        "import rastrainer.slicer.program.child_process\n"
-        "assert 'scipy' not in sys.modules\n"
-        "import rastrainer.slicer.head.head_draft"
-    )
-    subprocess.run([PYTHON, "-c", program], check=True)

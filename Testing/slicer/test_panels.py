@@ -25,17 +25,10 @@ from Testing.slicer.recorded_trial import (
     touches_on_colin,
     write_recorded_trial,
 )
+from Testing.slicer.simulator_double import connect_module
 
 PROTOCOL = asset_path("studies", "published-protocol.json")
-PAIRED = """
-import sys, threading
-said = "RASTrainer simulator serves"
-print(f"{said} views on http://127.0.0.1:18945, pairing code 012345")
-if "--lan" in sys.argv:
-    print(f"{said} the local network on https://192.0.2.7:18946; the browser warns", flush=True)
-threading.Event().wait()
-"""
-"""A simulator that only explains how a headset is paired."""
+PLANNED = {"reachable": True, "reason": ""}
 REPORTING = """
 import pathlib, sys
 pathlib.Path(sys.argv[-1], "report.html").write_text(" ".join(sys.argv[1:]))
@@ -67,25 +60,9 @@ def add_trial(panels, make_record):
     return add
 
 
-@pytest.fixture
-def trainee(panels, add_trial):
-    """The module with the trainee T-001 of one trial, who is chosen."""
-    add_trial(1)
-    choose_trainee(panels)
-    return panels
-
-
 def choose_trainee(host):
     host.press("createTraineeButton")
     host.choose("traineeComboBox", "T-001")
-
-
-@pytest.fixture
-def touched(panels):
-    """The scene of a trial; its touches, (15, 3) float, World, mm, which are not yet in it."""
-    panels.press("showScenarioButton")
-    panels.finish_work()
-    return touches_on_colin()
 
 
 def choose_study(host, path):
@@ -103,16 +80,14 @@ def use_program(host, folder, source):
     host.process_events()
 
 
-# Trainees
-
-
-def test_a_trainee_is_created_chosen_archived_and_restored(panels, study_path):
+def test_a_trainee_is_created_chosen_archived_and_restored_here_or_in_another_slicer(
+    panels, study_path
+):
     for name in ("archiveButton", "exportTraineeButton", "deleteTraineeButton"):
         with pytest.raises(AssertionError, match="Choose a trainee first"):
             panels.press(name)
     with pytest.raises(AssertionError, match="Connect to the simulator first"):
         panels.press("startTaskButton")
-    assert panels.find("pseudonymLineEdit").placeholderText == "T001"
     panels.press("createTraineeButton")
     assert panels.find("traineeComboBox").currentText == "T001"
     assert panels.find("pseudonymLineEdit").placeholderText == "T002"
@@ -123,13 +98,18 @@ def test_a_trainee_is_created_chosen_archived_and_restored(panels, study_path):
     assert (trainee.pseudonym, trainee.consent) == ("T001", True)
     assert panels.find("traineeComboBox").currentText == "T001 (archived)"
     panels.press("archiveButton")
-    with Study.open(study_path) as study:
-        assert len(study.trainees()) == 1
     panels.check("archivedCheckBox", False)
     assert panels.find("traineeComboBox").currentText == "T001"
     panels.type("pseudonymLineEdit", "T001")
     panels.press("createTraineeButton")
     assert "taken; choose another" in panels.messages[-1].text
+    # Another Slicer adds and deletes trainees.
+    with Study.open(study_path) as study:
+        study.create_trainee("Blue")
+        study.delete_trainee("T001")
+    combo = panels.find("traineeComboBox")
+    panels.wait_until(lambda: combo.count == 2 and combo.itemText(1) == "Blue", "the list shows it")
+    assert combo.currentText == "Choose a trainee"
 
 
 def test_a_study_locked_by_another_program_is_reported_and_shown_again_automatically(
@@ -138,10 +118,9 @@ def test_a_study_locked_by_another_program_is_reported_and_shown_again_automatic
     panels.press("createTraineeButton")
     other = sqlite3.connect(study_path, isolation_level=None)
     other.execute("BEGIN EXCLUSIVE")
-    panels.press("archiveButton")
-    assert "Another program has locked the study" in panels.messages[-1].text
-    panels.press("createTraineeButton")
-    assert "Another program has locked the study" in panels.messages[-1].text
+    for button in ("archiveButton", "createTraineeButton"):
+        panels.press(button)
+        assert "Another program has locked the study" in panels.messages.pop().text
     panels.choose("traineeComboBox", "Choose a trainee")
     assert "Another program has locked the study" in panels.text("traineeText")
     other.execute("ROLLBACK")
@@ -164,7 +143,6 @@ def test_history_is_shown_plotted_and_exported_a_file_is_replaced_once_confirmed
     chart = Role.LEARNING_CURVE.find(panels.scene)
     assert chart.GetNumberOfPlotSeriesNodes() == 2
     panels.press("calibrationButton")
-    assert Role.CALIBRATION.find(panels.scene) is not None
     assert "3 trials have no true target error" in panels.text("traineeText")
     panels.press("calibrationButton")
     panels.answer("Export the trainee", str(tmp_path / "trainee"))
@@ -176,9 +154,7 @@ def test_history_is_shown_plotted_and_exported_a_file_is_replaced_once_confirmed
         panels.answer("already exists", answer)
         panels.press("exportHistoryButton")
         assert ((tmp_path / "export.csv").read_text() == "mine") == (answer == "No")
-    panels.answer("Export the history", str(tmp_path / "EXPORT.CSV"))
-    panels.press("exportHistoryButton")
-    with (tmp_path / "EXPORT.CSV").open(newline="") as file:
+    with (tmp_path / "export.csv").open(newline="") as file:
         assert len(list(csv.DictReader(file))) == 3
 
 
@@ -214,14 +190,10 @@ def test_only_the_file_of_a_study_is_used_and_another_leaves_the_study_open(pane
     assert panels.find("studyPathLineEdit").enabled
 
 
-# Scenario
-
-
 def test_head_fiducials_and_robot_are_shown_and_another_model_can_be_the_head(panels):
     panels.choose("taskComboBox", "Task 2")
     panels.press("showScenarioButton")
     panels.finish_work()
-    assert panels.text("startTaskButton") == "Start Task 2"
     fixed = Role.FIXED_FIDUCIALS.find(panels.scene)
     assert fixed.GetName() == "Task 2 fiducials"
     panels.check("robotCheckBox")
@@ -240,12 +212,12 @@ def test_head_fiducials_and_robot_are_shown_and_another_model_can_be_the_head(pa
     panels.wait_until(lambda: not panels.find("robotCheckBox").checked, "the box follows")
 
 
-# Plan
-
-
 def test_a_plan_says_what_is_missing_until_it_can_be_sent_and_its_error_at_any_target(
-    panels, touched
+    panels, simulator
 ):
+    simulator.responder = lambda name, _arguments: PLANNED if name == "PlanTarget" else {}
+    panels.press("showScenarioButton")
+    panels.finish_work()
     with pytest.raises(AssertionError, match="Place a target or a trajectory"):
         panels.press("sendPlanButton")
     panels.press("placeTargetButton")
@@ -256,7 +228,7 @@ def test_a_plan_says_what_is_missing_until_it_can_be_sent_and_its_error_at_any_t
         ("Tumor", "Cyst"),
         np.array([[0.0, 0.0, 20.0], [60.0, 60.0, -60.0]]),
     )
-    put_touches(panels, touched)
+    put_touches(panels, touches_on_colin())
     panels.wait_until(lambda: "target x" in panels.text("planWorldText"), "the plan is mapped")
     assert panels.find("planTargetComboBox").currentText == "Cyst"
     at_cyst = panels.text("planTreText")
@@ -265,11 +237,16 @@ def test_a_plan_says_what_is_missing_until_it_can_be_sent_and_its_error_at_any_t
     assert panels.find("planTreText").toolTip == toolTip(INTERVAL_NOTE)
     with pytest.raises(AssertionError, match="Connect to the simulator first"):
         panels.press("sendPlanButton")
+    connect_module(panels, simulator)
+    panels.press("sendPlanButton")
+    panels.wait_until(lambda: "can carry it out" in panels.text("reachableText"), "the answer")
+    panels.idle_for(0.3)
+    assert "can carry it out" in panels.text("reachableText")
+    panels.choose("planTargetComboBox", "Cyst")
+    panels.wait_until(lambda: "show it again" in panels.text("reachableText"), "the hint")
 
 
 def test_targets_are_added_removed_and_restored(panels):
-    with pytest.raises(AssertionError, match="No point is placed"):
-        panels.press("removePlanPointButton")
     for place in ((10.0, 20.0, 0.0), (20.0, 10.0, 5.0)):
         panels.press("placeTargetButton")
         panels.place(*place)
@@ -281,11 +258,6 @@ def test_targets_are_added_removed_and_restored(panels):
     assert node.GetNthControlPointPosition(0) == (20.0, 10.0, 5.0)
     panels.press("undoPlanButton")
     assert node.GetNthControlPointPosition(0) == (10.0, 20.0, 0.0)
-    panels.press("undoPlanButton")
-    assert node.GetNumberOfControlPoints() == 1
-
-
-# Score
 
 
 def test_a_trial_is_scored_beside_the_reference_group_and_exported(
@@ -305,21 +277,19 @@ def test_a_trial_is_scored_beside_the_reference_group_and_exported(
     assert groups == {"own", "reference"}
     panels.choose("trialComboBox", "1: Task 1")
     assert panels.cells("motionTable") == [["Smoothness, SPARC", "−1.90"]]
-    panels.press("showTablesButton")
-    assert Role.SCORE.find(panels.scene) is not None
     panels.answer("Export all trials", str(tmp_path / "all.csv"))
     with Study.open(study_path) as study:
         study.change_trainee("T-001", consent=True)
     panels.press("exportScoresButton")
     assert len((tmp_path / "all.csv").read_text().splitlines()) == 3
-    # The consent was given elsewhere, which the module notices sooner or later.
-    panels.widget.logic.session.trainees.changed.emit()
-    assert "consent to research: 1." in panels.text("scoreMessageText")
 
 
 def test_the_report_is_written_by_the_simulator_and_opened(panels, study_path, tmp_path):
     panels.press("reportButton")
     assert "is not set up yet: in the section Simulator, press Set up" in panels.messages[-1].text
+    panels.find("programPathLineEdit").currentPath = "/nowhere/rastrainer"
+    panels.press("startSimulatorButton")
+    assert "There is no program" in panels.messages[-1].text
     use_program(panels, tmp_path, REPORTING)
     panels.answer("Folder for the report", str(tmp_path))
     panels.press("reportButton")
@@ -329,27 +299,12 @@ def test_the_report_is_written_by_the_simulator_and_opened(panels, study_path, t
     assert panels.messages[-1].text == page.as_uri()
 
 
-def await_feedback(host):
-    host.wait_until(lambda: host.text("feedbackText").startswith("Score "), "feedback is shown")
-
-
-def test_a_trial_gets_feedback_and_is_replayed(trainee):
-    await_feedback(trainee)
-    assert "This is your first trial of this task" in trainee.text("feedbackText")
-    trainee.press("replayButton")
-    assert "only on the computer whose simulator recorded it" in trainee.messages[-1].text
+def test_a_canceled_replay_or_one_whose_scene_is_closed_leaves_nothing_behind(panels, add_trial):
+    trainee = panels
+    add_trial(1)
+    choose_trainee(panels)
     write_recorded_trial(Path.home() / "RASTrainer" / "trials", str(uuid.UUID(int=1)), 16.0)
-    trainee.press("replayButton")
-    assert trainee.scene.GetFirstNodeByName("Replay of T-001, task-1").GetNumberOfItems() > 150
-    trainee.wait_until(lambda: "clearance" in trainee.text("replayText"), "it is described")
-    trainee.press("worstTouchButton")
-    tool = trainee.scene.GetFirstNodeByName("T-001, task-1: tool")
-    assert tool.GetTransformNodeID() is not None
-
-
-def test_a_canceled_replay_or_one_whose_scene_is_closed_leaves_nothing_behind(trainee):
-    write_recorded_trial(Path.home() / "RASTrainer" / "trials", str(uuid.UUID(int=1)), 16.0)
-    await_feedback(trainee)
+    trainee.wait_until(lambda: trainee.text("feedbackText").startswith("Score "), "feedback")
     for meddle in (lambda: trainee.press("replayButton"), trainee.clear_scene):
         done = []
 
@@ -410,31 +365,3 @@ def test_deleting_a_trainee_leaves_no_trace_in_database_journals_and_later_expor
 def bytes_below(*folders):
     files = [path for folder in folders for path in folder.rglob("*") if path.is_file()]
     return b"".join(path.read_bytes() for path in files)
-
-
-# Simulator
-
-
-def test_the_simulator_must_be_set_up_before_it_is_started(panels, tmp_path):
-    assert "press Set up, once" in panels.text("setupText")
-    assert "not set up yet" in panels.text("programText")
-    panels.answer("not set up on this computer yet", "Cancel")
-    panels.press("startSimulatorButton")
-    assert "not set up yet" in panels.text("programText")
-    panels.find("programPathLineEdit").currentPath = "/nowhere/rastrainer"
-    panels.process_events()
-    panels.press("startSimulatorButton")
-    assert "There is no program" in panels.messages[-1].text
-    panels.find("wheelsPathLineEdit").currentPath = str(tmp_path)
-    panels.press("setupButton")
-    assert "There are no wheels" in panels.messages[-1].text
-
-
-def test_how_to_pair_a_headset_is_shown_while_the_simulator_runs(panels, tmp_path):
-    use_program(panels, tmp_path, PAIRED)
-    panels.check("networkCheckBox")
-    panels.press("startSimulatorButton")
-    wanted = "open http://127.0.0.1:18945 or https://192.0.2.7:18946 and enter the code 012345."
-    panels.wait_until(lambda: wanted in panels.text("pairingText"), "the addresses are shown")
-    panels.press("stopSimulatorButton")
-    assert panels.text("pairingText") == ""

@@ -25,39 +25,20 @@ TEXT = pack(Message("Note", String("from another program")))
 POSE = pack(Message("Tool", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0))))
 
 
-class Clock:
-    """Stands still, however slow a busy machine is, and continues when a test lets it."""
-
-    def __init__(self):
-        self.now = 0.0
-
-    def __call__(self):
-        return self.now
-
-
 def ask(host, port):
-    probe = Probe(host, port, Clock())
+    # Its clock stands still, however slow a busy machine is.
+    probe = Probe(host, port, lambda: 0.0)
     found = []
     wait_until(lambda: found.append(probe.process()) or found[-1], lambda: None)
     return found[-1]
 
 
-def probe_until_timeout(behavior, heard):
-    """Ask a stranger, and let the time for an answer pass once so many bytes have come."""
-    with stranger(behavior) as port:
-        clock = Clock()
-        probe = Probe("127.0.0.1", port, clock)
-        wait_until(lambda: probe._isAsked and probe._recognition._size >= heard, probe.process)
-        clock.now = ANSWER_S + 1.0
-        return probe.process()
-
-
-@pytest.mark.parametrize("version", [PROTOCOL_VERSION, PROTOCOL_VERSION + 1])
-def test_a_simulator_is_recognized_with_its_version(version):
-    with SimulatorDouble(version=version) as simulator:
+def test_a_simulator_is_recognized_with_its_version_and_an_unused_port_reported():
+    with SimulatorDouble(version=PROTOCOL_VERSION + 1) as simulator:
         found = ask("localhost", simulator.port)
-        assert found == ProbeResult(Peer.SIMULATOR, "127.0.0.1", version)
+        assert found == ProbeResult(Peer.SIMULATOR, "127.0.0.1", PROTOCOL_VERSION + 1)
         assert simulator.commands == []
+    assert ask("127.0.0.1", free_port()) == ProbeResult(Peer.UNREACHABLE, "127.0.0.1")
 
 
 @pytest.mark.parametrize(
@@ -69,9 +50,7 @@ def test_a_simulator_is_recognized_with_its_version(version):
         (replies_with(b""), Peer.SILENT),
         (replies_with(TEXT), Peer.OTHER_OPENIGTLINK),
         (floods(POSE), Peer.OTHER_OPENIGTLINK),
-        (floods(b"\0\2" + 56 * b"A"), Peer.OTHER_PROGRAM),
         (floods(b"\0\2STRING" + 56 * b"\xff"), Peer.OTHER_PROGRAM),
-        (trickles(b"endless"), Peer.OTHER_PROGRAM),
     ],
 )
 def test_a_peer_other_than_a_simulator_is_recognized_by_what_it_sends(behavior, peer):
@@ -85,38 +64,38 @@ def test_a_peer_other_than_a_simulator_is_recognized_by_what_it_sends(behavior, 
         (is_silent, 0, Peer.SILENT),
         (says(TEXT), len(TEXT), Peer.OTHER_OPENIGTLINK),
         (trickles(b"\0\2STRING"), 1, Peer.OTHER_PROGRAM),
-        (says(b"HTT"), 1, Peer.OTHER_PROGRAM),
     ],
 )
 def test_the_probe_does_not_wait_forever_for_a_silent_network(behavior, heard, peer):
-    assert probe_until_timeout(behavior, heard).peer is peer
-
-
-def test_an_unused_port_is_reported():
-    assert ask("127.0.0.1", free_port()) == ProbeResult(Peer.UNREACHABLE, "127.0.0.1")
+    now = [0.0]
+    with stranger(behavior) as port:
+        probe = Probe("127.0.0.1", port, lambda: now[-1])
+        wait_until(lambda: probe._isAsked and probe._recognition._size >= heard, probe.process)
+        now.append(ANSWER_S + 1.0)
+        assert probe.process().peer is peer
 
 
 def test_a_name_lookup_that_takes_too_long_is_given_up(monkeypatch):
-    answers, clock = threading.Event(), Clock()
+    answers, now = threading.Event(), [0.0]
 
     def look_up(*_):
         answers.wait(60)
         raise socket.gaierror
 
     monkeypatch.setattr("rastrainer.slicer.link.probe.socket.getaddrinfo", look_up)
-    probe = Probe("a-slow-computer", 18944, clock)
+    probe = Probe("a-slow-computer", 18944, lambda: now[-1])
     assert probe.process() is None
-    clock.now = LOOKUP_S + 1.0
+    now.append(LOOKUP_S + 1.0)
     assert probe.process() == ProbeResult(Peer.UNKNOWN_HOST)
     answers.set()
 
 
-@pytest.mark.parametrize("host", ["nowhere.invalid", "a" * 300, "b..c", "1.2.3.4.5"])
+@pytest.mark.parametrize("host", ["nowhere.invalid", "a" * 300])
 def test_a_host_without_an_address_is_reported(host):
     assert ask(host, 18944) == ProbeResult(Peer.UNKNOWN_HOST)
 
 
-@pytest.mark.parametrize("host", ["::1", "[::1]", "fe80::1%eth0", "an-ipv6-computer"])
+@pytest.mark.parametrize("host", ["[::1]", "an-ipv6-computer"])
 def test_an_address_of_ipv6_is_named_as_such(host, monkeypatch):
     def look_up(_host, _port, family, _kind):
         if family is not socket.AF_INET6:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import slicer
 import vtk
+from slicer.util import arrayFromVTKMatrix, vtkMatrixFromArray
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
 from rastrainer import transforms
@@ -72,20 +73,8 @@ class SlicerLine:
         self.start, self.end = (self.node.GetNthControlPointPositionWorld(row) for row in range(2))
 
     @property
-    def length(self):
-        return self.node.GetMeasurement("length").GetValue()
-
-    @property
     def direction(self):
-        return minus(self.end, self.start)
-
-
-def minus(a, b):
-    return [one - other for one, other in zip(a, b, strict=True)]
-
-
-def distance(a, b):
-    return math.sqrt(vtk.vtkMath.Distance2BetweenPoints(a, b))
+        return np.subtract(self.end, self.start)
 
 
 def off_line(point, line):
@@ -97,16 +86,10 @@ def angle(a, b):
     return vtk.vtkMath.DegreesFromRadians(vtk.vtkMath.AngleBetweenVectors(a, b))
 
 
-def along(vector, line):
-    direction = list(line.direction)
+def along(start, end, line):
+    direction = line.direction
     vtk.vtkMath.Normalize(direction)
-    return vtk.vtkMath.Dot(vector, direction)
-
-
-def vtk_matrix(values):
-    matrix = vtk.vtkMatrix4x4()
-    matrix.DeepCopy([float(value) for value in np.ravel(values)])
-    return matrix
+    return vtk.vtkMath.Dot(np.subtract(end, start), direction)
 
 
 def vtk_points(positions=()):
@@ -175,7 +158,7 @@ def _by_hand(random, planned, to_world):
     )
 
 
-@pytest.mark.parametrize("procedures", [40, pytest.param(1000, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("procedures", [15, pytest.param(1000, marks=pytest.mark.soak)])
 def test_vtk_and_slicer_compute_the_same_errors_from_the_exported_files(
     meshes, skull, tmp_path, monkeypatch, procedures
 ):
@@ -197,7 +180,7 @@ def test_vtk_and_slicer_compute_the_same_errors_from_the_exported_files(
             compare(errors, **lines)
             compare_registration(exported, fiducials, truth, lines)
             compare_drill(errors, instrument, lines["placed"], skull)
-            targets.append(distance(lines["placed"].end, lines["planned"].end))
+            targets.append(math.dist(lines["placed"].end, lines["planned"].end))
             count += 1
         rms = math.sqrt(sum(target**2 for target in targets) / len(targets))
         assert ours.target_point_error_rms_mm == pytest.approx(rms, abs=EQUAL)
@@ -210,13 +193,13 @@ def compare(errors, planned, shown, placed):
     for name, expected in {
         "entry_point_error.mm": off_line(planned.start, placed),
         "entry_point_error.by_hand_mm": off_line(shown.start, placed),
-        "target_point_error.mm": distance(tip, planned.end),
-        "target_point_error.by_registration_mm": distance(shown.end, planned.end),
-        "target_point_error.by_hand_mm": distance(tip, shown.end),
+        "target_point_error.mm": math.dist(tip, planned.end),
+        "target_point_error.by_registration_mm": math.dist(shown.end, planned.end),
+        "target_point_error.by_hand_mm": math.dist(tip, shown.end),
         "radial_error.mm": off_line(tip, planned),
-        "depth_error_mm": along(minus(tip, planned.end), planned),
-        "depth_error_by_registration_mm": along(minus(shown.end, planned.end), planned),
-        "depth_error_by_hand_mm": along(minus(tip, shown.end), planned),
+        "depth_error_mm": along(planned.end, tip, planned),
+        "depth_error_by_registration_mm": along(planned.end, shown.end, planned),
+        "depth_error_by_hand_mm": along(shown.end, tip, planned),
         "angular_deviation_deg": angle(directions[0], directions[2]),
         "angular_deviation_by_registration_deg": angle(*directions[:2]),
         "angular_deviation_by_hand_deg": angle(*directions[1:]),
@@ -229,11 +212,10 @@ def compare_registration(exported, fiducials, truth, lines):
     touches = [point["positionMm"] for point in exported["points"]]
     matrix = landmark_matrix(touches, fiducials)
     used = exported["procedure"]["attempts"][-1]["registration"]["matrix"]
-    again = [matrix.GetElement(row, column) for row in range(4) for column in range(4)]
-    assert again == pytest.approx(used, abs=EQUAL)
+    assert arrayFromVTKMatrix(matrix).ravel() == pytest.approx(used, abs=EQUAL)
     to_world, to_ras = vtk.vtkMatrix4x4(), vtk.vtkMatrix4x4()
     vtk.vtkMatrix4x4.Invert(matrix, to_world)
-    vtk.vtkMatrix4x4.Invert(vtk_matrix(truth), to_ras)
+    vtk.vtkMatrix4x4.Invert(vtkMatrixFromArray(truth), to_ras)
     for planned, shown in (
         (lines["planned"].start, lines["shown"].start),
         (lines["planned"].end, lines["shown"].end),
@@ -244,11 +226,11 @@ def compare_registration(exported, fiducials, truth, lines):
 
 def compare_drill(errors, instrument, placed, skull):
     """Find both tables along the instrument by VTK."""
-    far = [a + 3.0 * b for a, b in zip(placed.start, placed.direction, strict=True)]
+    far = placed.start + 3.0 * placed.direction
     points = vtk_points()
     skull.IntersectWithLine(placed.start, far, points, None)
     crossings = sorted(
-        distance(placed.start, points.GetPoint(row)) for row in range(points.GetNumberOfPoints())
+        math.dist(placed.start, points.GetPoint(row)) for row in range(points.GetNumberOfPoints())
     )
     outer, inner = crossings[:2]
     assert errors.outer_table_mm == pytest.approx(outer, abs=EQUAL)
@@ -257,7 +239,7 @@ def compare_drill(errors, instrument, placed, skull):
     assert errors.plunge_mm == pytest.approx(plunge, abs=EQUAL)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_the_distance_kept_to_a_structure_is_that_of_vtk(meshes, seed):
     """The least of VTK's distances along an instrument that passes or hits the structure."""
     to_vessel = vtk.vtkImplicitPolyDataDistance()
@@ -277,11 +259,3 @@ def test_the_distance_kept_to_a_structure_is_that_of_vtk(meshes, seed):
     radius = procedure.trajectories[0].diameter_mm / 2
     assert errors.kept_mm["Vessel"] + radius == pytest.approx(max(0.0, least), abs=1e-3)
     assert ours.hits == ((("Line", "Vessel"),) if least <= radius else ())
-
-
-def test_before_the_truth_is_known_only_the_plan_is_exported(tmp_path):
-    _procedure, _fiducials, stored = carried_out(0)
-    written = write_slicer_files(replace(stored, truth=None), tmp_path)
-    lines = [path.name for path in written if path.name.startswith("trajectory")]
-    assert lines == [f"trajectory-{row + 1}-planned.mrk.json" for row in range(len(lines))]
-    assert len(lines) == len(stored.record.procedure.instruments)

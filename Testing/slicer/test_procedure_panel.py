@@ -76,7 +76,6 @@ def test_method_and_procedure_are_chosen_beside_the_task_as_far_as_the_head_allo
     traced, touched = sent(simulator, "StartTask")
     assert (traced["method"], traced["procedure"]) == ("surface", "seeg")
     assert "method" not in touched
-    assert host.text("procedureStateText").startswith("No trial with a procedure is open")
     session = host.widget.logic.session
     head = replace(session.scenarios.find("colin27"), landmarks=())
     host.choose("methodComboBox", "Landmarks of the face")
@@ -117,20 +116,6 @@ def test_each_phase_offers_its_steps_and_says_what_comes_next(surgery):
     moved = [each["velocityMmS"] * each["durationS"] for each in sent(simulator, "Feed")]
     assert moved == [1.0, -1.0, 1.0, -1.0]
     assert "while the registration is verified" in host.find("acceptButton").toolTip
-
-
-def test_touches_that_cannot_be_registered_can_only_be_repeated(surgery):
-    host, simulator = surgery
-    simulator.responder = lambda name, _arguments: f"{name} is refused."
-    tell(host, simulator, "verifying", registrationInUse=False)
-    host.wait_until(
-        lambda: host.find("registerAgainButton").enabled, "the points can be touched again"
-    )
-    assert not host.find("acceptButton").enabled
-    assert "could not be registered: have all points" in host.text("procedureInstructionText")
-    assert "were not registered: " in host.text("procedureMessageText")
-    host.press("registerAgainButton")
-    host.wait_until(lambda: sent(simulator, "RegisterAgain"), "they are touched again")
 
 
 def test_the_errors_are_shown_with_the_shares_of_registration_and_hand(fresh_module):

@@ -11,16 +11,12 @@ from rastrainer.slicer.scene.nodes import Role, setPoints
 from rastrainer.slicer.scene.trial_replay import findReplay
 from Testing.slicer.recorded_trial import store_trial_on_colin, write_recorded_trial
 
-SECTIONS = ("trainees", "scenario", "registration", "plan", "score")
-
 
 @pytest.fixture
 def at_work(host, make_record):
     """The module with a recorded trial in the study, and its touches in the scene."""
     host.open()
-    for section in SECTIONS:
-        host.find(f"{section}CollapsibleButton").collapsed = False
-    host.process_events()
+    host.unfold("residualsTable")
     record = make_record(str(uuid.UUID(int=1)), trainee="T001", scenario="colin27")
     touched = store_trial_on_colin(host, record, 5)
     write_recorded_trial(Path.home() / "RASTrainer" / "trials", record["trialId"], 4.0)
@@ -42,7 +38,6 @@ def test_an_error_of_input_is_one_line_of_the_log_and_a_mistake_of_ours_its_trac
     host, monkeypatch
 ):
     host.open()
-    host.unfold("pseudonymLineEdit")
     for _time in range(2):
         host.type("pseudonymLineEdit", "T001")
         host.press("createTraineeButton")

@@ -1,12 +1,8 @@
 """The robot is in the 3D view and follows the poses that the link brings."""
 
-import functools
-import shutil
-
 import numpy as np
 import pytest
 import slicer
-import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.scene.nodes import Role
@@ -22,27 +18,23 @@ from rastrainer_simulator.robot.model import load_robot
 ROBOT = asset_path("robots", "iiwa7")
 
 
-@functools.cache
-def links():
-    return readLinkMeshes(ROBOT)
-
-
 def bounds(node):
     values = [0.0] * 6
     node.GetRASBounds(values)
     return np.array(values)
 
 
+@pytest.fixture(scope="module")
+def links():
+    return readLinkMeshes(ROBOT)
+
+
 @pytest.fixture
-def robot(scene):
-    add_links(scene)
-    return [Role.LINKS[number].find(scene) for number in range(8)]
-
-
-def add_links(scene):
+def robot(scene, links):
     for number in missingLinks(scene):
-        addLink(scene, number, links()[number])
+        addLink(scene, number, links[number])
     followPlacement(scene)
+    return [Role.LINKS[number].find(scene) for number in range(8)]
 
 
 def test_each_link_is_one_colored_model_that_is_hidden_and_not_saved_with_the_scene(scene, robot):
@@ -56,21 +48,6 @@ def test_each_link_is_one_colored_model_that_is_hidden_and_not_saved_with_the_sc
     assert missingLinks(scene) == []
     setRobotVisible(scene, False)
     assert not any(node.GetDisplayVisibility() for node in robot)
-
-
-def test_a_link_comes_complete_so_that_no_view_draws_it_twice(scene):
-    seen = []
-
-    @vtk.calldata_type(vtk.VTK_OBJECT)
-    def watch(_scene, _event, node):
-        if node.IsA("vtkMRMLModelNode"):
-            seen.append((node.GetName(), node.GetDisplayNode().GetVisibility()))
-            node.AddObserver(vtk.vtkCommand.ModifiedEvent, lambda *_event: seen.append("changed"))
-            node.AddObserver(node.PolyDataModifiedEvent, lambda *_event: seen.append("changed"))
-
-    scene.AddObserver(scene.NodeAddedEvent, watch)
-    addLink(scene, 3, links()[3])
-    assert seen == [("Robot link 3", 1)]
 
 
 def test_the_robot_moves_with_the_poses_of_its_links(scene, robot):
@@ -103,34 +80,16 @@ def test_the_robot_is_where_its_touches_are_shown(scene, robot, scenario):
     np.testing.assert_allclose(bounds(robot[0]), in_world)
 
 
-def test_deleted_parts_are_recreated_when_the_robot_is_shown_again(scene, robot):
-    scene.RemoveNode(robot[3])
-    scene.RemoveNode(scene.GetFirstNode("Link5ToWorld", "vtkMRMLLinearTransformNode"))
-    followPlacement(scene)
-    add_links(scene)
-    assert Role.LINKS[3].find(scene).GetParentTransformNode().GetName() == "Link3ToWorld"
-    assert Role.LINKS[5].find(scene).GetParentTransformNode().GetName() == "Link5ToWorld"
-
-
-def test_a_folder_without_a_robot_is_reported(tmp_path):
+def test_a_missing_or_malformed_robot_is_reported(tmp_path):
     with pytest.raises(InputError, match="There is no file"):
         readLinkMeshes(tmp_path)
-    shutil.copy(ROBOT / "iiwa7.urdf", tmp_path)
-    with pytest.raises(InputError, match=r"mesh .*stl is missing"):
-        readLinkMeshes(tmp_path)
-
-
-@pytest.mark.parametrize(
-    ("before", "after", "problem"),
-    [
-        pytest.param("<child ", "<offspring ", "<child> with link", id="joint-without-child"),
-        pytest.param("rgba=", "rgb=", "<color> with rgba", id="color-without-values"),
-        pytest.param("</robot>", "", "cannot be used", id="cut-short"),
-    ],
-)
-def test_a_malformed_urdf_is_refused_with_a_message(tmp_path, before, after, problem):
     text = (ROBOT / "iiwa7.urdf").read_text(encoding="utf-8")
-    assert before in text
-    (tmp_path / "iiwa7.urdf").write_text(text.replace(before, after), encoding="utf-8")
-    with pytest.raises(InputError, match=problem):
-        readLinkMeshes(tmp_path)
+    for before, after, problem in (
+        ("", "", r"mesh .*stl is missing"),
+        ("<child ", "<offspring ", "<child> with link"),
+        ("rgba=", "rgb=", "<color> with rgba"),
+        ("</robot>", "", "cannot be used"),
+    ):
+        (tmp_path / "iiwa7.urdf").write_text(text.replace(before, after), encoding="utf-8")
+        with pytest.raises(InputError, match=problem):
+            readLinkMeshes(tmp_path)

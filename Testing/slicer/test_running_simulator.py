@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+from unittest.mock import Mock
 
 import pytest
 
@@ -28,19 +29,6 @@ records.announce("0.0.0.0", 18999, "http://127.0.0.1:18945")
 print("ready", flush=True)
 time.sleep(600)
 """
-
-
-class Connections:
-    """Replaces the link: records where it was to connect."""
-
-    def __init__(self):
-        self.made = []
-
-    def connectTo(self, host, port):  # noqa: N802 (its name in Slicer)
-        self.made.append((host, port))
-
-    def disconnect(self):
-        self.made.append(None)
 
 
 @pytest.fixture
@@ -73,14 +61,7 @@ def end_group(process):
 
 @pytest.fixture
 def running(tmp_path):
-    return RunningSimulator(tmp_path, Connections())
-
-
-def test_no_simulator_is_found_where_none_is_recording(running):
-    assert not running.look()
-    assert (running.sentence, running.canConnect, running.canEnd) == ("", False, False)
-    with pytest.raises(InputError, match="no longer a simulator"):
-        running.connect()
+    return RunningSimulator(tmp_path, Mock())
 
 
 @pytest.mark.parametrize("words", [(), ("stubborn",)])
@@ -88,17 +69,20 @@ def test_a_leftover_simulator_is_found_connected_to_and_ended_with_its_window(
     left_behind, running, monkeypatch, words
 ):
     monkeypatch.setattr(simulator_logic, "KILL_AFTER_S", 0.2)
+    assert not running.look()
+    with pytest.raises(InputError, match="no longer a simulator"):
+        running.connect()
     process = left_behind(*words)
     assert running.look()
     assert (running.holder.pid, running.holder.started_by) == (process.pid, "Slicer")
     assert running.sentence.startswith("A simulator that was not started from here is running")
     assert " since 20" in running.sentence
     running.connect()
-    assert running._link.made == [("127.0.0.1", 18999)]
+    running._link.connectTo.assert_called_once_with("127.0.0.1", 18999)
     running.end()
     assert running.isEnding
     assert running.sentence == "The simulator that was already running is ending."
-    assert running._link.made[-1] is None
+    running._link.disconnect.assert_called_once_with()
     wait_until(lambda: running.holder is None, running.process, LONG_S)
     # The window holds the other end of this pipe.
     assert process.stdout.read() == b""

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import vtk
 
 from rastrainer.head.mesh import write_head_mesh
 from rastrainer.scenario.points import PlannedTarget, PlannedTrajectory
@@ -31,7 +30,9 @@ def planned(scenario):
     )
 
 
-def test_all_targets_and_the_trajectory_are_shown_the_scenarios_own_first(scene, planned):
+def test_targets_trajectory_and_skull_are_shown_and_go_if_the_next_scenario_lacks_them(
+    scene, planned, scenario
+):
     show_whole(scene, planned)
     targets = Role.TARGET.find(scene)
     assert labelsOf(targets) == ("center", "Cyst")
@@ -39,17 +40,9 @@ def test_all_targets_and_the_trajectory_are_shown_the_scenarios_own_first(scene,
     line = Role.TRAJECTORY.find(scene)
     assert (line.GetName(), labelsOf(line)) == ("Biopsy", ("Entry", "Target"))
     np.testing.assert_allclose(worldPoints(line), [[0, 0, 90], [1, 2, 3]])
-    assert targets.GetLocked()
-    assert line.GetLocked()
     for role, radius in ((Role.HEAD_MODEL, 90.0), (Role.SKULL, 80.0)):
         bounds = role.find(scene).GetPolyData().GetBounds()
         np.testing.assert_allclose(bounds, [-radius, radius] * 3, atol=1.0)
-
-
-def test_the_skull_is_visible_through_the_skin_and_goes_with_all_that_the_next_scenario_lacks(
-    scene, planned, scenario
-):
-    show_whole(scene, planned)
     skull = Role.SKULL.find(scene)
     assert skull.GetName() == "Skull (approximation)"
     assert Role.HEAD_MODEL.find(scene).GetDisplayNode().GetOpacity() < 1.0
@@ -63,40 +56,13 @@ def test_the_skull_is_visible_through_the_skin_and_goes_with_all_that_the_next_s
     assert Role.HEAD_MODEL.find(scene).GetDisplayNode().GetOpacity() == 1.0
 
 
-def test_a_surface_is_shown_in_its_final_look_so_that_no_view_draws_it_again(scene, planned):
-    looks = []
-
-    def note(display, _event):
-        if display.GetInputPolyData() is not None:
-            thickness = display.GetSliceIntersectionThickness()
-            looks.append((display.GetID(), display.GetOpacity(), thickness, display.GetColor()))
-
-    @vtk.calldata_type(vtk.VTK_OBJECT)
-    def watch(_scene, _event, node):
-        if node.IsA("vtkMRMLModelDisplayNode"):
-            node.AddObserver(vtk.vtkCommand.ModifiedEvent, note)
-
-    tag = scene.AddObserver(scene.NodeAddedEvent, watch)
-    show_whole(scene, planned)
-    scene.RemoveObserver(tag)
-    head, skull = (role.find(scene) for role in (Role.HEAD_MODEL, Role.SKULL))
-    assert {look[0] for look in looks} == {head.GetDisplayNodeID(), skull.GetDisplayNodeID()}
-    assert len(set(looks)) == 2
-    assert head.GetDisplayNode().GetVisibility2D()
-
-
-def overwrite_mesh(path, mesh):
-    """Replace a mesh by another, a second later by the file's time."""
-    later = path.stat().st_mtime + 1.0
-    write_head_mesh(path, mesh)
-    os.utime(path, (later, later))
-
-
 def test_a_scenario_rebuilt_under_its_name_is_shown_again(scene, planned):
     show_whole(scene, planned)
-    showTask(scene, planned, "task-1")
-    overwrite_mesh(planned.head, ball_head(70.0))
-    overwrite_mesh(planned.skull.file, ball_head(60.0))
+    showTask(scene, planned, "task-1").SetName("my points")
+    for path, radius in ((planned.head, 70.0), (planned.skull.file, 60.0)):
+        later = path.stat().st_mtime + 1.0
+        write_head_mesh(path, ball_head(radius))
+        os.utime(path, (later, later))
     task = planned.task("task-1")
     moved = replace(task, fiducials=task.fiducials * 70.0 / 90.0)
     rebuilt = replace(planned, tasks=(moved,))
@@ -106,6 +72,9 @@ def test_a_scenario_rebuilt_under_its_name_is_shown_again(scene, planned):
         bounds = role.find(scene).GetPolyData().GetBounds()
         np.testing.assert_allclose(bounds, [-radius, radius] * 3, atol=1.0)
     np.testing.assert_allclose(worldPoints(node), moved.fiducials)
+    assert labelsOf(node) == tuple(str(number) for number in range(1, 16))
+    assert node.GetLocked()
+    assert len(Role.FIXED_FIDUCIALS.all(scene)) == 1
 
 
 def test_a_shown_mesh_is_not_read_again_and_a_missing_one_is_reported(scene, planned, monkeypatch):
@@ -119,13 +88,3 @@ def test_a_shown_mesh_is_not_read_again_and_a_missing_one_is_reported(scene, pla
     (problem,) = show_whole(scene, planned)
     assert problem.startswith("No head is shown: The mesh ")
     assert Role.HEAD_MODEL.find(scene) is None
-
-
-def test_the_fiducials_of_a_task_are_numbered_and_locked_and_found_though_renamed(scene, scenario):
-    node = showTask(scene, scenario, "task-2")
-    assert node.GetName() == "Task 2 fiducials"
-    assert labelsOf(node) == tuple(str(number) for number in range(1, 16))
-    np.testing.assert_allclose(worldPoints(node), scenario.task("task-2").fiducials)
-    assert node.GetLocked()
-    node.SetName("my points")
-    assert showTask(scene, scenario, "task-2") is node

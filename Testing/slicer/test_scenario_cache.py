@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.scenario.library import list_folder, user_library
+from rastrainer.scenario.library import user_library
 from rastrainer.scenario.writer import new_folder, write_scenario
 from rastrainer.sections.scenario_files import ScenarioCache
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
@@ -34,35 +34,9 @@ def test_a_rebuilt_scenario_is_read_again_and_a_removed_one_reported(tmp_path):
         cache.find("ball")
 
 
-def test_listing_reads_only_the_scenarios_whose_files_have_changed(tmp_path, monkeypatch):
-    read = []
-
-    def watched(folder):
-        read.append(folder.name)
-        return list_folder(folder)
-
-    monkeypatch.setattr("rastrainer.sections.scenario_files.list_folder", watched)
-    for name in ("ball", "egg"):
-        build(tmp_path / name, name.title())
-    cache = ScenarioCache(tmp_path)
-    cache.listed()
-    assert sorted(read) == ["ball", "egg"]
-    read.clear()
-    (tmp_path / "egg" / "head.ply").unlink()
-    cache.listed()
-    assert read == ["egg"]
-
-
-def test_for_a_title_in_use_a_free_one_is_suggested(tmp_path):
-    for name in ("ball", "ball-2"):
-        build(tmp_path / name, "Ball")
-        text = (tmp_path / name / "scenario.json").read_text()
-        (tmp_path / name / "scenario.json").write_text(text.replace('"ball"', f'"{name}"'))
-    with pytest.raises(InputError, match=r"another title, such as Ball 3\.$"):
-        ScenarioCache(tmp_path).newName("Ball")
-
-
-def test_a_users_own_scenario_may_be_moved_away_to_make_it_again(tmp_path, monkeypatch):
+def test_for_a_title_in_use_a_free_one_is_suggested_or_the_users_own_scenario_moved_away(
+    tmp_path, monkeypatch
+):
     monkeypatch.setenv("HOME", str(tmp_path))
     mine = user_library()
     build(mine / "ball", "Ball")

@@ -45,19 +45,3 @@ def test_a_locked_study_is_checked_later(logic, study_place):
     other.close()
     logic.wait()
     assert logic.hasChangedElsewhere()
-
-
-def test_the_list_shows_a_trainee_added_by_another_slicer(host):
-    host.open()
-    path = host.find("studyPathLineEdit").currentPath
-    host.press("createTraineeButton")
-    with Study.open(path) as other:
-        other.create_trainee("Blue")
-    combo = host.find("traineeComboBox")
-    host.wait_until(
-        lambda: "Blue" in [combo.itemText(row) for row in range(combo.count)], "the list shows it"
-    )
-    assert combo.currentText == "T001"
-    with Study.open(path) as other:
-        other.delete_trainee("T001")
-    host.wait_until(lambda: combo.currentText == "Choose a trainee", "the deleted trainee is gone")

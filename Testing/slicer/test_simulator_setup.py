@@ -10,7 +10,6 @@ import pytest
 from rastrainer import __version__
 from rastrainer.errors import InputError
 from rastrainer.slicer.program.simulator_package import (
-    LOCK,
     WHEEL,
     SimulatorPackage,
     pythonSlicer,
@@ -20,7 +19,6 @@ from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from Testing.slicer.made_up_package import (
     PackageIndex,
     lock_entry,
-    write_checkout,
     write_package,
     write_wheel,
 )
@@ -50,15 +48,11 @@ if __name__ == "__main__":
 """
 
 
-def write_bolt(folder):
-    """Write a third-party wheel into a folder of wheels."""
-    return write_wheel(folder / "wheels", "bolt", "1.0", {"bolt.py": "SIZE = 8\n"})
-
-
-def write_module(folder, bolt):
-    """Write a simulator that only says that it is ready, and needs a bolt."""
+def write_module(folder):
+    """Write a simulator that only says that it is ready, and needs a bolt; return both."""
+    bolt = write_wheel(folder / "wheels", "bolt", "1.0", {"bolt.py": "SIZE = 8\n"})
     elsewhere = lock_entry(bolt, "sys_platform == 'elsewhere'").replace("bolt", "nut")
-    return write_package(folder / "module", CLI, [lock_entry(bolt), elsewhere])
+    return write_package(folder / "module", CLI, [lock_entry(bolt), elsewhere]), bolt
 
 
 def setup_in(folder, package):
@@ -66,21 +60,26 @@ def setup_in(folder, package):
 
 
 @pytest.fixture
-def bolt(tmp_path):
-    return write_bolt(tmp_path)
+def module(tmp_path):
+    return write_module(tmp_path)
 
 
 @pytest.fixture
-def setup(tmp_path, bolt):
-    return setup_in(tmp_path, write_module(tmp_path, bolt))
+def bolt(module):
+    return module[1]
+
+
+@pytest.fixture
+def setup(tmp_path, module):
+    return setup_in(tmp_path, module[0])
 
 
 @pytest.fixture(scope="module")
 def once_installed(tmp_path_factory):
     """A folder of wheels, a module and the simulator that was set up, of which tests use copies."""
     folder = tmp_path_factory.mktemp("installed")
-    bolt = write_bolt(folder)
-    lines, error = run_setup(setup_in(folder, write_module(folder, bolt)), wheels=bolt.parent)
+    package, bolt = write_module(folder)
+    lines, error = run_setup(setup_in(folder, package), wheels=bolt.parent)
     assert error == "", lines
     return folder
 
@@ -162,14 +161,16 @@ def test_only_third_party_packages_are_requested_from_a_private_index(setup, bol
     assert (setup.folder / "rastrainer_simulator" / "cli" / "main.py").is_file()
 
 
-@pytest.mark.parametrize("address", ["pypi", "ftp://127.0.0.1/simple", "https://", "file:///tmp"])
-def test_an_invalid_index_address_is_reported_before_the_setup_starts(setup, address):
-    with pytest.raises(InputError, match="start it with https://"):
-        setup.begin(index=address)
-    assert not setup.folder.parent.exists()
-
-
-def test_a_simulator_missing_or_damaged_in_the_module_is_reported(setup, bolt):
+def test_whatever_a_setup_cannot_start_with_is_reported(setup, bolt, tmp_path):
+    for address in ("file:///tmp", "https://"):
+        with pytest.raises(InputError, match="start it with https://"):
+            setup.begin(index=address)
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(InputError, match="no wheels"):
+        setup.begin(wheels=tmp_path / "empty")
+    missing = SimulatorSetup(tmp_path / "PythonSlicer", tmp_path / "simulator", setup.package)
+    with pytest.raises(InputError, match="cannot be started: No such file"):
+        missing.begin()
     wheel = setup.package.folder / WHEEL
     wheel.write_bytes(wheel.read_bytes()[:-1])
     with pytest.raises(InputError, match="is damaged: reinstall the extension RASTrainer"):
@@ -180,53 +181,17 @@ def test_a_simulator_missing_or_damaged_in_the_module_is_reported(setup, bolt):
     assert not setup.folder.parent.exists()
 
 
-def test_another_modules_simulator_of_the_same_version_is_not_mistaken_for_this_ones(installed):
-    assert (installed.installedVersion, installed.isCurrent) == (__version__, True)
-    write_package(installed.package.folder, f"{CLI}# Mended.\n")
-    assert (installed.installedVersion, installed.isCurrent) == (__version__, False)
-
-
-def test_in_a_checkout_the_sources_are_run_directly(tmp_path):
-    package = write_checkout(tmp_path / "checkout", CLI.replace("import bolt\n", ""))
-    setup = SimulatorSetup(Path(sys.executable), tmp_path / "private folder" / "simulator", package)
-    write_wheel(tmp_path / "wheels", "bolt", "1.0", {})
-    lines, error = run_setup(setup, wheels=tmp_path / "wheels")
-    assert error == "", lines
-    assert setup.isCurrent
-    assert not (setup.folder / "rastrainer").exists()
-    source = tmp_path / "checkout" / "RASTrainerSimulatorServer/rastrainer_simulator/cli/main.py"
-    source.write_text("print('Edited since.')", encoding="utf-8")
-    program, received = SimulatorProgram(), []
-    program.wroteLine.connect(received.append)
-    program.start(setup.command(["simulator"]))
-    wait_until(lambda: not program.isRunning, program.process)
-    assert received == ["Edited since."]
-
-
-def test_removing_the_simulator_leaves_nothing(installed):
-    assert installed.isCurrent
-    changes = []
-    installed.changed.connect(lambda: changes.append(installed.folder.is_dir()))
-    installed.remove()
-    assert (changes, installed.isCurrent, installed.folder.is_dir()) == ([False], False, False)
-    assert left_beside(installed) == []
-    installed.remove()
-
-
-@pytest.mark.parametrize(
-    ("word", "state", "sentence"),
-    [
+def test_a_simulator_that_ends_by_itself_says_why(installed):
+    for word, state, sentence in (
         ("--end", ProgramState.FAILED, "(status 3): The port is taken."),
         # As where its window is closed.
         ("--close", ProgramState.STOPPED, "The simulator has ended."),
-    ],
-)
-def test_a_simulator_that_ends_by_itself_says_why(installed, word, state, sentence):
-    program = SimulatorProgram()
-    program.start(installed.command(["simulator", "--port", "1", word]))
-    wait_until(lambda: not program.isRunning, program.process)
-    assert program.state is state
-    assert program.sentence.endswith(sentence)
+    ):
+        program = SimulatorProgram()
+        program.start(installed.command(["simulator", "--port", "1", word]))
+        wait_until(lambda program=program: not program.isRunning, program.process)
+        assert program.state is state
+        assert program.sentence.endswith(sentence)
 
 
 def test_the_pairing_of_a_headset_is_described_until_the_simulator_ends(installed):
@@ -243,17 +208,11 @@ def test_the_pairing_of_a_headset_is_described_until_the_simulator_ends(installe
     assert (program.state, program.port) == (ProgramState.READY, 18999)
     program.stop()
     wait_until(lambda: not program.isRunning, program.process)
-    assert program.state is ProgramState.STOPPED
     here = "In a browser or a headset open http://127.0.0.1:18945"
     everywhere = f"{here} or https://192.0.2.7:18946 or https://192.0.2.8:18946"
     warning = "The browser warns about a certificate made here; its SHA-256 fingerprint is AB:01."
-    assert received == [
-        "",
-        f"{here} and enter the code 012345.",
-        f"{everywhere} and enter the code 012345. {warning}",
-        f"{everywhere} and enter the code 678901. {warning}",
-        "",
-    ]
+    assert received[1] == f"{here} and enter the code 012345."
+    assert received[-2:] == [f"{everywhere} and enter the code 678901. {warning}", ""]
 
 
 def test_nothing_is_installed_whose_hash_is_unknown_and_the_old_set_up_stays(installed, tmp_path):
@@ -264,6 +223,12 @@ def test_nothing_is_installed_whose_hash_is_unknown_and_the_old_set_up_stays(ins
     assert any("DO NOT MATCH THE HASHES" in line for line in lines)
     assert installed.isCurrent
     assert left_beside(installed) == ["simulator"]
+    # Another module's simulator of the same version is not mistaken for this one's.
+    write_package(installed.package.folder, f"{CLI}# Mended.\n")
+    assert (installed.installedVersion, installed.isCurrent) == (__version__, False)
+    installed.remove()
+    assert not installed.folder.is_dir()
+    assert left_beside(installed) == []
 
 
 def test_an_installation_that_cannot_be_run_is_not_used(setup, tmp_path, bolt):
@@ -291,14 +256,6 @@ def test_a_setup_can_be_canceled(setup, bolt):
     assert left_beside(setup) == []
 
 
-def test_a_folder_without_wheels_and_a_missing_python_are_reported(setup, tmp_path):
-    with pytest.raises(InputError, match="no wheels"):
-        setup.begin(wheels=tmp_path)
-    missing = SimulatorSetup(tmp_path / "PythonSlicer", tmp_path / "simulator", setup.package)
-    with pytest.raises(InputError, match="cannot be started: No such file"):
-        missing.begin()
-
-
 def test_slicers_python_and_the_checkout_are_found_where_they_are(tmp_path):
     (tmp_path / "bin").mkdir()
     name = "PythonSlicer.exe" if sys.platform == "win32" else "PythonSlicer"
@@ -307,14 +264,3 @@ def test_slicers_python_and_the_checkout_are_found_where_they_are(tmp_path):
     assert SimulatorPackage.of(tmp_path / "RASTrainer").checkout is None
     (tmp_path / "pyproject.toml").touch()
     assert SimulatorPackage.of(tmp_path / "RASTrainer").checkout == tmp_path
-
-
-def test_the_size_of_a_setup_is_known_for_measured_platforms(setup, monkeypatch):
-    assert setup.package.sizesMB() is None
-    ours = SimulatorPackage.of(Path(__file__).parents[2] / "RASTrainer")
-    monkeypatch.setattr(sys, "platform", "linux")
-    monkeypatch.setattr("platform.machine", lambda: "x86_64")
-    assert ours.sizesMB()[1] <= 700
-    assert (ours.folder / LOCK).is_file()
-    monkeypatch.setattr("platform.machine", lambda: "riscv64")
-    assert ours.sizesMB() is None

@@ -10,7 +10,6 @@ import pytest
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import StepKind
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import day_of
 from rastrainer.study.protocol.questionnaires import SSQ
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.trial.record import AbortedTrial
@@ -24,10 +23,8 @@ CURRICULUM = SHIPPED.with_name("example-curriculum.json")
 
 @pytest.fixture
 def panel(fresh_module):
-    """The module with the sections Trainees, Study and Training open, and a trainee T001."""
-    for section in ("trainees", "study", "training"):
-        fresh_module.find(f"{section}CollapsibleButton").collapsed = False
-    fresh_module.process_events()
+    """The module with the section Study open, and a trainee T001."""
+    fresh_module.unfold("protocolText")
     fresh_module.press("createTraineeButton")
     return fresh_module
 
@@ -56,8 +53,7 @@ def skip_to_a_trial(host):
 
 
 def outcomes(host):
-    table = host.find("stepsTable")
-    return [table.item(row, 1).text() for row in range(table.rowCount)]
+    return [row[1] for row in host.cells("stepsTable")]
 
 
 def test_a_study_begins_with_a_protocol_only_after_confirmation(panel, tmp_path):
@@ -78,8 +74,6 @@ def test_a_study_begins_with_a_protocol_only_after_confirmation(panel, tmp_path)
     panel.answer("Begin the study", "Yes")
     panel.press("beginStudyButton")
     assert panel.text("protocolText") == "Desktop against headset, after the published study"
-    with pytest.raises(AssertionError, match="is hidden"):
-        panel.press("beginStudyButton")
 
 
 def test_a_questionnaire_is_a_form_that_keeps_no_partial_answers(begun):
@@ -104,40 +98,23 @@ def test_a_step_is_skipped_only_with_a_reason_and_started_only_in_its_turn(begun
     assert begun.text("stepTimeText") == "0:00 of 5 min have passed."
     with pytest.raises(AssertionError, match="Connect to the simulator first"):
         begun.press("startStepButton")
-    begun.press("createTraineeButton")
-    begun.choose("traineeComboBox", "T001")
-    assert outcomes(begun)[:2] == ["skipped: the sheets were missing", "next"]
 
 
-@pytest.mark.parametrize(
-    ("changes", "score", "reason"),
-    [
-        ({"display": {"ghost": "best"}}, gentle_score(110.0, 0.5), "the ghost 'best' was shown"),
-        ({}, None, "it cannot be registered, and so not scored"),
-    ],
-)
-def test_the_panel_says_why_a_trial_did_not_count(begun, changes, score, reason):
+def test_the_panel_says_why_a_trial_did_not_count_and_asks_why_an_aborted_one_is_repeated(begun):
     study, step = begun.widget.logic.session.study, skip_to_a_trial(begun)
-    assert "did not count" not in begun.text("stepText")
     started = datetime.now(timezone.utc).isoformat()
-    record = make_record(
-        trainee="T001", mode=step.mode, task=step.task, startedUtc=started, **changes
-    )
+    record = make_record(trainee="T001", mode=step.mode, task=step.task, startedUtc=started)
     with Study.open(begun.find("studyPathLineEdit").currentPath) as elsewhere:
-        elsewhere.add_trial(record, score=score)
+        elsewhere.add_trial(record, score=None)
     study.leadOn("T001")
-    assert f"The last trial did not count: {reason}." in begun.text("stepText")
+    assert "The last trial did not count: it cannot be registered" in begun.text("stepText")
     assert study.progress().next_step == step
-
-
-def test_an_aborted_trial_is_played_again_only_with_a_reason(begun):
-    step = skip_to_a_trial(begun)
     started = datetime.now(timezone.utc).isoformat()
     record = make_aborted(
         trainee="T001", mode=step.mode, task=step.task, startedUtc=started, touches=15
     )
-    with Study.open(begun.find("studyPathLineEdit").currentPath) as study:
-        study.add_aborted(record)
+    with Study.open(begun.find("studyPathLineEdit").currentPath) as elsewhere:
+        elsewhere.add_aborted(record)
     begun.widget.logic.session.trials.abortedKept.emit(record_from_json(AbortedTrial, record))
     begun.process_events()
     assert "aborted with 15 of 15 points touched" in begun.text("stepText")
@@ -148,13 +125,9 @@ def test_an_aborted_trial_is_played_again_only_with_a_reason(begun):
     begun.answer("only with a reason", "the tracking of the headset was lost")
     begun.press("repeatStepButton")
     assert begun.find("startStepButton").visible
-    assert not begun.find("repeatStepButton").visible
-    with Study.open(begun.find("studyPathLineEdit").currentPath) as study:
-        (stored,) = study.aborted("T001")
+    with Study.open(begun.find("studyPathLineEdit").currentPath) as elsewhere:
+        (stored,) = elsewhere.aborted("T001")
     assert stored.repeat_reason == "the tracking of the headset was lost"
-
-
-# The part Curriculum
 
 
 @pytest.fixture
@@ -177,9 +150,6 @@ def test_a_curriculum_is_set_for_a_trainee_shown_and_ended(classroom):
     assert classroom.text("curriculumText") == (
         "First steps: 0 of 6 reached. Next: Task 1, which has not been played yet."
     )
-    rows = classroom.cells("assignmentsTable")
-    assert rows[0] == ["Task 1", "0 of 2", "–"]
-    assert rows[1][1] == "locked"
     tip = classroom.find("assignmentsTable").item(1, 0).toolTip()
     assert "second-points: locked until first-points is reached, 0 of 2 trials in a row" in tip
     assert classroom.cells("classTable") == [["T002", "0 / 6", "Task 1"]]
@@ -207,8 +177,6 @@ def test_a_curriculum_for_everybody_shows_the_class_as_a_board_does_and_follows_
             study.add_trial(record, score=gentle_score(60.0, 0.2))
     classroom.widget.logic.session.trainees.changed.emit()
     classroom.process_events()
-    day = day_of(make_record()["startedUtc"])
-    assert classroom.cells("assignmentsTable")[0][:2] == ["Task 1", f"reached {day}"]
     shown = classroom.cells("classTable")
     assert shown[0][1] == "1 / 6"
     reader = ClassReader(Path(classroom.find("studyPathLineEdit").currentPath))

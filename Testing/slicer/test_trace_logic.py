@@ -15,6 +15,7 @@ from rastrainer.sections.trace_logic import DISTANCE_SCALARS, TraceLogic
 from rastrainer.sections.trial_services import TrialServices
 from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.scenario_nodes import SceneFileLoader
+from rastrainer_headless.scene import HeadlessScene
 from Testing.slicer.scene_bundle import load_bundle
 from Testing.slicer.simulator_double import run_until_received
 from Testing.slicer.training_room import TRIAL, Room
@@ -114,14 +115,9 @@ def test_points_lie_where_the_landmarks_place_them_with_the_place_to_draw_next(t
     place = np.array(tracing.node(Role.NEXT_PLACE).GetNthControlPointPosition(0))
     assert np.linalg.norm(tracing.places - place, axis=1).min() > 10.0
     assert np.linalg.norm(place) == pytest.approx(90.0, abs=0.5)
-    # An undone stroke disappears.
-    tracing.draw(10)
+    # An undone stroke disappears, and without guidance there are only points.
+    tracing.draw(10, is_guided=False)
     tracing.run_until(has_points(tracing, 10))
-
-
-def test_a_trainee_without_guidance_is_shown_only_the_points(tracing):
-    tracing.draw(40, is_guided=False)
-    tracing.run_until(has_points(tracing, 40))
     assert tracing.node(Role.NEXT_PLACE) is None
     assert not tracing.head.GetDisplayNode().GetScalarVisibility()
 
@@ -141,9 +137,17 @@ def test_the_trace_is_requested_once_a_second_and_only_as_it_grows(tracing):
     assert tracing.sent("GetTrial") == 2 * [{"trialId": TRIAL}]
 
 
-def test_the_whole_trace_disappears_when_the_trial_ends(tracing):
+def test_the_trace_is_saved_with_the_scene_and_disappears_when_the_trial_ends(
+    tracing, headless_scene, tmp_path
+):
     tracing.draw(40)
     tracing.run_until(lambda: tracing.node(Role.NEXT_PLACE) is not None)
+    headless_scene.save(tmp_path / "trace.mrb")
+    again = HeadlessScene()
+    load_bundle(again, tmp_path / "trace.mrb")
+    saved = Role.TRACED_POINTS.find(again.scene).GetPolyData()
+    assert saved.GetNumberOfPoints() == 40
+    assert Role.NEXT_PLACE.find(again.scene).GetNumberOfControlPoints() == 1
     tracing.tell(phase="registered", method="surface", trace={"kept": 40, "strokes": 1})
     tracing.run_until(lambda: tracing.shown is None)
     assert tracing.node(Role.TRACED_POINTS) is None
@@ -163,18 +167,3 @@ def test_invalid_data_from_the_simulator_shows_nothing_and_breaks_nothing(tracin
     assert tracing.shown is None
     tracing.draw(12)
     tracing.run_until(has_points(tracing, 12))
-
-
-def test_the_trace_is_kept_in_a_saved_scene(headless_scene, marked, tmp_path):
-    tracing = Tracing(headless_scene.scene, marked)
-    tracing.draw(40)
-    tracing.run_until(lambda: tracing.node(Role.NEXT_PLACE) is not None)
-    places = tracing.shown.copy()
-    tracing.close()
-    headless_scene.save(tmp_path / "trace.mrb")
-    load_bundle(headless_scene, tmp_path / "trace.mrb")
-    tracing.scene = headless_scene.scene
-    np.testing.assert_allclose(tracing.shown, places, atol=1e-3)
-    assert tracing.node(Role.NEXT_PLACE).GetNumberOfControlPoints() == 1
-    data = tracing.head.GetPolyData().GetPointData()
-    assert data.GetArray(DISTANCE_SCALARS) is not None

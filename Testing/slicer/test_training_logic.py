@@ -10,18 +10,7 @@ from rastrainer.igtl.content import Point, Points
 from rastrainer.protocol import DeviceName
 from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.trial_scene import KIND_ATTRIBUTE, PLANNED, isApplied
-from Testing.slicer.training_room import LOADING_REFUSAL, TRIAL
-
-
-def test_a_trial_is_started_for_a_trainee_a_task_and_a_mode(room):
-    room.logic.start("T001", "task-2", "hmd")
-    room.run_until(lambda: room.answers)
-    assert room.sent("StartTask") == [{"task": "task-2", "trainee": "T001", "mode": "hmd"}]
-    assert room.answers == [""]
-    with pytest.raises(InputError, match="Choose a trainee"):
-        room.logic.start("", "task-2", "hmd")
-    with pytest.raises(InputError, match="Choose a task"):
-        room.logic.start("T001", "", "hmd")
+from Testing.slicer.training_room import LOADING_REFUSAL
 
 
 def test_a_loading_scenario_prevents_trials_until_it_is_loaded_or_refused(room):
@@ -39,9 +28,14 @@ def test_a_loading_scenario_prevents_trials_until_it_is_loaded_or_refused(room):
 
 
 def test_a_refused_trial_is_reported_in_the_simulators_words_and_may_start_later(room):
+    with pytest.raises(InputError, match="Choose a trainee"):
+        room.logic.start("", "task-2", "hmd")
+    with pytest.raises(InputError, match="Choose a task"):
+        room.logic.start("T001", "", "hmd")
     room.isLoading = True
     room.logic.start("T001", "task-2", "hmd")
     room.run_until(lambda: room.answers)
+    assert room.sent("StartTask") == [{"task": "task-2", "trainee": "T001", "mode": "hmd"}]
     room.isLoading = False
     room.logic.start("T001", "task-2", "hmd")
     room.run_until(lambda: len(room.answers) == 2)
@@ -49,11 +43,6 @@ def test_a_refused_trial_is_reported_in_the_simulators_words_and_may_start_later
     room.logic.start("T001", "task-1", "desktop")
     room.run_until(lambda: len(room.answers) == 3)
     assert room.answers == [LOADING_REFUSAL, "", room.refusal]
-
-
-def test_a_missing_link_is_reported_as_an_obstacle_before_another_running_trial(room):
-    room.tell(phase="running")
-    room.run_until(lambda: "trial is open" in room.logic.obstacle)
     room.link.disconnect()
     assert room.logic.obstacle == "Connect to the simulator first."
 
@@ -72,18 +61,15 @@ def test_the_trial_run_waits_for_the_tutorial_if_the_simulator_requires_it(room)
     assert room.sent("StartTask") == [{"task": "trial-run", "trainee": "T001", "mode": "desktop"}]
     room.tell(task="trial-run")
     room.run_until(lambda: not room.logic.learner)
-
-
-def test_only_the_trial_run_waits_and_only_on_request_and_not_where_it_is_refused(room):
+    # Only the trial run waits, and only on request, and not where it is refused.
     room.needsTutorial = True
     room.logic.start("T001", "task-1", "desktop", isTutorialFirst=True)
     room.logic.start("T001", "trial-run", "desktop")
-    room.run_until(lambda: len(room.sent("StartTask")) == 2)
-    assert room.all_sent("StartTutorial") == []
+    room.run_until(lambda: len(room.sent("StartTask")) == 3)
     room.refusal = "P07 is doing the tutorial."
     room.logic.start("T001", "trial-run", "desktop", isTutorialFirst=True)
     room.run_until(lambda: room.answers[-1:] == [room.refusal])
-    assert len(room.all_sent("StartTask")) == 2
+    assert len(room.all_sent("StartTask")) == 3
 
 
 def test_fiducials_and_touches_are_on_the_planned_head_while_the_trial_runs(room, scenario):
@@ -92,7 +78,6 @@ def test_fiducials_and_touches_are_on_the_planned_head_while_the_trial_runs(room
     assert room.node(Role.HEAD_MODEL) is not None
     fiducial = scenario.task("task-1").fiducials[0]
     fixed = room.node(Role.FIXED_FIDUCIALS)
-    assert fixed.GetNumberOfControlPoints() == 15
     np.testing.assert_allclose(fixed.GetNthControlPointPosition(0), fiducial, atol=1e-4)
     touched = transforms.apply(scenario.head_to_world, fiducial[None])[0]
     points = Points((Point("1", tuple(touched)),))
@@ -123,33 +108,6 @@ def test_progress_contains_the_next_point_the_proximity_and_the_running_time(roo
     room.run_until(lambda: room.logic.status.phase == "paused")
     room.now += 5.0
     assert room.logic.status.elapsedS == 36.0
-
-
-def test_a_state_in_which_only_time_has_passed_changes_nothing(room):
-    room.tell(elapsedS=1.0)
-    room.run_until(lambda: room.node(Role.WORLD_TO_HEAD))
-    changes, states = [], []
-    room.logic.changed.connect(lambda: changes.append(True))
-    room.link.stateChanged.connect(states.append)
-    room.tell(elapsedS=2.0)
-    room.run_until(lambda: states)
-    assert (changes, room.logic.status.elapsedS) == ([], 2.0)
-    room.tell(elapsedS=3.0, nextPoint="2")
-    room.run_until(lambda: changes)
-
-
-def test_a_trial_is_paused_resumed_and_aborted(room):
-    room.tell()
-    room.run_until(lambda: room.logic.status.phase == "running")
-    room.logic.command("Pause")
-    room.run_until(lambda: room.sent("Pause"))
-    room.tell(phase="paused")
-    room.run_until(lambda: room.logic.status.phase == "paused")
-    room.logic.command("Resume")
-    room.run_until(lambda: room.sent("Resume"))
-    room.logic.abort(TRIAL)
-    room.run_until(lambda: room.sent("Abort"))
-    assert room.sent("Abort") == [{"trialId": TRIAL}]
 
 
 def test_a_cleared_scene_gets_the_running_trial_back_with_its_clock(room):

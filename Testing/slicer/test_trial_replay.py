@@ -1,8 +1,6 @@
 """A recorded trial is a Sequence: tool, touches and clearance over the trial's time."""
 
 import re
-from collections import Counter
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,10 +8,8 @@ import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import find_track
-from rastrainer.sections.score_logic import ReplayLogic
 from rastrainer.slicer.scene.robot_description import toolPoses
 from rastrainer.slicer.scene.trial_replay import (
-    STATES_A_SLICE,
     findReplay,
     goTo,
     moment,
@@ -58,13 +54,6 @@ def tip_in_scene(scene):
     return np.array([matrix.GetElement(row, 3) for row in range(3)])
 
 
-def shown(scene):
-    """Return how many nodes of each class there are, except storage, which Slicer adds itself."""
-    nodes = scene.GetNodes()
-    names = [nodes.GetItemAsObject(n).GetClassName() for n in range(nodes.GetNumberOfItems())]
-    return Counter(name for name in names if "Storage" not in name and "Display" not in name)
-
-
 def test_the_tool_is_where_it_was_at_every_time(scene, replayed, tips):
     assert replayed.GetNumberOfItems() == pytest.approx(30, abs=1)
     for seconds in (0.02, 1.0, 2.98):
@@ -77,9 +66,17 @@ def test_the_tool_is_where_it_was_at_every_time(scene, replayed, tips):
         assert said == f"{30.0 - 5.0 * shown:.1f} mm"
 
 
-def test_touches_and_trace_appear_as_they_were_made_and_leave_with_the_replay(scene, tmp_path):
+def test_touches_and_trace_appear_as_they_were_made_are_saved_and_leave_with_the_replay(
+    headless_scene, scene, tmp_path
+):
     tips = write_recorded_trial(tmp_path, TRIAL, traced=45)
-    show(scene, tmp_path)
+    replayed = show(scene, tmp_path)
+    headless_scene.save(tmp_path / "trial.mrb")
+    again = HeadlessScene()
+    load_bundle(again, tmp_path / "trial.mrb")
+    assert findReplay(again.scene).GetNumberOfItems() == replayed.GetNumberOfItems()
+    goTo(again.scene, 3.0)
+    assert node(again.scene, "trace").GetPolyData().GetNumberOfPoints() == 45
     counts = []
     for seconds in (0.02, 0.3, 0.5, 1.1, 2.5, 3.0):
         goTo(scene, seconds)
@@ -91,31 +88,12 @@ def test_touches_and_trace_appear_as_they_were_made_and_leave_with_the_replay(sc
     last = np.array(trace.GetPolyData().GetPoint(44))
     np.testing.assert_allclose(last, tips[44], atol=1e-3)
     assert trace.GetParentTransformNode() is node(scene, "WorldToHead")
-    removeReplay(scene)
-    assert scene.GetFirstNodeByName("Trial 1: trace") is None
-
-
-def test_another_trial_replaces_the_previous_one(scene, replayed, tmp_path):
-    before = shown(scene)
     write_recorded_trial(tmp_path / "other", TRIAL, seconds=1.0)
-    other = show(scene, tmp_path / "other", "Trial 2")
-    assert other is not replayed
-    assert shown(scene) == before
+    show(scene, tmp_path / "other", "Trial 2")
+    assert scene.GetFirstNodeByName("Trial 1: trace") is None
     removeReplay(scene)
-    assert findReplay(scene) is None
-    assert moment(scene) is None
+    assert (findReplay(scene), moment(scene)) == (None, None)
     goTo(scene, 1.0)
-
-
-def test_a_replay_with_its_trace_is_saved_with_the_scene(headless_scene, scene, tmp_path):
-    write_recorded_trial(tmp_path, TRIAL, traced=45)
-    replayed = show(scene, tmp_path)
-    headless_scene.save(tmp_path / "trial.mrb")
-    again = HeadlessScene()
-    load_bundle(again, tmp_path / "trial.mrb")
-    assert findReplay(again.scene).GetNumberOfItems() == replayed.GetNumberOfItems()
-    goTo(again.scene, 3.0)
-    assert node(again.scene, "trace").GetPolyData().GetNumberOfPoints() == 45
 
 
 def test_a_missing_journal_or_one_from_another_robot_is_reported(scene, tips, tmp_path):  # noqa: ARG001
@@ -128,27 +106,3 @@ def test_a_missing_journal_or_one_from_another_robot_is_reported(scene, tips, tm
     assert findReplay(scene) is None
     with pytest.raises(InputError, match="only on the computer whose simulator recorded it"):
         find_track(tmp_path, TRIAL[:-1] + "2")
-
-
-def test_the_application_may_redraw_after_each_slice_of_a_replay(scene, tips, tmp_path):  # noqa: ARG001
-    shares = []
-    replay = show(scene, tmp_path, rest=shares.append)
-    touches = find_track(tmp_path, TRIAL).trajectory.touches
-    states = 2 * replay.GetNumberOfItems() + len(touches) + 1
-    # The first are between the nodes, before there are any states.
-    assert sum(share > 0.0 for share in shares) == states // STATES_A_SLICE
-    assert shares == sorted(shares)
-    assert 0.0 == shares[0] < shares[-1] <= 1.0
-
-
-def test_feedback_that_comes_with_a_score_stays_while_the_former_trial_is_still_shown():
-    jobs = []
-    work = SimpleNamespace(do=lambda *job: jobs.append(job), checkWanted=None)
-    logic = ReplayLogic(SimpleNamespace(work=work), URDF, lambda: False, lambda _trial: False)
-    former, scored = (
-        SimpleNamespace(record=SimpleNamespace(trial_id=name)) for name in ("former", "scored")
-    )
-    logic.feedbackFound.connect(lambda: logic.feedback(former))
-    logic.takeFeedback("scored", "well done")
-    assert logic.feedback(scored) == "well done"
-    assert len(jobs) == 1

@@ -2,20 +2,16 @@
 
 import numpy as np
 import pytest
-import slicer
 from slicer.util import arrayFromMarkupsControlPoints
 
 from rastrainer import transforms
 from rastrainer.registration.registration import register
-from rastrainer.registration.target_error import target_error
+from rastrainer.scenario.points import LABELS
 from rastrainer.slicer.scene import trial_scene
 from rastrainer.slicer.scene.nodes import labelsOf, setPoints, worldPoints
 from rastrainer.slicer.scene.registration_input import Choices, readPairs
-from rastrainer.slicer.scene.tables import showFits, showResiduals
 from rastrainer.slicer.scene.trial_scene import placeWorld
 from Testing.slicer.scene_bundle import load_bundle
-
-LABELS = tuple(str(i + 1) for i in range(15))
 
 
 @pytest.fixture
@@ -42,10 +38,10 @@ def moving(scene, points):
     return markups(scene, "CapturedPoints", LABELS, touched)
 
 
-def registered(moving, fixed, kind="rigid"):
+def registered(moving, fixed):
     """Return the registration of two lists of the scene."""
     pairs = readPairs(moving, fixed, Choices())
-    return register(pairs.moving, pairs.fixed, kind, pairs.labels)
+    return register(pairs.moving, pairs.fixed, "rigid", pairs.labels)
 
 
 def placed(scene, registration, moving, fixed):
@@ -83,33 +79,3 @@ def test_the_transform_remembers_its_lists_even_in_a_saved_scene(
     assert trial_scene.movingNode(node).GetName() == "CapturedPoints"
     assert labelsOf(node.GetNodeReference(trial_scene.FIXED_REFERENCE)) == LABELS
     assert trial_scene.isApplied(node)
-
-
-def test_the_residual_table_has_one_row_per_fiducial_and_units_in_its_columns(scene, moving, fixed):
-    registration = registered(moving, fixed)
-    table = showResiduals(scene, registration)
-    assert [table.GetColumnName(i) for i in range(table.GetNumberOfColumns())] == [
-        "fiducial",
-        "residual (mm)",
-        "residual R (mm)",
-        "residual A (mm)",
-        "residual S (mm)",
-        "without it (mm)",
-    ]
-    assert table.GetNumberOfRows() == 15
-    assert table.GetCellText(4, 0) == "5"
-    values = slicer.util.arrayFromTableColumn(table, "residual (mm)")
-    np.testing.assert_allclose(values, registration.residuals_mm)
-    assert showResiduals(scene, registration) is table
-
-
-def test_the_fits_are_compared_side_by_side(scene, moving, fixed):
-    fits = {kind: registered(moving, fixed, kind) for kind in ("rigid", "similarity", "affine")}
-    target = np.array([10.0, 20.0, -30.0])
-    table = showFits(scene, fits, {kind: target_error(fit, target) for kind, fit in fits.items()})
-    low, expected, high = (
-        slicer.util.arrayFromTableColumn(table, name)
-        for name in ("TRE from, 95 % (mm)", "expected TRE (mm)", "TRE to, 95 % (mm)")
-    )
-    assert ((low < expected) & (expected < high)).all()
-    assert [table.GetCellText(row, 0) for row in range(3)] == list(fits)

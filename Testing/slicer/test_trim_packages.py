@@ -26,10 +26,3 @@ def test_a_library_without_symbols_is_smaller_and_loads(tmp_path):
     assert library.read_bytes() == content
     assert before != other.stat().st_ino
     assert other.read_bytes() == Path(multidict._multidict.__file__).read_bytes()
-
-
-def test_what_is_no_library_of_linux_stays(tmp_path):
-    script = tmp_path / "libm.so"
-    script.write_text("GROUP ( libm.so.6 )")
-    drop_symbols(script)
-    assert script.read_text() == "GROUP ( libm.so.6 )"

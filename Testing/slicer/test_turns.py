@@ -19,34 +19,15 @@ def steps(done, error=None):
         raise error
 
 
-def test_each_turn_does_one_step(loop):
-    done, counts = [], []
-    turns = Turns(steps(done), loop.append)
-    while loop:
-        counts.append(len(done))
-        loop.pop()()
-    assert (counts[:4], turns.isOver) == ([0, 1, 2, 3], True)
-
-
-def test_whoever_waits_has_the_rest_done_at_once_and_no_turn_does_it_again(loop):
+def test_each_turn_does_one_step_and_whoever_waits_has_the_rest_done_at_once(loop):
     done = []
     turns = Turns(steps(done), loop.append)
     loop.pop()()
+    assert (done, turns.isOver) == ([0], False)
     turns.finish()
     assert (done, turns.isOver) == ([0, 1, 2], True)
     loop.pop()()
     assert loop == []
-
-
-def test_a_step_that_asks_for_the_end_is_not_entered_again(loop):
-    def asking():
-        turns.finish()
-        yield
-        turns.finish()
-
-    turns = Turns(asking(), loop.append)
-    turns.finish()
-    assert turns.isOver
 
 
 def test_what_is_stopped_or_has_failed_does_nothing_more(loop):

@@ -17,7 +17,6 @@ from rastrainer.slicer.settings import (
     Settings,
 )
 
-TRANSFORM = "vtkMRMLLinearTransformNode"
 TIP = np.array([480.0, -60.0, 330.0])
 UP = np.array([0.0, 0.0, 20.0])
 
@@ -82,7 +81,9 @@ def test_the_slices_jump_to_each_next_point_of_a_trial_unless_the_user_wants_it_
     np.testing.assert_allclose(place(room.scene), fiducials[1], atol=1e-3)
 
 
-def test_the_first_point_of_another_task_is_shown_once_its_fiducials_are(room, follower, scenario):
+def test_points_are_shown_once_their_fiducials_are_and_again_in_a_cleared_scene(
+    room, follower, scenario
+):
     showTask(room.scene, scenario, "task-2")
     jumpTo(room.scene, (1.0, 2.0, 3.0))
     room.tell(nextPoint="1", task="task-1", phase="running", trialId="")
@@ -91,45 +92,29 @@ def test_the_first_point_of_another_task_is_shown_once_its_fiducials_are(room, f
     np.testing.assert_allclose(place(room.scene), [1, 2, 3])
     showTask(room.scene, scenario, "task-1")
     follower.process()
-    np.testing.assert_allclose(place(room.scene), scenario.task("task-1").fiducials[0], atol=1e-3)
+    first = scenario.task("task-1").fiducials[0]
+    np.testing.assert_allclose(place(room.scene), first, atol=1e-3)
+    room.scene.Clear(False)
+    follower.forgetScene()
+    jumpTo(room.scene, (0.0, 0.0, 0.0))
+    showTask(room.scene, scenario, "task-1")
+    follower.process()
+    np.testing.assert_allclose(place(room.scene), first, atol=1e-3)
 
 
-def pose_of_tool(room):
-    return poseOnHead(room.scene, DeviceName.TOOL_TIP_TO_WORLD)
-
-
-def test_the_tool_tip_is_where_the_registration_places_it_on_the_head(room, scenario):
-    assert pose_of_tool(room) is None
+def test_the_slices_follow_a_registered_tool_rarely_and_only_its_motion(room, follower, scenario):
+    follower.settings.set(SLICES_FOLLOW_TOOL, True)
     list(prepareNodes(room.scene))
-    assert pose_of_tool(room) is None
     stand(room, scenario)
-    assert pose_of_tool(room) is None
+    follower.process()
+    assert poseOnHead(room.scene, DeviceName.TOOL_TIP_TO_WORLD) is None
     put_tool(room.scene, TIP)
-    wanted = transforms.apply(transforms.inverse(scenario.head_to_world), TIP)
-    np.testing.assert_allclose(pose_of_tool(room)[:3, 3], wanted)
-
-
-def test_the_slices_follow_the_tool_instead_of_the_next_point(room, follower, scenario):
-    stand(room, scenario)
-    put_tool(room.scene, TIP)
-    follower.settings.set(SLICES_FOLLOW_TOOL, True)
     play(room, follower, "1")
-    on_head = pose_of_tool(room)[:3, 3]
-    np.testing.assert_allclose(place(room.scene), on_head, atol=1e-3)
-    follower.settings.set(SLICES_FOLLOW_TOOL, False)
-    follower.process()
-    np.testing.assert_allclose(place(room.scene), scenario.task("task-1").fiducials[0], atol=1e-3)
-
-
-def test_following_is_rate_limited_and_needs_motion(room, follower, scenario):
-    stand(room, scenario)
-    put_tool(room.scene, TIP)
-    follower.settings.set(SLICES_FOLLOW_TOOL, True)
-    follower.process()
-    first = place(room.scene)
+    first = transforms.apply(transforms.inverse(scenario.head_to_world), TIP)
+    np.testing.assert_allclose(place(room.scene), first, atol=1e-3)
     put_tool(room.scene, TIP + UP)
     follower.process()
-    np.testing.assert_allclose(place(room.scene), first)
+    np.testing.assert_allclose(place(room.scene), first, atol=1e-3)
     room.now += PERIOD_S
     follower.process()
     np.testing.assert_allclose(place(room.scene), first + UP, atol=1e-3)
@@ -146,39 +131,10 @@ def test_following_is_rate_limited_and_needs_motion(room, follower, scenario):
     room.now += PERIOD_S
     follower.process()
     np.testing.assert_allclose(place(room.scene), first + UP, atol=1e-3)
-
-
-def test_the_views_jump_one_in_a_turn_but_follow_the_tool_at_once(room, scenario):
-    turns, scene = [], room.scene
-    follower = SliceFollower(scene, room.logic, Settings(), lambda: room.now, turns.append)
-    follower.show((10.0, 20.0, 30.0))
-    for moved in range(1, 4):
-        turns.pop(0)()
-        assert np.count_nonzero(place(scene) == [10.0, 20.0, 30.0]) == moved
-    assert turns == []
-    jumpTo(scene, (0.0, 0.0, 0.0))
-    follower.showAgain()
-    while turns:
-        turns.pop(0)()
-    np.testing.assert_allclose(place(scene), [10, 20, 30])
-    stand(room, scenario)
-    put_tool(scene, TIP)
-    follower.settings.set(SLICES_FOLLOW_TOOL, True)
-    room.now += PERIOD_S
+    follower.settings.set(SLICES_FOLLOW_TOOL, False)
     follower.process()
-    tip = poseOnHead(scene, DeviceName.TOOL_TIP_TO_WORLD)[:3, 3]
-    np.testing.assert_allclose(place(scene), tip, atol=1e-3)
-    assert turns == []
-
-
-def test_a_scene_cleared_and_shown_again_at_once_gets_its_next_point(room, follower, scenario):
-    play(room, follower, "3")
-    room.scene.Clear(False)
-    follower.forgetScene()
-    jumpTo(room.scene, (0.0, 0.0, 0.0))
-    showTask(room.scene, scenario, "task-1")
-    follower.process()
-    np.testing.assert_allclose(place(room.scene), scenario.task("task-1").fiducials[2], atol=1e-3)
+    fiducial = scenario.task("task-1").fiducials[0]
+    np.testing.assert_allclose(place(room.scene), fiducial, atol=1e-3)
 
 
 def put_instrument(scene, tip, direction):

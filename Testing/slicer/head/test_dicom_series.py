@@ -1,18 +1,20 @@
-"""DICOM as scanners and archives write it: any orientation, any company, any place of the files."""
+"""DICOM as scanners and archives write it, also cut or damaged, wherever the files are."""
 
 import io
+import struct
+import tracemalloc
 
 import numpy as np
-import pydicom
 import pytest
 from PIL import Image
 from pydicom.encaps import encapsulate
-from pydicom.uid import JPEG2000Lossless, RLELossless
+from pydicom.uid import JPEG2000Lossless
 from scipy.spatial.transform import Rotation
 
 from rastrainer.errors import InputError
+from rastrainer_headless.dicom_series import readDicom
 from rastrainer_headless.volume_files import readVolume
-from Testing.slicer.head.dicom_series import LPS_TO_RAS, enhanced, slices, write_slices
+from Testing.slicer.head.dicom_series import LPS_TO_RAS, enhanced, slice_file, slices, write_slices
 
 SHAPE = (9, 7, 12)
 VALUES = np.random.default_rng(4).integers(0, 900, SHAPE).astype(np.int16)
@@ -87,14 +89,6 @@ def test_anything_that_is_no_slice_of_the_series_is_ignored(tmp_path):
     assert volume.warnings == ()
 
 
-@pytest.mark.parametrize("is_implicit", [False, True])
-def test_files_without_preamble_are_read(tmp_path, is_implicit):
-    for k, each in enumerate(slices(VALUES, placed())):
-        del each.file_meta
-        each.save_as(tmp_path / f"I{k}", implicit_vr=is_implicit, little_endian=True)
-    expect(readVolume(tmp_path))
-
-
 def test_frames_of_an_enhanced_file_are_slices_alone_or_in_a_folder(tmp_path):
     matrix = placed(SAGITTAL)
     image = enhanced(VALUES, matrix)
@@ -103,26 +97,18 @@ def test_frames_of_an_enhanced_file_are_slices_alone_or_in_a_folder(tmp_path):
         expect(readVolume(path), lps_matrix=matrix)
 
 
-def rle(image):
-    image.compress(RLELossless)
-
-
-def jpeg2000(image):
-    values = image.pixel_array.astype(np.uint16)
-    file = io.BytesIO()
-    Image.fromarray(values).save(file, "JPEG2000", no_jp2=True, irreversible=False)
-    image.PixelRepresentation = 0
-    image.PixelData = encapsulate([file.getvalue()])
-    image.file_meta.TransferSyntaxUID = JPEG2000Lossless
-
-
-@pytest.mark.parametrize("compress", [rle, jpeg2000])
-def test_compressed_pixels_are_read(tmp_path, compress):
-    datasets = slices(np.repeat(np.repeat(VALUES, 8, 0), 8, 1), placed())
+def test_compressed_pixels_are_read(tmp_path):
+    values = np.repeat(np.repeat(VALUES, 8, 0), 8, 1)
+    datasets = slices(values, placed())
     for each in datasets:
-        compress(each)
+        file = io.BytesIO()
+        pixels = Image.fromarray(each.pixel_array.astype(np.uint16))
+        pixels.save(file, "JPEG2000", no_jp2=True, irreversible=False)
+        each.PixelRepresentation = 0
+        each.PixelData = encapsulate([file.getvalue()])
+        each.file_meta.TransferSyntaxUID = JPEG2000Lossless
     write_slices(tmp_path, datasets)
-    expect(readVolume(tmp_path), np.repeat(np.repeat(VALUES, 8, 0), 8, 1))
+    expect(readVolume(tmp_path), values)
 
 
 def test_values_are_scaled_slice_by_slice(tmp_path):
@@ -132,36 +118,6 @@ def test_values_are_scaled_slice_by_slice(tmp_path):
     write_slices(tmp_path, datasets)
     scaled = 2.0 * VALUES - 1024.0 - np.arange(SHAPE[2])
     expect(readVolume(tmp_path), scaled)
-
-
-def test_the_same_slices_twice_are_taken_once(tmp_path):
-    write_slices(tmp_path / "one", slices(VALUES, placed()))
-    write_slices(tmp_path / "copied", slices(VALUES, placed()))
-    write_slices(tmp_path / "sent again", slices(VALUES, placed())[3:6])
-    for k, path in enumerate(sorted((tmp_path / "sent again").iterdir())):
-        image = pydicom.dcmread(path)
-        image.SOPInstanceUID = f"1.2.99.{k}"
-        image.save_as(path)
-    expect(readVolume(tmp_path))
-
-
-def test_the_larger_of_two_series_is_taken_and_named(tmp_path):
-    write_slices(tmp_path, slices(VALUES, placed(), SeriesDescription="T1 MPRAGE"), "a")
-    flair = slices(VALUES[:, :, :10] + 7, placed(), "1.2.4", SeriesDescription="FLAIR")
-    write_slices(tmp_path, flair, "b")
-    volume = readVolume(tmp_path)
-    expect(volume)
-    assert "2 series of many slices" in volume.warnings[0]
-    assert "“T1 MPRAGE” with 12" in volume.warnings[0]
-
-
-def test_two_echoes_of_one_series_are_two_stacks(tmp_path):
-    write_slices(tmp_path / "1", slices(VALUES, placed(), EchoTime="4"))
-    second = slices(VALUES + 3, placed(), EchoTime="9")
-    for k, each in enumerate(second):
-        each.SOPInstanceUID = f"1.2.5.{k}"
-    write_slices(tmp_path / "2", second[:-1])
-    expect(readVolume(tmp_path))
 
 
 def without(datasets):
@@ -198,3 +154,88 @@ def test_a_series_that_is_no_volume_is_refused_and_says_why(tmp_path, change, se
     write_slices(tmp_path, datasets)
     with pytest.raises(InputError, match=sentence):
         readVolume(tmp_path)
+
+
+def slice_at(number):
+    """The bytes of one of nine slices."""
+    values = np.zeros((8, 8), np.int16)
+    return slice_file(values, (1.0, 1.0, 1.0), (0.0, 0.0, float(number)), "1.2.3", number)
+
+
+SLICE = slice_at(4)
+META = 132 + SLICE[132:].index(b"\x08\x00\x16\x00")
+FOUR_GB = 0xFFFFFFF0
+UNDEFINED = 0xFFFFFFFF
+ITEM, END_OF_ITEM, END_OF_SEQUENCE = ((0xFFFE, number) for number in (0xE000, 0xE00D, 0xE0DD))
+
+
+def plain(tag, length=0):
+    """An element of implicit kind, or one of a sequence's own."""
+    return struct.pack("<HHI", *tag, length)
+
+
+def long(tag, kind, length):
+    """The head of an element whose length has four bytes."""
+    return struct.pack("<HH2sHI", *tag, kind, 0, length)
+
+
+def with_first(elements, syntax=b"1.2.840.10008.1.2.1\0"):
+    """The slice with elements at the start of its data set, and in another transfer syntax."""
+    meta = SLICE[:META].replace(b"1.2.840.10008.1.2.1\0", syntax)
+    assert len(meta) == META
+    return meta + elements + SLICE[META:]
+
+
+def sequence(length, items):
+    return long((0x0008, 0x1140), b"SQ", length) + items
+
+
+def write(folder, content):
+    """Write nine slices, of which the fifth has this content."""
+    for number in range(9):
+        (folder / f"{number}.dcm").write_bytes(content if number == 4 else slice_at(number))
+
+
+HUGE = long((0x0009, 0x1001), b"OB", FOUR_GB)
+SMALL = struct.pack("<HH2sH6s", 0x0008, 0x1155, b"UI", 6, b"1.2.3")
+ENDS = plain(END_OF_ITEM) + plain(END_OF_SEQUENCE)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        pytest.param(
+            with_first(sequence(UNDEFINED, plain(ITEM, UNDEFINED) + HUGE + ENDS)), id="in an item"
+        ),
+        pytest.param(
+            with_first(plain((0x0009, 0x1001), FOUR_GB), b"1.2.840.10008.1.2\0  "), id="implicit"
+        ),
+        pytest.param(SLICE[:-2], id="pixels"),
+    ],
+)
+def test_a_file_that_claims_more_than_it_holds_is_refused_without_its_memory(content, tmp_path):
+    write(tmp_path, content)
+    tracemalloc.start()
+    with pytest.raises(InputError, match=r"4\.dcm is cut short or damaged"):
+        readDicom(tmp_path)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 50e6
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        pytest.param(
+            with_first(sequence(UNDEFINED, plain(ITEM, UNDEFINED) + SMALL + ENDS)),
+            id="sequence of unknown length",
+        ),
+        pytest.param(
+            with_first(sequence(8 + len(HUGE), plain(ITEM, len(HUGE)) + HUGE)),
+            id="a sequence that can be skipped whatever it claims",
+        ),
+    ],
+)
+def test_a_complete_file_is_not_called_truncated(content, tmp_path):
+    write(tmp_path, content)
+    assert readDicom(tmp_path).values.shape == (8, 8, 9)

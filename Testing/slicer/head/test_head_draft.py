@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from rastrainer.procedure.geometry import bone_ahead
 from rastrainer.scenario.scenario import SkullKind
 from rastrainer.slicer.head.extraction import findHead
 from rastrainer.slicer.head.head_draft import BONE_MM, SCALP_MM, makeDraft
@@ -111,11 +110,3 @@ def test_the_skull_of_an_mri_is_one_body_as_deep_below_the_skin_as_its_method_st
     for table, nominal in ((depth[is_outer], SCALP_MM), (depth[~is_outer], SCALP_MM + BONE_MM)):
         assert np.abs(table - nominal).max() < 2.0
         assert abs(np.median(table) - nominal) < 1.0
-
-
-def test_a_line_into_the_skull_of_an_mri_meets_both_tables(mri):
-    draft, _warnings = mri
-    top = np.array([0.0, 0.0, draft.head.vertices[:, 2].max() + 10.0])
-    bone = bone_ahead(draft.skull, top, np.array([0.0, 0.0, -1.0]), 100.0)
-    assert bone.outer_mm == pytest.approx(10.0 + SCALP_MM, abs=1.0)
-    assert bone.inner_mm - bone.outer_mm == pytest.approx(BONE_MM, abs=1.0)

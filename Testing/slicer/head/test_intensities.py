@@ -57,10 +57,8 @@ def stored(volume):
         pytest.param(lambda: scan(CT), id="as it should be"),
         pytest.param(lambda: resampled(scan(CT), 0.0), id="resampled, filled with 0"),
         pytest.param(lambda: padded(scan(CT), 0.0), id="padded with 0"),
-        pytest.param(lambda: padded(scan(CT), 3071.0), id="padded with the brightest"),
         pytest.param(lambda: resampled(scan(CT), -3024.0), id="resampled, filled with −3024"),
         pytest.param(lambda: stored(scan(CT)), id="without rescale intercept"),
-        pytest.param(lambda: stored(scan(CT, noise=0.0)), id="without it nor noise"),
         pytest.param(lambda: padded(stored(scan(CT)), -2000.0), id="without it, and padded"),
     ],
 )
@@ -92,14 +90,6 @@ def test_an_mri_with_a_fill_is_no_ct_and_has_air_in_its_place(kinds, fill, put):
     assert high < 0.1 * kinds["scalp"]
 
 
-def test_an_ordinary_image_is_left_as_it_is():
-    for kinds in (MRI, LARGE_MRI, CT):
-        before = scan(kinds)
-        after, offset, warnings = cleaned(Volume(before.values.copy(), before.ijkToRas))
-        assert np.array_equal(after.values, before.values)
-        assert (offset, warnings) == (0.0, [])
-
-
 def test_a_ct_without_its_intercept_is_used_with_a_warning():
     _volume, offset, warnings = cleaned(stored(scan(CT)))
     assert offset == -1024.0
@@ -126,7 +116,6 @@ def with_odd(volume, count, value):
     "change",
     [
         pytest.param(lambda mri: with_odd(mri, 9, -32000.0), id="wrapped to negatives"),
-        pytest.param(lambda mri: with_odd(mri, 9, 65000.0), id="wrapped to positives"),
         pytest.param(normalized, id="normalized within a mask"),
     ],
 )

@@ -108,21 +108,6 @@ def test_the_base_stays_when_an_edit_moves_the_segment_to_an_oblique_grid(node, 
     assert ball_errors(mesh).mean() < 0.5
 
 
-def test_a_neck_cut_by_an_oblique_scan_continues_to_a_flat_base(node, found):
-    segment = showSegment(node, found)
-    lay_on_grid(node, segment, oblique((0, 1, 2), [27.0, 27.0, 17.0]), (54, 54, 46))
-    mesh = skin_of(node, segment)
-    assert BASE < mesh.vertices[:, 2].min() < BASE + 5.0
-    assert_rests_on_the_whole_neck(mesh)
-
-
-def test_an_erased_neck_is_not_in_the_head(node, found):
-    found.body[:, :, : round(-25.0 - found.origin[2])] = False
-    segment = showSegment(node, found)
-    mesh = skin_of(node, segment)
-    assert mesh.vertices[:, 2].min() == pytest.approx(-24.0, abs=1.0)
-
-
 def test_a_moved_segment_moves_its_head(scene, node, found):
     segment = showSegment(node, found)
     node.SetAndObserveTransformNodeID(add_transform(scene, [5.0, -7.0, 11.0]).GetID())

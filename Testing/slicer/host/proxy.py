@@ -59,8 +59,9 @@ class Proxy(metaclass=ProxyType):
     def __init__(self, *arguments: Any) -> None:
         if "_qt" in self.__dict__:
             return
-        made = _with_overrides(type(self))
-        _adopt(self, construct(self._qtClass, made, arguments))
+        if type(self) is not _class_of.get(self._qtClass):
+            raise NotImplementedError("The host does not offer subclasses of Qt's classes yet.")
+        _adopt(self, construct(self._qtClass, arguments))
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__") or "_qt" not in self.__dict__:
@@ -88,10 +89,8 @@ class Proxy(metaclass=ProxyType):
             note_write(self._qt, name)
             if value is None or not self._qt.setProperty(name, to_qt(value)):
                 raise ValueError(f"The property {name} does not take {value!r}.")
-        elif type(self) is _class_of.get(self._qtClass):
-            raise _missing(type(self), name)
         else:
-            super().__setattr__(name, value)
+            raise _missing(type(self), name)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Proxy) and self._qt == other._qt
@@ -141,28 +140,6 @@ def wrap(value: Any) -> Any:
 def _adopt(proxy: Proxy, value: Any) -> None:
     object.__setattr__(proxy, "_qt", value)
     setattr(value, PROXY, proxy)
-
-
-def _with_overrides(made: ProxyType) -> type:
-    """Return the class of Qt, with the virtual functions that a Python subclass overrides."""
-    own = {}
-    for kind in made.__mro__:
-        if kind is _class_of.get(getattr(kind, "_qtClass", None)):
-            break
-        for name, value in vars(kind).items():
-            if callable(value) and not name.startswith("__") and hasattr(made._qtClass, name):
-                own.setdefault(name, _forwarding(name))
-    return type(made._qtClass.__name__, (made._qtClass,), own) if own else made._qtClass
-
-
-def _forwarding(name: str) -> Callable[..., Any]:
-    def forward(qt_object: Any, *arguments: Any) -> Any:
-        proxy = getattr(qt_object, PROXY, None)
-        if proxy is None:  # Still being constructed.
-            return getattr(super(type(qt_object), qt_object), name)(*arguments)
-        return to_qt(getattr(proxy, name)(*map(from_qt, arguments)))
-
-    return forward
 
 
 def _qt_attribute(owner: Any, name: str) -> Any:

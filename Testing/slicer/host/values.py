@@ -65,9 +65,9 @@ def call(owner: type, function: Callable[..., Any], name: str, arguments: tuple)
     return from_qt(function(*_given(arguments, _enumerations(owner, name))))
 
 
-def construct(qt_class: type, made: type, arguments: tuple) -> Any:
-    """Return a new object of `made`, a subclass of `qt_class`."""
-    return made(*_given(arguments, _enumerations(qt_class, "")))
+def construct(qt_class: type, arguments: tuple) -> Any:
+    """Return a new object."""
+    return qt_class(*_given(arguments, _enumerations(qt_class, "")))
 
 
 def _given(arguments: tuple, enumerations: list[list[type[enum.Enum] | None]]) -> list:
@@ -141,17 +141,11 @@ class Slot:
 
 
 class BoundSignal:
-    """A signal as an attribute of its object: `button.clicked`."""
+    """A signal as an attribute of its object, to emit it: `combo.activated`."""
 
     def __init__(self, proxy: Any, signature: str) -> None:
         self._proxy = proxy
         self._signature = signature
-
-    def connect(self, function: Callable[..., Any]) -> bool:
-        return connect(self._proxy, self._signature, function)
-
-    def disconnect(self, function: Callable[..., Any]) -> bool:
-        return disconnect(self._proxy, self._signature, function)
 
     def emit(self, *arguments: Any) -> None:
         name = self._signature.partition("(")[0]

@@ -23,7 +23,6 @@ from pathlib import Path
 import slicer
 import tour_afterward
 import tour_end
-import tour_landmarks
 import tour_procedure
 import tour_scenarios
 import tour_trial
@@ -57,7 +56,7 @@ STEPS: tuple[tuple[str, Callable[[Tour], str | None]], ...] = (
     ("Drill", tour_procedure.drill),
     ("Insert the instrument", tour_procedure.insert),
     ("Save and load the scene", tour_afterward.save_and_load_scene),
-    ("Place the landmarks of a head", tour_landmarks.place),
+    ("Place the landmarks of a head", tour_scenarios.landmarks),
     ("Save a scenario and add it", tour_scenarios.zip_file),
     ("Compare the methods of registration", tour_scenarios.compare_methods),
     ("Preview and check a head", tour_scenarios.preview_and_check),

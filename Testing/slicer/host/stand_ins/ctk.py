@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from PySide6 import QtCore, QtGui, QtWidgets
 
-from Testing.slicer.host.stand_ins.dialogs import QFileDialog
-
 Style = QtWidgets.QStyle
 MARGIN = 4
 WITHOUT_LIMIT = 16777215
@@ -227,7 +225,6 @@ class ctkPathLineEdit(QtWidgets.QWidget):
         self._nameFilters: list[str] = []
         button = QtWidgets.QToolButton()
         button.setText("…")
-        button.clicked.connect(self.browse)
         row = QtWidgets.QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.addWidget(self._edit)
@@ -239,13 +236,6 @@ class ctkPathLineEdit(QtWidgets.QWidget):
         text = self._edit.text()
         width = self._edit.fontMetrics().horizontalAdvance(text or 7 * "x")
         return hint.expandedTo(QtCore.QSize(width + PATH_FRAME, 0))
-
-    def browse(self) -> None:
-        isFolder = not self._filters & self.Files
-        choose = QFileDialog.getExistingDirectory if isFolder else QFileDialog.getOpenFileName
-        path = choose(self, self.objectName(), self._edit.text())
-        if path:
-            self._edit.setText(path)
 
     def setCurrentPath(self, path: str) -> None:
         self._edit.setText(path)

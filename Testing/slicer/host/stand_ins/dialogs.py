@@ -33,25 +33,8 @@ class QMessageBox(QtWidgets.QMessageBox):
         standard = self.standardButton(button)
         return button.text().replace("&", "") if standard == Buttons.NoButton else standard.name
 
-    @staticmethod
-    def _ask(_parent: object, title: str, text: str, buttons: object, *_default: object) -> int:
-        names = [one.name for one in Buttons if one.value and one in Buttons(buttons)]
-        names = [name for name in names if name in Buttons.__members__]
-        return Buttons[ANSWERS.show(title, text, "", names)].value
-
-    @staticmethod
-    def question(
-        parent: object, title: str, text: str, buttons: object = Buttons.Yes | Buttons.No, *_d: int
-    ) -> int:
-        return QMessageBox._ask(parent, title, text, buttons)
-
-    @staticmethod
-    def information(
-        parent: object, title: str, text: str, buttons: object = Buttons.Ok, *_d: int
-    ) -> int:
-        return QMessageBox._ask(parent, title, text, buttons)
-
-    warning = critical = information
+    # Nothing uses them; they would wait for a user.
+    question = information = warning = critical = None
 
 
 class ctkMessageBox(QMessageBox):
