@@ -1,7 +1,5 @@
 """Points and trials from valid and invalid CSV files."""
 
-import codecs
-
 import numpy as np
 import pytest
 import slicer
@@ -9,9 +7,6 @@ import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.files.point_files import read_points
-from rastrainer.trial.ctps import read_trials
-
-HEADER = "mode,subject,task,ct,rmse\n"
 
 
 def file(tmp_path, text, name="a.csv"):
@@ -25,20 +20,11 @@ def file(tmp_path, text, name="a.csv"):
     [
         ("label,x,y,z\na,1,2,3\nb,4,5,6\n", ("a", "b")),
         ("x,y,z\r\n1,2,3\r\n4,5,6\r\n", ()),
-        ("label,x,y,z\n,1,2,3\n,4,5,6\n", ()),
         ("\ufeffX, Y ,Z,label,note\n\n1,2,3, a ,x\n4,5,6,b,\n\n", ("a", "b")),
-        ("label,x,y,z,,\na,1,2,3,,\nb,4,5,6,,\n", ("a", "b")),
-        (",label,,x,y,z\n,a,,1,2,3\nn,b,,4,5,6,\n", ("a", "b")),
-        ("label,x,y,z\ra,1,2,3\rb,4,5,6", ("a", "b")),
         ("label;x;y;z\na;1,0;2,00;3\nb;4;5;,6e1\n", ("a", "b")),
         ('sep=;\r\nlabel;x;y;z\r\n"a";1;2;3\r\nb;4,0;5;6\r\n', ("a", "b")),
-        ("label\tx\ty\tz\na\t1\t2\t3\nb\t4.0\t5\t6\n", ("a", "b")),
         ('label,x,y,z\na,"1,0","2,0","3,0"\nb,4,"5,0",6\n', ("a", "b")),
         ("label;x;y;z\nä;1;2;3\nb;4;5;6\n".encode("utf-16"), ("ä", "b")),
-        (
-            codecs.BOM_UTF16_BE + "label\tx\ty\tz\na\t1\t2\t3\nb\t4\t5\t6".encode("utf-16-be"),
-            ("a", "b"),
-        ),
         ("# by hand\n# in mm\nlabel,x,y,z\na,1,2,3\nb,4,5,6\n", ("a", "b")),
     ],
 )
@@ -51,24 +37,15 @@ def test_points_are_read_with_or_without_labels(text, labels, tmp_path):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "is empty"),
-        ("\n\n", "with the header label,x,y,z"),
         ("label;x;y\na;1;2\n", "with the header label,x,y,z; its first line is 'label;x;y'"),
         ("label,x,y,z,z\na,1,2,3,4\n", "has two columns z"),
         ("label,x,y,z\na,1,5,2,5,3,5\n", "7 cells; the header has 4. A comma in a number"),
         ("label;x;y;z\na;1,5;2.5;3\n", "with commas and with points, '1,5' and '2.5'"),
-        ("label;x;y;z\na;1.234,5;2;3\n", "x must be a number .* not '1.234,5'"),
-        ("x;y;z\n1;2;3\n".encode("utf-16-le"), "has bytes that are zero"),
-        (codecs.BOM_UTF16_LE + b"x,y", "not UTF-8"),
         ("label,x,y,z\n", "has a header but no rows"),
         ("label,x,y,z\na,1,2\n", "Line 2 .* has 3 cells; the header has 4"),
         ("label,x,y,z\na,1,2,3\nb,1,inf,3\n", "Line 3 .* y must be a number"),
-        ("label,x,y,z\na,1,2,three\n", "z must be a number .* not 'three'"),
-        ("label,x,y,z\na,1,2,3\na,4,5,6\n", '"a" is given to two points'),
-        ("label,x,y,z\na,1,2,3\n,4,5,6\n", "Point 2 has no label"),
         ('label,x,y,z\n"a,1,2,3\n', "not a CSV file: line 2"),
         (b"label,x,y,z\n\xff,1,2,3\n", "not UTF-8"),
-        ("x,y,z\n" + "1" * 200_000 + ",2,3\n", "not a CSV file"),
         ("# CoordinateSystem = IJK\nx,y,z\n1,2,3\n", "must be LPS or RAS, not 'IJK'"),
     ],
 )
@@ -91,10 +68,7 @@ SLICER_3 = "# Fiducial List file /F.fcsv\n# numPoints = 2\n# columns = label,x,y
     ("text", "signs"),
     [
         (SLICER_4.format(frame="# CoordinateSystem = LPS\n"), [1, 1, 1]),
-        (SLICER_4.format(frame="# CoordinateSystem = 1\n"), [1, 1, 1]),
-        (SLICER_4.format(frame="").replace("\n", "\r\n"), [1, 1, 1]),
         (SLICER_4.format(frame="# CoordinateSystem = 0\n"), [-1, -1, 1]),
-        (SLICER_4.format(frame="# CoordinateSystem = RAS\n"), [-1, -1, 1]),
         (SLICER_3 + "a,1,2,3,1,1\nb,4,5,6\n", [1, 1, 1]),
         ('"label","l","p","s","defined","selected"\n"a",-1,-2,3,1,1\n"b",-4,-5,6,1,1\n', [1, 1, 1]),
         ('"label","r","a","s","defined","selected"\n"a",1,2,3,1,1\n"b",4,5,6,1,1\n', [1, 1, 1]),
@@ -125,26 +99,3 @@ def test_what_slicer_writes_is_read_as_slicer_has_it(tmp_path):
         assert point_list.labels == ("a", ",", "d")
         assert point_list.left_out == {2: "b", 3: "c"}
         np.testing.assert_array_equal(point_list.points, [[0, 1, 2], [3, 4, 5], [12, 13, 14]])
-
-
-def test_trials_are_read_with_their_units(tmp_path):
-    (trial,) = read_trials(file(tmp_path, HEADER + "hmd,Anne,task-1,114.3,1.10\n"))
-    assert (trial.mode, trial.trainee, trial.task) == ("hmd", "Anne", "task-1")
-    assert trial.values == {"completion_time_s": 114.3, "rmse_mm": 1.1}
-    with pytest.raises(InputError, match="with the header mode,subject,task,ct,rmse"):
-        read_trials(file(tmp_path, "mode,subject,task,time,error\nhmd,a,1,10,1\n"))
-
-
-@pytest.mark.parametrize(
-    ("row", "words"),
-    [
-        ("hmd,a,1,0,1", "ct must be above 0"),
-        ("hmd,a,1,-5,1", "ct must be a number from 0"),
-        ("hmd,,1,10,1", "subject must be printable text"),
-        ("hmd,a,x\x07,10,1", "task must be printable text"),
-        ("hmd,a,1,10", "has 4 cells"),
-    ],
-)
-def test_invalid_trials_are_reported_with_their_line(row, words, tmp_path):
-    with pytest.raises(InputError, match=f"Line 3 .*{words}"):
-        read_trials(file(tmp_path, HEADER + "hmd,a,1,10,1\n" + row + "\n"))

@@ -2,15 +2,11 @@
 
 import numpy as np
 import pytest
-import trimesh
-import vtk
-from vtk.util.numpy_support import numpy_to_vtk
 
 from rastrainer.errors import InputError
-from rastrainer.files.ply import read_ply, read_point_cloud, write_ply
+from rastrainer.files.ply import read_point_cloud, write_ply
 
 POINTS = np.array([[1.5, -2.0, 3.25], [80.0, 0.125, -7.0], [-3.0, 40.0, 99.0]])
-CORNERS = np.array([[0, 1, 2], [2, 1, 0]])
 HEAD = "ply\nformat {form} 1.0\n{said}element vertex 3\nproperty float x\nproperty float y\n"
 HEAD += "property float z\nend_header\n"
 
@@ -57,63 +53,6 @@ def test_points_in_lps_become_ras_and_others_stay(tmp_path, said, factors, form)
     np.testing.assert_array_equal(read, POINTS * factors)
 
 
-def test_the_frame_is_the_one_in_which_vtk_reads_what_slicer_wrote(tmp_path):
-    data = vtk.vtkPolyData()
-    points = vtk.vtkPoints()
-    points.SetData(numpy_to_vtk(POINTS * [-1, -1, 1], deep=True))
-    data.SetPoints(points)
-    writer = vtk.vtkPLYWriter()
-    writer.AddComment("3D Slicer output. SPACE=LPS")
-    writer.SetFileName(str(tmp_path / "a.ply"))
-    writer.SetInputData(data)
-    writer.Write()
-    np.testing.assert_array_equal(read_point_cloud(tmp_path / "a.ply"), POINTS)
-
-
-@pytest.mark.parametrize("encoding", ["ascii", "binary"])
-def test_a_mesh_with_colors_and_normals_is_read_as_another_program_wrote_it(tmp_path, encoding):
-    mesh = trimesh.Trimesh(POINTS, CORNERS, process=False)
-    mesh.visual.vertex_colors = [[10, 20, 30, 255]] * 3
-    mesh.vertex_normals = np.tile([0.0, 0.6, 0.8], (3, 1))
-    content = mesh.export(file_type="ply", encoding=encoding, vertex_normal=True)
-    (tmp_path / "a.ply").write_bytes(content)
-    read = read_ply(tmp_path / "a.ply")
-    np.testing.assert_array_equal(read.vertices, POINTS)
-    np.testing.assert_array_equal(read.elements["face"]["vertex_indices"], CORNERS)
-    assert read.elements["vertex"]["green"].tolist() == [20, 20, 20]
-
-
-FIRST = (
-    "element camera 1\nproperty double focus\nelement face 2\nproperty list uchar int corners\n"
-    "property uchar shade\nelement vertex 3\nproperty short x\nproperty short y\nproperty short z\n"
-    "property list ushort float weights\nelement edge 0\nproperty int a\nend_header\n"
-)
-
-
-@pytest.mark.parametrize("order", ["<", ">"])
-@pytest.mark.parametrize("lengths", [(3, 3), (4, 3), (3, 0)], ids=str)
-def test_lists_and_elements_before_the_vertices_are_read_over(tmp_path, order, lengths):
-    form = {"<": "binary_little_endian", ">": "binary_big_endian"}[order]
-    body = np.array([35.0], order + "f8").tobytes()
-    for length in lengths:
-        body += bytes([length]) + np.arange(length, dtype=order + "i4").tobytes() + b"\x07"
-    for point in range(3):
-        body += np.array([point, 0, -point, point], order + "i2").tobytes()
-        body += np.ones(point, order + "f4").tobytes()
-    path = tmp_path / "a.ply"
-    path.write_bytes(f"ply\nformat {form} 1.0\n{FIRST}".encode() + body)
-    read = read_ply(path)
-    assert read.vertices.tolist() == [[0, 0, 0], [1, 0, -1], [2, 0, -2]]
-    assert [len(corners) for corners in read.elements["face"]["corners"]] == [*lengths]
-    assert list(read.elements["face"]["shade"]) == [7, 7]
-    text = "35\n" + "".join(f"{n} {' '.join(map(str, range(n)))} 7\n\n" for n in lengths)
-    text += "0 0 0 0\n1 0 -1 1 1\n2 0 -2 2 1 1\n"
-    path.write_text(f"ply\nformat ascii 1.0\n{FIRST}{text}")
-    again = read_ply(path)
-    np.testing.assert_array_equal(again.vertices, read.vertices)
-    assert [len(corners) for corners in again.elements["face"]["corners"]] == [*lengths]
-
-
 LISTS = "ply\nformat binary_little_endian 1.0\nelement a {rows}\n"
 LISTS += "property list {count} uchar b\nend_header\n"
 
@@ -122,23 +61,13 @@ LISTS += "property list {count} uchar b\nend_header\n"
     ("content", "said"),
     [
         ("x", "must be a PLY file"),
-        ("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n", "must be a PLY file"),
-        ("ply\nelement vertex 1\nproperty float x\nend_header\n1\n", "must be a PLY file"),
-        ("ply\nformat pdf 1.0\nelement vertex 1\nproperty float x\nend_header\n", "must be a PLY"),
         ("ply\nformat ascii 1.0\nend_header\n", "must have vertices with x, y and z"),
         (HEAD.format(form="ascii", said="") + "1 2 3\n4 5 6\n", "cut short"),
-        (HEAD.format(form="ascii", said="") + "1 2 3\n4 5 6\n7 8\n", "cut short"),
-        (HEAD.format(form="ascii", said="") + "1 2 3\n" * 4, "bytes left over"),
         (HEAD.format(form="ascii", said="") + "1 2 3 " * 20_000, "cut short"),
-        (HEAD.format(form="binary_little_endian", said="") + "x" * 35, "cut short"),
         (HEAD.format(form="binary_little_endian", said="") + "x" * 37, "bytes left over"),
         (HEAD.format(form="ascii", said="").replace("x 3", "x 9999999"), "must be a PLY|more than"),
-        (HEAD.format(form="ascii", said="").replace("vertex 3", "vertex -3"), "must be a PLY file"),
-        (HEAD.format(form="ascii", said="").replace("float y", "float x"), "cut short|must have"),
         (LISTS.format(rows=1, count="uint") + "\xff\xff\xff\xffabc", "cut short"),
-        (LISTS.format(rows=1, count="char") + "\xff" * 9, "cut short"),
         (LISTS.format(rows=2, count="uchar") + "\x01a\x09b", "cut short"),
-        (LISTS.format(rows=1, count="float") + "\0\0\0\0", "must be a PLY file"),
         (LISTS.format(rows=4_000_001, count="uchar"), "more than 4000000 of its element a"),
     ],
 )

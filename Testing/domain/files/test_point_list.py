@@ -44,18 +44,16 @@ def test_points_without_a_partner_are_named():
         pair(PointList(("a", "b", "c"), XYZ), PointList(("a", "b", "d", "e"), np.eye(4, 3)))
     with pytest.raises(InputError, match="3 moving and 4 fixed points"):
         pair(PointList((), XYZ), PointList(("a", "b", "d", "e"), np.eye(4, 3)))
+    with pytest.raises(InputError, match="No pair of points is left"):
+        pair(PointList(("a",), XYZ[:1], {1: "b"}), PointList(("b",), XYZ[:1], {0: "a"}))
 
 
 @pytest.mark.parametrize(
     ("labels", "points", "words"),
     [
         ((), [], "at least one point"),
-        ((), [[1.0, 2.0]], "three coordinates"),
         (("a", "b"), XYZ, "2 labels for 3 points"),
         (("a", "b", "a"), XYZ, '"a" is given to two points'),
-        (("a", "", "b"), XYZ, "Point 2 has no label although others have"),
-        (("a", "b", "c\n"), XYZ, "label of point 3 must be printable"),
-        (("a", "b", "c" * 65), XYZ, "label of point 3 must be printable"),
         (("a", "b", "c"), XYZ * [1, 1, np.nan], 'Point "a" has a coordinate that is not a number'),
         ((), XYZ + 1e6, "Point 1 has a coordinate"),
     ],
@@ -150,8 +148,6 @@ LEFT_OUT = PointList(("a", "c"), XYZ[[0, 2]], {1: "b"})
         (LEFT_OUT, PointList(("c", "b", "a"), XYZ), ("a", "c"), (2, 0)),
         (LEFT_OUT, PointList((), XYZ), ("a", "c"), (0, 2)),
         (PointList((), XYZ[:2], {0: ""}), PointList((), XYZ), ("2", "3"), (1, 2)),
-        (PointList((), XYZ[:2], {0: ""}), PointList((), XYZ[:2], {2: ""}), ("2",), (1,)),
-        (PointList((), XYZ[:2], {0: ""}), PointList((), XYZ[:2]), ("1", "2"), (0, 1)),
         (
             PointList(("a", "b"), XYZ[:2], {0: "b"}),
             PointList(("b", "a"), XYZ[:2]),
@@ -170,11 +166,6 @@ def test_a_point_that_is_left_out_of_one_list_is_left_out_of_both(moving, fixed,
     np.testing.assert_array_equal(points, fixed.points[list(rows)])
 
 
-def test_lists_of_which_no_pair_is_left_are_refused():
-    with pytest.raises(InputError, match="No pair of points is left"):
-        pair(PointList(("a",), XYZ[:1], {1: "b"}), PointList(("b",), XYZ[:1], {0: "a"}))
-
-
 def test_a_file_without_coordinate_system_is_read_as_lps_and_mm(tmp_path):
     content = document()
     del content["markups"][0]["coordinateSystem"], content["markups"][0]["coordinateUnits"]
@@ -187,23 +178,12 @@ def test_a_file_without_coordinate_system_is_read_as_lps_and_mm(tmp_path):
     [
         ("not json", "not JSON"),
         ([], "not a markups file"),
-        ({"markups": []}, "not a markups file"),
         ({"@schema": SCHEMA}, "exactly one point list"),
-        ({"@schema": SCHEMA, "markups": [{}, {}]}, "exactly one point list"),
         (document(type="Line"), "must be a point list"),
         (document(coordinateUnits="um"), "must be in mm"),
         (document(coordinateSystem="IJK"), "must be LPS or RAS"),
-        (document(coordinateSystem=["RAS"]), "must be LPS or RAS"),
         (document(controlPoints=[]), "holds no points"),
-        (document(controlPoints=[3]), "point 1 must be an object"),
-        (document(controlPoints=[{"label": 3, "position": [1, 2, 3]}]), "label of point 1"),
         (document(controlPoints=[{"position": [1, 2]}]), "position of point 1"),
-        (document(controlPoints=[{"positionStatus": "lost"}]), "positionStatus of point 1"),
-        (document(controlPoints=[{"position": [1, 2, True]}]), "position of point 1"),
-        (document(controlPoints=[{"position": [1, 2, 10**400]}]), "position of point 1"),
-        (document(controlPoints=[{"position": [1, 2, "3"]}]), "position of point 1"),
-        ('{"@schema": "markups-schema-v1.0.0", "markups": [NaN]}', "not JSON"),
-        (document(controlPoints=[{"label": "1", "position": [1, 2, 3]}] * 2), "two points"),
     ],
 )
 def test_other_files_are_refused_in_one_sentence_that_names_the_file(content, words, tmp_path):

@@ -7,7 +7,7 @@ import uuid
 
 import pytest
 
-from rastrainer.files.writing import keep_others_out, make_private_folder, write_private_json
+from rastrainer.files.writing import write_private_json
 from rastrainer.study.database.study import Study
 from rastrainer_simulator.flow.session.preferences import Preferences, write_preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS, write_bindings
@@ -66,14 +66,6 @@ def test_existing_recordings_become_private_when_opened(tmp_path):
         assert mode(path) & 0o077 == 0, path
 
 
-def test_a_folder_made_by_the_user_keeps_its_permissions(tmp_path):
-    (tmp_path / "lab").mkdir()
-    make_private_folder(tmp_path / "lab")
-    assert mode(tmp_path / "lab") == 0o775
-    make_private_folder(tmp_path / "lab" / "a" / "b")
-    assert [mode(tmp_path / "lab" / name) for name in ("a", "a/b")] == [0o700, 0o700]
-
-
 def test_a_folder_shared_with_a_group_stays_shared(tmp_path):
     (tmp_path / "lab").mkdir()
     (tmp_path / "lab").chmod(0o2770)
@@ -88,19 +80,3 @@ def test_a_folder_shared_with_a_group_stays_shared(tmp_path):
     path.chmod(0o660)
     write_private_json(path, {"seats": []})
     assert mode(path) == 0o660
-
-
-def test_private_json_is_readable_by_its_user_alone_whatever_it_replaces(tmp_path):
-    path = tmp_path / "settings" / "pin.json"
-    write_private_json(path, {})
-    assert mode(path) == 0o600
-    path.chmod(0o664)
-    write_private_json(path, {"pin": "1"})
-    assert mode(path) == 0o600
-
-
-def test_a_file_in_place_of_the_folder_is_an_error(tmp_path):
-    (tmp_path / "trials").write_text("my notes")
-    with pytest.raises(FileExistsError):
-        make_private_folder(tmp_path / "trials")
-    keep_others_out(tmp_path / "nowhere")

@@ -82,40 +82,19 @@ def test_each_space_is_converted_to_ras(tmp_path, space, ras):
     assert matrix[:3, 3].tolist() == list(ras)
 
 
-def test_left_handed_axes_and_big_endian_numbers_are_read(tmp_path):
-    values = grays(np.int16)
-    voxels = gzip.compress(values.astype(">i2").tobytes(order="F"))
-    directions = "(1,0,0) (0,1,0) (0,0,-1)"
-    changes = {"type": "short", "endian": "big", "space_directions": directions}
-    read, matrix = read_nrrd(changed(tmp_path / "a.nrrd", voxels, **changes))
-    assert np.array_equal(read, values)
-    assert np.linalg.det(matrix[:3, :3]) < 0
-
-
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
         ({"type": "float"}, "must have the type uint8"),
         ({"encoding": "raw"}, "compressed by gzip"),
-        ({"endian": "middle"}, "little or big endian"),
-        ({"dimension": "4"}, "three axes"),
-        ({"sizes": "5 6"}, "three axes"),
-        ({"sizes": "5 6 ٧"}, "three axes"),
-        ({"sizes": "5 6 999999999999"}, "three axes"),
-        ({"sizes": "2000 2000 2000"}, "at most 50 million in all"),
-        ({"sizes": "5 6 1"}, "2 to 2048 voxels along each axis"),
         ({"sizes": "5 6 8"}, "cut short"),
-        ({"sizes": "5 6 6"}, "no more voxels than its header says"),
         ({"space": "scanner-xyz"}, "space left-posterior-superior"),
+        ({"sizes": "2000 2000 2000"}, "at most 50 million in all"),
+        ({"sizes": "5 6 6"}, "no more voxels than its header says"),
         ({"space_directions": None}, "“space directions” with 9 numbers"),
-        ({"space_directions": "(1,0,0) (0,nan,0) (0,0,1)"}, "9 numbers within ±2000"),
-        ({"space_directions": "(1,0,0) (0,1) (0,0,1)"}, "9 numbers"),
         ({"space_directions": "(1,0,0) (0,1,0) (1,1,0)"}, "axes that span a space"),
-        ({"space_directions": "(1,0,0) (0,1,0) (0,0,0)"}, "voxels of 0.1 to 10 mm"),
         ({"space_directions": "(100,0,0) (0,1,0) (0,0,1)"}, "voxels of 0.1 to 10 mm"),
-        ({"space_origin": "(1,2,1e6)"}, "“space origin” with 3 numbers"),
         ({"data_file": "/etc/passwd"}, "hold its voxels itself"),
-        ({"byte_skip": "-1"}, "hold its voxels itself"),
         ({"SIZES": "5 6 7"}, "have the field “sizes” once"),
     ],
 )
@@ -139,25 +118,3 @@ def test_a_header_that_claims_gigabytes_is_refused_before_allocation(tmp_path):
         assert tracemalloc.get_traced_memory()[1] < MAX_FILE_BYTES + 1_000_000
     finally:
         tracemalloc.stop()
-
-
-def test_damaged_or_truncated_voxels_are_refused(tmp_path):
-    fields, voxels = good_file()
-    path = tmp_path / "bad.nrrd"
-    for cut in range(0, len(voxels), 7):
-        write(path, fields, voxels[:cut])
-        with pytest.raises(InputError, match="cut short"):
-            read_nrrd(path)
-    for place in (0, 2, len(voxels) // 2, len(voxels) - 6):
-        damaged = bytearray(voxels)
-        damaged[place] ^= 0x55
-        write(path, fields, bytes(damaged))
-        with pytest.raises(InputError, match=r"bad\.nrrd must hold"):
-            read_nrrd(path)
-
-
-@pytest.mark.parametrize("content", [b"NRRD", b"NRRD0004\ntype: uint8\n", b"\x93NUMPY", bytes(99)])
-def test_a_file_that_is_not_nrrd_is_refused(tmp_path, content):
-    (tmp_path / "bad.nrrd").write_bytes(content)
-    with pytest.raises(InputError, match=r"bad\.nrrd must (start as NRRD files do|have a header)"):
-        read_nrrd(tmp_path / "bad.nrrd")

@@ -1,15 +1,28 @@
-"""Messages against bytes computed by hand, and messages that cannot be sent."""
+"""Messages against the bytes of pyigtl and fastcrc, and messages that cannot be sent."""
 
 from __future__ import annotations
 
+import random
 import struct
 from dataclasses import replace
 
+import fastcrc
+import numpy as np
+import pyigtl
 import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.igtl.content import Command, CommandReply, Point, Points, Status, String, Transform
-from rastrainer.igtl.message import HEADER_BYTES, Message, crc64, pack, read_header, unpack
+from rastrainer.igtl.message import (
+    HEADER_BYTES,
+    Message,
+    crc64,
+    pack,
+    plain_crc64,
+    read_header,
+    unpack,
+)
+from Testing.domain.igtl.sent_pose import transform_of
 
 IDENTITY = Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0))
 EVERY_CONTENT = [
@@ -32,28 +45,6 @@ def read(data: bytes) -> Message:
     return unpack(header, body)
 
 
-def test_transform_of_header_version_1_has_the_bytes_worked_out_by_hand():
-    transform = Transform((1, 4, 7, 2, 5, 8, 3, 6, 9, 10, 20, 30))
-    data = pack(Message("Tip", transform, timestamp=2.5, version=1))
-    assert data[:2] == b"\x00\x01"
-    assert data[2:14] == b"TRANSFORM\0\0\0"
-    assert data[14:34] == b"Tip" + 17 * b"\0"
-    assert data[34:42] == b"\x00\x00\x00\x02\x80\x00\x00\x00"
-    assert data[42:50] == b"\x00\x00\x00\x00\x00\x00\x00\x30"
-    floats = "3f800000 40800000 40e00000 40000000 40a00000 41000000"
-    floats += "40400000 40c00000 41100000 41200000 41a00000 41f00000"
-    assert data[58:] == bytes.fromhex(floats)
-
-
-def test_string_of_header_version_2_with_metadata_has_the_bytes_worked_out_by_hand():
-    data = pack(Message("State", String("ok"), {"k": "vv"}, timestamp=0))
-    extended = "000c 000a 00000003 00000000"
-    content = "0003 0002 6f6b"
-    metadata = "0001 0001 0003 00000002 6b 7676"
-    assert data[58:] == bytes.fromhex(extended + content + metadata)
-    assert data[:2] == b"\x00\x02"
-
-
 def test_command_has_its_number_a_name_of_128_bytes_the_encoding_and_the_length():
     data = pack(Message("command", Command(258, "Hello", "{}"), version=1))
     assert data[58:62] == b"\x00\x00\x01\x02"
@@ -69,11 +60,6 @@ def test_every_content_survives_packing_and_unpacking():
             assert read(pack(replace(sent, metadata={}, version=1))).content == content
 
 
-def test_metadata_time_and_version_survive_packing_and_unpacking():
-    sent = Message("Tip", IDENTITY, {"seq": "12", "note": "3 ± 1"}, 1234.5, 2)
-    assert read(pack(sent)) == sent
-
-
 def test_longer_extended_header_is_skipped_by_its_size():
     content = String("ok").pack()
     body = struct.pack(">HHII", 16, 0, 0, 5) + b"new!" + content
@@ -81,35 +67,19 @@ def test_longer_extended_header_is_skipped_by_its_size():
     assert read(header + body).content == String("ok")
 
 
-def test_a_transform_keeps_rows_and_columns_apart():
-    transform = Transform((1, 4, 7, 2, 5, 8, 3, 6, 9, 10, 20, 30))
-    assert transform.matrix == ((1, 2, 3, 10), (4, 5, 6, 20), (7, 8, 9, 30), (0, 0, 0, 1))
-
-
 @pytest.mark.parametrize(
     "message",
     [
         Message("A name of 21 letters.", IDENTITY),
-        Message("", IDENTITY),
         Message("Tête", IDENTITY),
-        Message("a\nb", IDENTITY),
-        Message("Points", Points(())),
-        Message("Points", Points(()), {"count": "0"}, version=1),
-        Message("Points", Points(()), version=1),
         Message("Tip", IDENTITY, {"seq": "1"}, version=1),
         Message("Tip", IDENTITY, version=3),
-        Message("Tip", IDENTITY, {"é": "1"}),
         Message("Tip", IDENTITY, {"cut": "at\0NUL"}),
-        Message("Tip", IDENTITY, timestamp=-1),
         Message("Tip", IDENTITY, {str(i): "" for i in range(257)}),
         Message("Text", String("x" * 65_536)),
-        Message("Text", String("cut at\0NUL")),
         Message("Text", String("lone surrogate \ud800")),
         Message("Status", Status(1, name="a name of 21 letters.")),
-        Message("Status", Status(70_000)),
-        Message("Points", Points((Point("x" * 65, (0, 0, 0)),))),
         Message("command", Command(2**32, "Hello")),
-        Message("command", Command(1, "H" * 129)),
         Message("command", Command(1, "Big", "x" * 2**24)),
     ],
 )
@@ -132,51 +102,56 @@ def test_text_is_read_as_utf_8_whatever_encoding_is_announced():
     assert String.unpack(bytes(data)) == String("é")
 
 
-@pytest.mark.parametrize(
-    ("kind", "data"),
-    [
-        (Transform, bytes(47)),
-        (Transform, bytes(52)),
-        (Transform, struct.pack(">12f", *[float("nan")] * 12)),
-        (String, b"\x00\x03\x00"),
-        (String, b"\x00\x03\x00\x05four"),
-        (String, b"\x00\x03\x00\x02\xff\xfe"),
-        (Points, bytes(135)),
-        (Points, bytes(137)),
-        (Points, b"\0" * 100 + struct.pack(">4f", 0, float("inf"), 0, 0) + b"\0" * 20),
-        (Status, bytes(29)),
-        (Command, bytes(137)),
-        (Command, struct.pack(">I128sHI", 1, b"Hello", 3, 2**32 - 1) + b"{}"),
-        (CommandReply, b""),
-    ],
-)
-def test_truncated_or_not_finite_content_is_refused_with_a_message(kind, data):
-    with pytest.raises(InputError, match=r"must .*\."):
-        kind.unpack(data)
+MATRIX = np.array([[0, -1, 0, 10.5], [1, 0, 0, -20.25], [0, 0, 1, 300.125], [0, 0, 0, 1]])
+TIME = 1234.5
 
 
-@pytest.mark.parametrize(
-    "sizes",
-    [(11, 0, 0), (200, 0, 0), (12, 60, 0), (12, 0, 2**32 - 1), (12, 1, 0), (12, 65_535, 65_535)],
-)
-def test_extended_header_whose_sizes_do_not_fit_is_refused(sizes):
-    body = struct.pack(">HHII", *sizes, 0) + IDENTITY.pack()
-    header = struct.pack(">H12s20sIIQQ", 2, b"TRANSFORM", b"T", 0, 0, len(body), crc64(body))
-    with pytest.raises(InputError):
-        unpack(read_header(header), body)
+def transform_pair():
+    return transform_of(MATRIX), pyigtl.TransformMessage(MATRIX, TIME, "Device")
 
 
-@pytest.mark.parametrize(
-    "index",
-    [
-        struct.pack(">H", 1),
-        struct.pack(">H", 65_535) + bytes(64),
-        struct.pack(">HHHI", 1, 3, 3, 2**32 - 1),
-        struct.pack(">HHHI", 1, 65_535, 3, 1),
-    ],
-)
-def test_metadata_longer_than_the_message_is_refused(index):
-    body = struct.pack(">HHII", 12, len(index), 2, 0) + IDENTITY.pack() + index + b"kv"
-    header = struct.pack(">H12s20sIIQQ", 2, b"TRANSFORM", b"T", 0, 0, len(body), crc64(body))
-    with pytest.raises(InputError):
-        unpack(read_header(header), body)
+def string_pair():
+    return String("touch point 3"), pyigtl.StringMessage("touch point 3", TIME, "Device")
+
+
+def points_pair():
+    positions = [[1.5, 2, 3], [-4, 5, 6.25]]
+    points = Points(tuple(Point(str(i + 1), tuple(xyz)) for i, xyz in enumerate(positions)))
+    return points, pyigtl.PointMessage(
+        positions, names=["1", "2"], timestamp=TIME, device_name="Device"
+    )
+
+
+PAIRS = pytest.mark.parametrize("pair", [transform_pair, string_pair, points_pair])
+
+
+@PAIRS
+def test_bytes_of_both_header_versions_are_those_of_pyigtl(pair):
+    content, peer = pair()
+    assert pack(Message("Device", content, timestamp=TIME, version=1)) == peer.pack()
+    peer.header_version = 2
+    peer.metadata = {"seq": "12", "TransformStatus": "OK"}
+    message = Message("Device", content, dict(peer.metadata), TIME)
+    assert pack(message) == peer.pack()
+
+
+@PAIRS
+def test_messages_packed_by_pyigtl_are_read(pair):
+    content, peer = pair()
+    peer.header_version, peer.metadata = 2, {"seq": "12"}
+    data = peer.pack()
+    message = unpack(read_header(data), data[HEADER_BYTES:])
+    assert message == Message("Device", content, {"seq": "12"}, TIME, 2)
+
+
+@pytest.mark.parametrize("checksum", [crc64, plain_crc64])
+def test_checksum_gives_the_check_value_of_crc_64_ecma_182(checksum):
+    assert checksum(b"123456789") == 0x6C40DF5F0B497347
+
+
+def test_plain_python_equals_fastcrc_on_random_bodies():
+    generator = random.Random(1)
+    for length in [0, 1, 2, 7, 8, 9, 48, 255, 2098, 65_537]:
+        body = generator.randbytes(length)
+        assert plain_crc64(body) == fastcrc.crc64.ecma_182(body)
+    assert crc64 is fastcrc.crc64.ecma_182

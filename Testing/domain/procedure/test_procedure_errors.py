@@ -1,4 +1,4 @@
-"""The errors of a procedure against the truth, and their causes."""
+"""The errors of a procedure against the truth, and their causes; unusable records of one."""
 
 import json
 from dataclasses import replace
@@ -8,8 +8,9 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.json_records import record_to_json
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.procedure.errors import analyze_procedure
+from rastrainer.procedure.record import ProcedureRecord
 from rastrainer.trial.procedure_outcome import ProcedureMeasures
 from Testing.domain.procedure.made_up_procedure import (
     VESSEL_MM,
@@ -157,21 +158,34 @@ def test_a_drill_that_goes_deeper_than_the_instrument_counts_for_the_distance():
     assert plunged.hits == (("Left", "Vessel"),)
 
 
-def test_a_procedure_is_summarized_by_root_mean_squares():
-    right = trajectory("Right", (-60.0, 0.0, 67.08), (-15.0, 10.0, 0.0))
-    analysis = analyzed(shifted(x=2.0), lines=(DOWN, right))
-    lengths = [each.target_point_error.mm for each in analysis.trajectories]
-    assert analysis.target_point_error_rms_mm == pytest.approx(np.sqrt(np.mean(np.square(lengths))))
-    assert analysis.target_point_error_by_registration_rms_mm == pytest.approx(2.0)
-    assert analysis.target_point_error_by_hand_rms_mm == pytest.approx(0.0, abs=1e-9)
-    content = json.loads(json.dumps(record_to_json(analysis)))
-    assert content["trajectories"][1]["targetPointError"]["mm"] == lengths[1]
-    assert content["alignments"] == 2
-
-
 def test_the_record_of_another_plan_is_refused():
     record = recorded(made_up_procedure(DOWN), TRUTH)
     moved = made_up_procedure(trajectory(target=(0, 0, 21)))
     for procedure in (moved, made_up_procedure(), made_up_procedure(DOWN, name="other")):
         with pytest.raises(InputError, match="of another plan than the procedure"):
             analyze_procedure(record, procedure, MESHES, TRUTH)
+
+
+MIRROR = [-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
+
+
+@pytest.mark.parametrize(
+    ("part", "changes", "sentence"),
+    [
+        ("attempts", {"registration": None}, "must end with an accepted registration"),
+        (
+            "attempts",
+            {"registration": {"matrix": MIRROR, "freMm": 0.8, "expectedTreMm": 0.6}},
+            "matrix must be a rigid transform",
+        ),
+        ("instruments", {"guideDirection": [0, 0, 0.9]}, "guideDirection must be a unit vector"),
+    ],
+    ids=["not registered", "mirrored", "no unit vector"],
+)
+def test_a_record_that_cannot_be_one_is_refused(part, changes, sentence):
+    record = recorded(made_up_procedure(), np.eye(4))
+    value = json.loads(json.dumps(record_to_json(record)))
+    assert record_from_json(ProcedureRecord, value) == record
+    value[part][-1] |= changes
+    with pytest.raises(InputError, match=sentence):
+        record_from_json(ProcedureRecord, value)

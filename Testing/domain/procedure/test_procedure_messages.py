@@ -19,11 +19,7 @@ from rastrainer.protocol import FIDUCIAL_COUNT, PROCEDURE_PHASES
 from rastrainer.study.database.study import RECORD_LIMIT_BYTES
 from rastrainer.trial.procedure_outcome import ProcedureMeasures, ProcedureOutcome, score_procedure
 from rastrainer.trial.record import TrialRecord
-from Testing.domain.procedure.made_up_procedure import (
-    made_up_meshes,
-    made_up_procedure,
-    trajectory,
-)
+from Testing.domain.procedure.made_up_procedure import made_up_meshes, made_up_procedure, trajectory
 from Testing.domain.procedure.procedure_records import recorded
 from Testing.domain.trial.trial_records import make_record
 

@@ -5,13 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.registration.surface_checks import places_around
-from rastrainer.registration.surface_error import (
-    DAB,
-    PoseKnowledge,
-    TraceGuide,
-    knowledge_so_far,
-)
+from rastrainer.registration.surface_error import DAB, PoseKnowledge, TraceGuide
 
 TARGET = np.array([0.7815, -16.9395, 1.432])
 EYE = np.array([0.8, 583.1, 221.4])
@@ -76,13 +70,6 @@ def draw_in_strokes(
 def expected_mm(knowledge: PoseKnowledge, targets: np.ndarray) -> np.ndarray:
     """Return √E[TRE²] at targets (m, 3), RAS mm, (m,) float, mm, without an offset they share."""
     return np.sqrt(np.trace(knowledge.at_targets(targets), axis1=1, axis2=2))
-
-
-def expected_after(head: HeadMesh, places: np.ndarray) -> float:
-    """Return the expected TRE after points on the skin (n, 3), RMS over the guided targets."""
-    rows = np.argmin(np.linalg.norm(head.vertices - places[:, None], axis=2), axis=1)
-    knowledge = knowledge_so_far(places, head.vertex_normals[rows], head)
-    return float(np.sqrt(np.mean(expected_mm(knowledge, places_around(TARGET)) ** 2)))
 
 
 def _along_skin(head: HeadMesh, at: np.ndarray, heading: np.ndarray) -> np.ndarray:

@@ -32,18 +32,6 @@ def codes(match):
     return {warning.code for warning in match.warnings}
 
 
-def test_without_noise_the_true_pose_is_found(head, face):
-    trace, start, pose = face(1, 0.0)
-    match = match_surface(trace, head, start, seed=1)
-    assert traces.error_at_center(match.matrix, pose, head) < 0.02
-    assert match.rms_mm < 0.01
-    assert match.inlier_share == 1.0
-    assert match.converged
-    assert match.best_starts >= match.starts // 2
-    assert transforms.is_rigid(match.matrix)
-    assert match.warnings == ()
-
-
 def test_with_noise_the_residual_is_the_noise_and_the_error_small(head, face):
     trace, start, pose = face(4, 0.5)
     match = match_surface(trace, head, start)
@@ -54,12 +42,6 @@ def test_with_noise_the_residual_is_the_noise_and_the_error_small(head, face):
     feet = placed - match.residuals_mm[:, None] * match.normals
     assert np.allclose(head.skin.tree.nearest(feet).distances, 0.0, atol=1e-6)
     assert np.allclose(np.linalg.norm(match.normals, axis=1), 1.0)
-
-
-def test_the_same_trace_gives_the_same_match(head, face):
-    trace, start, _ = face(5)
-    one, other = (match_surface(trace, head, start, seed=7) for _ in range(2))
-    assert np.array_equal(one.matrix, other.matrix)
 
 
 def test_points_far_off_do_not_count_and_are_named(head, face):
@@ -113,20 +95,16 @@ def test_a_trace_of_another_head_is_reported(head, face):
 @pytest.mark.parametrize(
     ("spoil", "sentence"),
     [
-        (lambda t, _: t[:29], "needs 30 to"),
-        (lambda t, _: np.tile(t, (600, 1)), "needs 30 to"),
-        (lambda t, _: t[0] + np.random.default_rng(0).normal(0, 2, (60, 3)), "in one place"),
-        (lambda t, _: np.where(np.arange(600).reshape(200, 3) == 7, np.nan, t), "Point 3 has"),
-        (lambda t, _: t[:, :2], "three coordinates"),
-        (lambda _t, _: [["a"] * 3] * 40, "must be numbers"),
-        (lambda t, _: t + 400.0, "mm off the head"),
+        (lambda t: t[:29], "needs 30 to"),
+        (lambda t: t[0] + np.random.default_rng(0).normal(0, 2, (60, 3)), "in one place"),
+        (lambda t: t + 400.0, "mm off the head"),
     ],
-    ids=["few", "many", "one place", "not finite", "flat", "words", "far off"],
+    ids=["few", "one place", "far off"],
 )
 def test_an_unusable_trace_is_refused_with_a_message(head, face, spoil, sentence):
-    trace, start, pose = face(13)
+    trace, start, _ = face(13)
     with pytest.raises(InputError, match=sentence):
-        match_surface(spoil(trace, pose), head, start)
+        match_surface(spoil(trace), head, start)
 
 
 def test_an_open_surface_and_one_in_meters_are_refused_with_a_message(head, face):
@@ -135,9 +113,3 @@ def test_an_open_surface_and_one_in_meters_are_refused_with_a_message(head, face
         match_surface(trace, HeadMesh(head.vertices, head.triangles[1:]), start)
     with pytest.raises(InputError, match="in millimeters"):
         match_surface(trace, HeadMesh(head.vertices / 1000.0, head.triangles), start)
-
-
-def test_a_start_pose_that_is_not_rigid_is_refused_with_a_message(head, face):
-    trace, start, _ = face(15)
-    with pytest.raises(InputError, match="rigid 4×4"):
-        match_surface(trace, head, 2.0 * start)

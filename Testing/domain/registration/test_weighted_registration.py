@@ -7,7 +7,6 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rastrainer import transforms
-from rastrainer.errors import InputError
 from rastrainer.registration.fits import fit
 from rastrainer.registration.localization_error import (
     expected_fre,
@@ -82,30 +81,6 @@ def test_expected_fre_and_tre_of_known_unequal_errors_are_those_of_simulated_fit
     assert expected == pytest.approx(np.sqrt((errors**2).sum(axis=1).mean()), rel=0.05)
 
 
-def test_the_expected_tre_is_that_of_the_inverse_of_the_weighted_normal_equations():
-    registration, fle = weighted_registration()
-    center = registration.fixed_mm.mean(axis=0)
-    normal = np.zeros((6, 6))
-    jacobian = lambda point: np.hstack([np.eye(3), -cross_matrix(point - center)])  # noqa: E731
-    for point, size in zip(registration.fixed_mm, fle, strict=True):
-        normal += jacobian(point).T @ jacobian(point) * 3 / size**2
-    there = jacobian(TARGET + center)
-    variance = np.trace(there @ np.linalg.inv(normal) @ there.T)
-    found = expected_tre(registration, (TARGET + center)[None], stated_error(fle), 0.0)[0]
-    assert found == pytest.approx(np.sqrt(variance), rel=1e-9)
-
-
-def cross_matrix(v):
-    return np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
-
-
-def test_equal_errors_expect_the_fre_of_sibsons_formula():
-    fixed = fiducials()
-    registration = register(posed(fixed)[0], fixed)
-    found = expected_fre(registration, stated_error(np.full(12, 1.5)))
-    assert found == pytest.approx(1.5 * np.sqrt(1 - 2 / 12), rel=1e-9)
-
-
 @pytest.mark.parametrize("sets", [50, pytest.param(400, marks=pytest.mark.soak)])
 def test_misfit_to_the_stated_errors_is_seldom_a_false_alarm(sets):
     stated = [misfit_probability(*weighted_registration(seed)) for seed in range(sets)]
@@ -114,23 +89,6 @@ def test_misfit_to_the_stated_errors_is_seldom_a_false_alarm(sets):
     assert np.mean(np.array(stated) < 0.05) == pytest.approx(0.05, abs=off)
     registration, fle = weighted_registration()
     assert misfit_probability(registration, fle / 3) < 1e-6
-
-
-@pytest.mark.parametrize(
-    ("weights", "kind", "message"),
-    [
-        (np.ones(3), "rigid", "There must be 12 weights"),
-        ([*[1.0] * 11, 0.0], "rigid", "weight of point 12 must be a number above 0"),
-        ([*[1.0] * 11, np.nan], "rigid", "weight of point 12 must be a number above 0"),
-        ([*[1.0] * 11, 1e13], "rigid", "at most 1e[+]12 times"),
-        ("many", "rigid", "weights must be numbers"),
-        (np.ones(12), "affine", "affine has none"),
-    ],
-    ids=["few", "zero", "none", "far apart", "words", "affine"],
-)
-def test_invalid_weights_are_refused_with_a_message(weights, kind, message):
-    with pytest.raises(InputError, match=message):
-        register(fiducials(), fiducials(), kind, weights=weights)
 
 
 @pytest.fixture
@@ -168,28 +126,14 @@ def test_the_command_weights_by_a_column_of_the_points_themselves(files, capsys)
     assert answer["expected_tre"]["fle_mm"] == pytest.approx(np.sqrt(np.mean(fle**2)))
 
 
-def test_the_command_prints_weights_and_expected_fre(files, capsys):
-    moving, fixed, _, fle = files
-    status, out = run(capsys, moving, fixed, "--fle", moving)
-    assert status == 0
-    assert "6 pairs of points, weighted" in out.out
-    assert "to be expected from the stated FLE" in out.out
-    assert "FLE (mm)" in out.out
-    small = moving.with_name("small.csv")
-    small.write_text("fle\n" + "\n".join(str(value / 10) for value in fle))
-    assert "larger than the stated FLE allow" in run(capsys, moving, fixed, "--fle", small)[1].out
-
-
 def test_the_command_takes_weights_by_label_in_any_order(files, capsys):
     moving, fixed, expected, fle = files
     weights = moving.with_name("weights.csv")
     rows = [f"p{i},{4 / value**2}" for i, value in enumerate(fle)]
     weights.write_text("\n".join(["label,weight", *reversed(rows), "p99,1"]))
     status, out = run(capsys, moving, fixed, "--weights", weights, "--json")
-    answer = json.loads(out.out)
     assert status == 0
-    np.testing.assert_allclose(answer["matrix"], expected.matrix, atol=1e-9)
-    assert answer["stated"] is None
+    np.testing.assert_allclose(json.loads(out.out)["matrix"], expected.matrix, atol=1e-9)
     assert "Weight" in run(capsys, moving, fixed, "--weights", weights)[1].out
 
 
@@ -199,10 +143,8 @@ def test_the_command_takes_weights_by_label_in_any_order(files, capsys):
         ("label,fle\np0,1\n", "has no fle for point p1, p2"),
         ("label,fle\np0,1\np0,2\n", "two rows for point 'p0'"),
         ("fle\n1\n2\n", "2 rows without labels for 6 pairs"),
-        ("label,fle\np0,0\n", "fle must be a number from 0.001 to 1000"),
-        ("label,error\np0,1\n", "header label,fle"),
     ],
-    ids=["missing", "doubled", "too few", "zero", "header"],
+    ids=["missing", "doubled", "too few"],
 )
 def test_a_file_that_does_not_match_the_points_is_refused_with_a_message(
     files, capsys, text, message

@@ -1,5 +1,6 @@
 """A scenario on a spherical head, for tests of files and packages."""
 
+import json
 import struct
 import zlib
 from pathlib import Path
@@ -66,3 +67,15 @@ def made_up_scenario():
         targets=(PlannedTarget("Cyst", np.array([10.0, 20.0, 30.0])),),
         trajectory=PlannedTrajectory("Biopsy", np.array([0.0, 0.0, 90.0]), np.zeros(3)),
     )
+
+
+def change_scenario(folder, path, value):
+    """Replace one value of a scenario, given by a path such as cameras.far.viewUp."""
+    file = folder / "scenario.json"
+    content = json.loads(file.read_text())
+    *parents, last = path.split(".")
+    place = content
+    for parent in parents:
+        place = place[int(parent) if parent.isdigit() else parent]
+    place[last] = value
+    file.write_text(json.dumps(content))

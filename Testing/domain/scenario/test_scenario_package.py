@@ -1,17 +1,12 @@
 """Scenarios as zip files, and malicious zip files."""
 
-import io
-import json
 import stat
 import zipfile
 
 import numpy as np
 import pytest
 
-from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.head.mesh import HeadMesh, write_head_mesh
-from rastrainer.head.volume import write_nrrd
 from rastrainer.scenario.library import pack, unpack
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.writer import write_scenario
@@ -87,7 +82,6 @@ def test_nothing_is_overwritten(folder, library):
     "name",
     [
         "../evil.txt",
-        "tasks/../../evil.txt",
         "/etc/evil.txt",
         "C:\\evil.txt",
         "C:evil.txt",
@@ -95,7 +89,6 @@ def test_nothing_is_overwritten(folder, library):
         "tasks//x",
         "CON.txt",
         "name\n.txt",
-        "Übung/../../böse.txt",
         "Übung\\..\\..\\böse.txt",
     ],
 )
@@ -127,15 +120,32 @@ def test_a_package_that_a_person_zipped_again_is_unpacked_without_what_else_was_
     assert unpacked == {*members(folder)}
 
 
-def test_a_package_of_two_scenarios_is_refused_and_one_with_an_older_copy_inside_is_not(
-    folder, library
-):
-    files = members(folder)
-    two = {f"{base}/{name}": files[name] for base in ("one", "two") for name in files}
-    refused(zip_of(folder.parent / "bad.zip", two), library, "holds several scenarios")
-    with_copy = {**files, **{f"old copy/{name}": content for name, content in files.items()}}
-    goal = unpack(zip_of(folder.parent / "again.zip", with_copy), library)
-    assert not (goal / "old copy").exists()
+PYRAMID_WITHOUT_BASE = (
+    b"ply\nformat ascii 1.0\ncomment SPACE=RAS\nelement vertex 5\nproperty float x\n"
+    b"property float y\nproperty float z\nelement face 4\nproperty list uchar int vertex_indices\n"
+    b"end_header\n-90 -90 0\n90 -90 0\n90 90 0\n-90 90 0\n0 0 90\n"
+    b"3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (
+            lambda files: {f"{n}/{name}": files[name] for n in "ab" for name in files},
+            "several scen",
+        ),
+        (lambda files: {**files, **{f"f{n}": b"" for n in range(100)}}, "holds .* files"),
+        (lambda files: {**files, "HEAD.PLY": b"x"}, "holds a file twice"),
+        (lambda files: {**files, "scenario.json": b"{"}, r"scenario\.json"),
+        (lambda files: {**files, "head.ply": b"ply"}, r"head\.ply"),
+        (lambda files: {**files, "head.ply": PYRAMID_WITHOUT_BASE}, r"head\.ply is not closed"),
+    ],
+    ids=["two scenarios", "many", "twice", "JSON", "mesh", "open mesh"],
+)
+def test_a_package_of_anything_but_one_sound_scenario_is_refused(folder, library, change, sentence):
+    bad = zip_of(folder.parent / "bad.zip", change(members(folder)))
+    refused(bad, library, sentence)
 
 
 def test_a_link_is_refused(folder, library):
@@ -156,49 +166,6 @@ def test_a_zip_bomb_is_stopped_by_its_unpacked_size(folder, library, monkeypatch
     refused(bomb, library, "holds more than 3 MB")
 
 
-def test_too_many_and_duplicate_files_are_refused(folder, library):
-    files = members(folder)
-    many = {**files, **{f"f{index}": b"" for index in range(100)}}
-    refused(zip_of(folder.parent / "bad.zip", many), library, "holds .* files")
-    twice = {**files, "HEAD.PLY": b"x"}
-    refused(zip_of(folder.parent / "bad.zip", twice), library, "holds a file twice")
-
-
-def test_a_huge_or_open_mesh_is_refused(folder, library, monkeypatch):
-    files = members(folder)
-    head = ball_head()
-    write_head_mesh(folder / "open.ply", HeadMesh(head.vertices, head.triangles[:-1]))
-    opened = {**files, "head.ply": (folder / "open.ply").read_bytes()}
-    refused(zip_of(folder.parent / "bad.zip", opened), library, "head.ply is not closed")
-    monkeypatch.setattr("rastrainer.scenario.library.MAX_TRIANGLES", 100)
-    refused(zip_of(folder.parent / "bad.zip", files), library, "triangles; a scenario's may have")
-
-
-@pytest.mark.parametrize(
-    ("name", "content", "sentence"),
-    [
-        ("scenario.json", b"{", "scenario.json"),
-        ("scenario.json", b'{"formatVersion": 1}', "needs the key"),
-        ("tasks/task-1.mrk.json", b"{}", "task-1.mrk.json"),
-        ("head.ply", b"ply", "head.ply"),
-        ("volume.nrrd", b"NRRD0004\ntype: float\n\n", r"volume volume\.nrrd must have the type"),
-    ],
-)
-def test_an_unusable_file_is_named(folder, library, name, content, sentence):
-    bad = zip_of(folder.parent / "bad.zip", {**members(folder), name: content})
-    refused(bad, library, sentence)
-
-
-def test_a_volume_that_does_not_cover_the_head_is_refused(folder, library):
-    files = members(folder)
-    images = ball_volume()
-    elsewhere = transforms.rigid(np.eye(3), [150.0, 0.0, 0.0]) @ images.ijk_to_ras
-    write_nrrd(folder / "elsewhere.nrrd", images.values, elsewhere)
-    files["volume.nrrd"] = (folder / "elsewhere.nrrd").read_bytes()
-    bad = zip_of(folder.parent / "bad.zip", files)
-    refused(bad, library, r"volume\.nrrd must lie where the head is")
-
-
 def test_texts_in_a_volume_are_not_packed(folder):
     path = folder / "volume.nrrd"
     magic, rest = path.read_bytes().split(b"\n", 1)
@@ -206,33 +173,8 @@ def test_texts_in_a_volume_are_not_packed(folder):
     assert b"Mustermann" not in members(folder)["volume.nrrd"]
 
 
-def test_a_name_with_a_path_is_refused(folder, library):
-    files = members(folder)
-    content = {**json.loads(files["scenario.json"]), "name": "../../evil"}
-    files["scenario.json"] = json.dumps(content).encode()
-    refused(zip_of(folder.parent / "bad.zip", files), library, "name must be")
-
-
 @pytest.mark.parametrize("content", [b"", b"no zip", b"PK\x03\x04" + bytes(100)])
 def test_a_file_that_is_not_a_zip_file_is_refused(folder, library, content):
     bad = folder.parent / "bad.zip"
     bad.write_bytes(content)
     refused(bad, library, "is not a zip file, or is damaged")
-
-
-def test_a_damaged_package_is_refused(folder, library):
-    whole = pack(folder, folder.parent / "good.zip").read_bytes()
-    bad = folder.parent / "bad.zip"
-    for cut in range(100, len(whole), len(whole) // 4):
-        bad.write_bytes(whole[:cut])
-        refused(bad, library, "bad.zip")
-    names = io.BytesIO(whole)
-    with zipfile.ZipFile(names) as archive:
-        start = archive.getinfo("head.ply").header_offset
-    bad.write_bytes(whole[: start + 2000] + bytes(400) + whole[start + 2400 :])
-    refused(bad, library, "bad.zip")
-
-
-def test_a_missing_package_is_named(tmp_path):
-    with pytest.raises(InputError, match=r"There is no file .*none\.zip"):
-        unpack(tmp_path / "none.zip", tmp_path / "library")

@@ -41,12 +41,6 @@ def study_with_trials(path, consent=True):
 def play(study, trainee, mode):
     number = sum(len(study.history(name)) for name in ("A", "B"))
     utc = f"2999-01-01T10:0{number}:00Z"
-    record = make_record(
-        trialId=f"00000000-0000-0000-0000-00000000000{number}",
-        mode=mode,
-        trainee=trainee,
-        startedUtc=utc,
-        completedUtc=utc,
-        motion={"sparc": -2.5},
-    )
+    moment = {"startedUtc": utc, "completedUtc": utc}
+    record = make_record(number, mode=mode, trainee=trainee, motion={"sparc": -2.5}, **moment)
     study.add_trial(record, score=gentle_score(110.0, 0.5))

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import random
-import signal
 import subprocess
 import sys
 import threading
@@ -13,13 +11,7 @@ import time
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.study.database import postgres_connecting, postgres_database
-from rastrainer.study.database.database import (
-    INTERACTIVE_WAIT_S,
-    LockWait,
-    StudyBusyError,
-    StudyUnreachableError,
-)
+from rastrainer.study.database.database import LockWait, StudyUnreachableError
 from rastrainer.study.database.schema import TABLES
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
@@ -69,7 +61,7 @@ def test_a_server_killed_while_trials_are_stored_loses_none_that_were_acknowledg
     killer = threading.Thread(target=kill_occasionally)
     killer.start()
     while not is_over.is_set() or number < 10:
-        record = make_record(trialId=f"00000000-0000-0000-0000-{number:012d}")
+        record = make_record(number)
         try:
             study.add_trial(record)
         except StudyUnreachableError:
@@ -136,84 +128,6 @@ def counts_of(database):
     return [database.row(f"SELECT count(*) FROM {table.name}") for table in TABLES.values()]
 
 
-def test_a_connection_is_reestablished_after_an_outage_of_the_server(own_server):
-    place = own_server.new_study()
-    with Study.open(place) as study:
-        study.create_trainee("a")
-        own_server.kill()
-        with pytest.raises(StudyUnreachableError, match="cannot be reached now"):
-            study.trainees()
-        assert study.database.version() is None
-        own_server.start()
-        assert [trainee.pseudonym for trainee in study.trainees()] == ["a"]
-        assert study.create_trainee().pseudonym == "T002"
-
-
-def test_a_seat_that_holds_the_lock_is_reported_and_waited_for_only_once(place, monkeypatch):
-    monkeypatch.setattr(postgres_database, "INTERACTIVE_PATIENCE_S", 60.0)
-    monkeypatch.setattr(postgres_connecting, "INTERACTIVE_SILENCE_S", 60)
-    with Study.open(place) as holder:
-        lock_wait = LockWait(0.05, rest_s=1.0, clock=lambda: 0.0)
-        with Study.open(place, lock_wait) as study:
-            with holder.database.writing():
-                with pytest.raises(StudyBusyError, match="Another program has locked the study"):
-                    study.create_trainee("a")
-                assert lock_wait.timeout_s == 0.0
-                # Readers wait for no one.
-                assert study.trainees() == ()
-            study.create_trainee("a")
-
-
-def test_a_slow_reader_is_not_cut_off_but_a_slow_holder_of_the_lock_is(place, monkeypatch):
-    Study.open(place).close()
-    hasty = postgres_connecting._SESSION.replace("'20s'", "'10ms'")
-    monkeypatch.setattr(postgres_connecting, "_SESSION", hasty)
-    with Study.open(place) as study:
-        with study.database.reading():
-            # As a copy that writes a large table elsewhere before it reads the next.
-            time.sleep(0.1)
-            assert study.database.row("SELECT count(*) FROM trials") == (0,)
-
-        def change_slowly():
-            with study.database.writing():
-                time.sleep(0.1)
-                study.database.change("DELETE FROM trials")
-
-        with pytest.raises(StudyBusyError, match="waited too long"):
-            change_slowly()
-
-
-class HastyClock:
-    """Stands in for `time`: each reading is some seconds later."""
-
-    def __init__(self):
-        self.step_s = self._ahead_s = 0.0
-
-    def monotonic(self):
-        self._ahead_s += self.step_s
-        return time.monotonic() + self._ahead_s
-
-
-@pytest.mark.parametrize(
-    "lock_wait", [LockWait(), LockWait(*INTERACTIVE_WAIT_S)], ids=["work", "window"]
-)
-def test_windows_and_waiting_commands_give_up_on_a_server_that_hangs(lock_wait, place, monkeypatch):
-    clock = HastyClock()
-    monkeypatch.setattr(postgres_connecting, "time", clock)
-    with opened_when_available(place, lock_wait) as study:
-        process = study.database._connection.info.backend_pid
-        os.kill(process, signal.SIGSTOP)
-        clock.step_s = 20.0
-        give_up = time.monotonic() + 60.0
-        try:
-            # Without an end, the first query would wait until the server continues.
-            while study.database.version() is None:
-                assert time.monotonic() < give_up
-            assert study.database._connection.info.backend_pid != process
-        finally:
-            os.kill(process, signal.SIGCONT)
-
-
 STOPPED = """
 import os, signal, sys
 from rastrainer.study.database.study import Study
@@ -232,17 +146,6 @@ def test_a_seat_that_hangs_during_a_change_does_not_block_others_forever(place):
         with Study.open(place, LockWait(600.0)) as study:
             assert study.create_trainee("a")
         stopped.kill()
-
-
-def test_a_reader_sees_one_consistent_state_and_a_writer_the_latest(place):
-    with Study.open(place) as seat, Study.open(place) as other:
-        seat.create_trainee("a")
-        with other.database.reading():
-            query = "SELECT count(*) FROM trainees"
-            assert other.database.row(query) == (1,)
-            seat.create_trainee("b")
-            assert other.database.row(query) == (1,)
-        assert len(other.trainees()) == 2
 
 
 def test_a_study_that_is_only_read_is_never_changed(place, postgres_server):
@@ -271,10 +174,7 @@ def test_a_study_that_is_only_read_is_never_changed(place, postgres_server):
     ("sql", "words", "is_study"),
     [
         ("CREATE TABLE recipes (name TEXT)", "database of another program", False),
-        ("CREATE TABLE rastrainer_study (application_id INT, user_version INT, changes INT)",
-         "database of another program", False),
         ("CREATE VIEW trials AS SELECT 1", "contains triggers, views", False),
-        ("CREATE RULE r AS ON DELETE TO trials DO INSTEAD NOTHING", "contains triggers", True),
         ("ALTER TABLE trials ENABLE ROW LEVEL SECURITY; CREATE POLICY p ON trials USING (false)",
          "contains triggers", True),
         ("CREATE FUNCTION f() RETURNS trigger AS 'BEGIN RETURN NULL; END' LANGUAGE plpgsql; "
@@ -282,7 +182,7 @@ def test_a_study_that_is_only_read_is_never_changed(place, postgres_server):
          "contains triggers", True),
         ("UPDATE rastrainer_study SET user_version = 99", "has version 99 of the tables", True),
     ],
-    ids=["other", "empty-header", "view", "rule", "policy", "trigger", "other version"],
+    ids=["other", "view", "policy", "trigger", "other version"],
 )  # fmt: skip
 def test_a_database_that_is_no_study_or_was_changed_is_refused_and_left_as_it_is(
     sql, words, is_study, place, postgres_server
@@ -295,13 +195,6 @@ def test_a_database_that_is_no_study_or_was_changed_is_refused_and_left_as_it_is
     with pytest.raises(InputError, match=words):
         Study.open(place)
     assert postgres_server.execute(dump, place.database) == before
-
-
-def test_a_foreign_value_is_reported(place, postgres_server):
-    study_with_trials(place)
-    postgres_server.execute("UPDATE results SET result_json = '{}'", place.database)
-    with Study.open(place) as study, pytest.raises(InputError, match="did not write"):
-        study.history("A")
 
 
 def test_a_study_is_copied_there_and_back_to_the_last_bit(place, tmp_path, capsys):
@@ -379,14 +272,3 @@ def test_another_computer_is_reached_only_over_tls(own_server, tmp_path):
         Study.open(f"{far}?sslrootcert={other}")
     with pytest.raises(InputError, match="not from the expected issuer"):
         Study.open(f"{far}?sslrootcert={certificate}")
-
-
-def test_pseudonyms_are_in_the_order_of_sqlite(place, tmp_path):
-    names = ["b", "B", "a", "é", "Z", "z", "_", "10", "9", "ß", "Ä", "日本"]
-    orders = []
-    for where in (place, tmp_path / "study.db"):
-        with Study.open(where) as study:
-            for name in names:
-                study.create_trainee(name)
-            orders.append([trainee.pseudonym for trainee in study.trainees()])
-    assert orders[0] == orders[1]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import uuid
 
 from rastrainer.study.database.study import Study
 from Testing.domain.trial.trial_records import make_record
@@ -11,16 +12,14 @@ from Testing.domain.trial.trial_records import make_record
 
 def stored_numbers(path):
     with Study.open(path) as study:
-        return sorted(int(t.record.trial_id[-12:]) for t in study.history("T-001"))
+        return sorted(uuid.UUID(t.record.trial_id).int for t in study.history("T-001"))
 
 
 def write(path, first, last, acknowledged):
     """Store numbered trials and report each one."""
-    record = make_record()
     with Study.open(path) as study:
         for number in range(first, last):
-            record["trialId"] = f"00000000-0000-0000-0000-{number:012d}"
-            study.add_trial(record)
+            study.add_trial(make_record(number))
             os.write(acknowledged, b"%d\n" % number)
 
 

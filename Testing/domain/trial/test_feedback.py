@@ -13,10 +13,9 @@ from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import CommonBias
 from rastrainer.trial.advice import Reason, advise, touch_findings
-from rastrainer.trial.scoring import score_trial
-from rastrainer.trial.trial_feedback import MAX_SHORT, progress_of, trial_feedback
+from rastrainer.trial.trial_feedback import progress_of, trial_feedback
 from rastrainer.trial.trial_row import TrialRow
-from Testing.domain.trial.trial_records import REFERENCE, gentle_score
+from Testing.domain.trial.trial_records import gentle_score
 from Testing.touched_head import head_points
 
 LABELS = tuple(str(i + 1) for i in range(15))
@@ -98,10 +97,7 @@ def test_safety_advice_comes_first_then_the_most_rewarding():
 
 BIASES = {
     "to the patient's left": (-1.8, 0.3, 0.0),
-    "to the patient's right": (1.8, 0.0, 0.5),
     "toward the face": (0.0, 1.7, -0.8),
-    "toward the back of the head": (0.1, -1.8, 0.0),
-    "toward the crown": (0.0, 0.0, 1.8),
     "toward the neck": (0.5, 0.5, -1.6),
     "to the patient's left and toward the crown": (-1.4, 0.2, 1.1),
 }
@@ -118,31 +114,6 @@ def test_the_direction_of_a_common_bias_is_reported(words):
     assert advice[0].sentence.key.endswith("common bias")
     length = f"{bias.length_mm:.1f} mm"
     assert f"On average, the touches are {length} too far {words}, which" in advice[0].sentence
-
-
-def test_a_bias_explained_by_scatter_is_not_reported():
-    score = gentle_score(110.0, 0.5, common_bias_mm=0.8)
-    by_chance = advise(score, EVEN, {}, CommonBias((0.8, 0.0, 0.0), p=0.2))
-    assert not any("common bias" in one.sentence.key for one in by_chance)
-    advice, *others = advise(score, EVEN, {}, CommonBias((0.8, 0.0, 0.0), p=0.01))
-    assert (advice.sentence.key, tuple(others)) == ("common bias", by_chance)
-    assert advice.gain == pytest.approx(gentle_score(110.0, 0.5).score - score.score)
-
-
-def test_the_score_sentences_state_the_common_bias_and_its_limit():
-    def accuracy(score):
-        feedback = trial_feedback(registered(np.zeros((15, 3))), NORMALS, {}, None)
-        return replace(feedback, score=score).score_sentences[2]
-
-    beside = accuracy(gentle_score(100.0, 2.5, common_bias_mm=1.75))
-    assert "2.50 mm true error in the brain and 1.75 mm common to all touches, worth" in beside
-    assert beside.endswith(
-        "; more than 1.5 mm of error and more than 1.5 mm common to all touches is not acceptable."
-    )
-    assert "0.00 mm common to all" in accuracy(gentle_score(100.0, 0.4))
-    without = replace(gentle_score(100.0, 0.4).measures, common_bias_mm=None)
-    traced = score_trial(without, REFERENCE, RegistrationMethod.SURFACE)
-    assert "common" not in accuracy(traced)
 
 
 @settings(max_examples=40)
@@ -220,29 +191,18 @@ def test_competence_is_shown_by_passed_trials_in_the_same_mode():
     assert progress_of(other, other[-1].trial_id, 60.0).sentences[2].key == "not competent"
 
 
-def test_the_feedback_sentences_are_in_order():
+def test_the_feedback_says_score_worst_touch_advice_and_progress_in_this_order():
     errors = np.zeros((15, 3))
     errors[3] = 5.0 * NORMALS[3]
     history = [past(1, 50.0), past(2, 60.0)]
     score, motion = gentle_score(150.0, 2.5), {"idle_time_s": 40.0}
     feedback = trial_feedback(registered(errors), NORMALS, motion, recording())
-    feedback = replace(
-        feedback,
-        score=score,
-        advice=advise(score, feedback.touches, motion),
-        progress=progress_of(history, history[1].trial_id, 55.0),
-    )
-    assert feedback.worst.label == "4"
-    assert feedback.worst.replay_s == pytest.approx([5.98, 7.98])
+    advice, progress = advise(score, feedback.touches, motion), progress_of(history, "2", 55.0)
+    feedback = replace(feedback, score=score, advice=advice, progress=progress)
     sentences = feedback.sentences
-    assert sentences[0].endswith(" of 100: not acceptable.")
-    assert sentences[2].endswith("of 100; more than 1.5 mm of error is not acceptable.")
-    assert sentences[3].startswith("Safety: pressed 0.0 mm deep")
-    assert sentences[4].startswith("Point 4 was")
-    assert sentences[5].startswith("1. ")
-    short = feedback.short_sentences
-    assert short[0] == sentences[4]
-    assert short[1:] == [feedback.advice[0].sentence, feedback.progress.sentences[0]]
-    moved = replace(feedback, skin=(feedback.worst.sentence,)).short_sentences
-    assert len(moved) == MAX_SHORT
-    assert "Your score is 10 above that of your last trial of this task" in sentences[-3]
+    begun = ["Score ", "Time: ", "Accuracy: 2.50 mm", "Safety: ", "Point 4 was", "1. "]
+    assert [text[: len(words)] for text, words in zip(sentences, begun, strict=False)] == begun
+    assert "more than 1.5 mm of error is not acceptable" in sentences[2]
+    assert sentences[-len(progress.sentences) :] == tuple(progress.sentences)
+    short = (feedback.worst.sentence, advice[0].sentence, progress.sentences[0])
+    assert tuple(feedback.short_sentences) == short

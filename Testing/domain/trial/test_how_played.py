@@ -1,12 +1,8 @@
 """How a trial was played follows from the entries of its journal."""
 
-from dataclasses import replace
-
 import pytest
 
-from rastrainer.errors import InputError
 from rastrainer.journal import entries
-from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import Phase
 from rastrainer.trial.how_played import HowPlayed, PlayRecording
 from Testing.journal_lines import UTC, at, header, phase, sample
@@ -60,11 +56,6 @@ def test_the_way_is_shared_among_what_moved_the_tip():
     assert "25 % of the way" in found.objections("desktop", ())[0]
 
 
-def test_a_seed_is_chosen_by_a_client_or_for_the_session():
-    assert played(session(is_seeded=True), start()).seed_source == "session"
-    assert played(session(is_seeded=True), start(seed=3)).seed_source == "client"
-
-
 def test_another_speed_after_an_interruption_is_not_hidden_by_the_first():
     found = played(session(), start(), continued(speed=0.5))
     assert found.speed == 0.5
@@ -91,19 +82,3 @@ def test_a_long_wait_does_not_hide_that_the_simulator_was_held_up(waits, then, p
     held_up, over = timed(REACH, 2.0, 4.0), timed(phase(then), 902.0, 904.0)
     for wait in (phase(waits), continued(phase=waits)):
         assert played(session(), start(), held_up, timed(wait, 2.0, 4.0), over).pace == pace
-
-
-def test_pauses_and_views_are_counted():
-    views = [
-        entries.DisplayReport(name, "", 60.0, 1, 0) for name in ("desktop", "headset", "headset")
-    ]
-    pause = phase(Phase.PAUSED)
-    found = played(session(), pause, phase(Phase.RUNNING), pause, *views)
-    assert (found.pauses, found.view_s) == (2, {"desktop": 1, "headset": 2})
-
-
-def test_it_is_read_as_it_was_written_and_invalid_values_are_refused():
-    found = played(session(speed=None), start(seed=1), moved(0, ""), moved(1, "alignment"))
-    assert record_from_json(HowPlayed, record_to_json(found)) == found
-    with pytest.raises(InputError, match="seedSource"):
-        record_from_json(HowPlayed, record_to_json(replace(found, seed_source="dice")))

@@ -1,4 +1,4 @@
-"""A trial by landmarks or a trace: registered by its method, scored, and compared with its like."""
+"""Trials by landmarks or a trace, and on shifted skin: registered, scored, stored, reported."""
 
 from dataclasses import replace
 
@@ -9,13 +9,23 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList
 from rastrainer.head.mesh import read_head_mesh
+from rastrainer.head.trial_head import UNMOVED, SkinShift
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import load_scenario
+from rastrainer.study.database.study import Study
+from rastrainer.study.study_data import StudyData, trial_rows
+from rastrainer.study.tidy_csv import trials_csv
+from rastrainer.trial.analysis import RevealedTruth, analyze_trial
+from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.score_reference import score_reference
-from rastrainer.trial.scoring import ScoreMeasures, score_trial
+from rastrainer.trial.scoring import SAFETY_METRICS, ScoreMeasures, score_trial
 from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.report.target_errors import shifted_skin
+from Testing.domain.trial.trial_records import make_record
 from Testing.simulator.landmarked import LANDMARKS, OVER_THE_FACE, on_skin, with_landmarks
+from Testing.simulator.report.test_report import words_of
 
 SURFACE = RegistrationMethod.SURFACE
 SLIP_MM = 4.0
@@ -77,25 +87,6 @@ def test_an_unfinished_trial_is_registered_from_the_simulators_answer(scenario, 
     np.testing.assert_array_equal(again.rigid.matrix, register_trial(given, scenario).rigid.matrix)
 
 
-@pytest.mark.parametrize(
-    ("changes", "said"),
-    [
-        pytest.param({"trace": None}, "a list of at most 500 points", id="no trace"),
-        pytest.param(
-            {"trace": [[1.0, 2.0, 3.0, 4.0]]}, "trace must be a list of 30 points", id="too short"
-        ),
-        pytest.param({"touches": []}, "touches must be a list of 3 to 15", id="no landmark"),
-        pytest.param({"method": "fiducials"}, "touches must be a list of 15", id="fiducials"),
-        pytest.param(
-            {"method": "laser"}, "method must be one of fiducials, landmarks", id="unknown"
-        ),
-    ],
-)
-def test_an_answer_that_cannot_be_registered_is_refused_with_a_message(traced, changes, said):
-    with pytest.raises(InputError, match=said):
-        GivenPoints.of_answer({**answer_of(traced[0]), **changes})
-
-
 def test_the_reference_of_a_method_has_its_own_time_and_the_same_error(scenario):
     by_fiducials = score_reference(scenario, "task-1")
     by_surface = score_reference(scenario, "task-1", method=SURFACE)
@@ -117,3 +108,61 @@ def test_a_trial_without_fiducials_is_scored_without_a_common_bias(scenario):
     assert score.acceptable
     with pytest.raises(InputError, match="common bias"):
         score_trial(measures, reference)
+
+
+SKIN = SkinShift(4.0, 7, 0.5)
+
+
+def touched(scenario, skin):
+    """Return a trial whose fiducials were touched exactly on such skin, and its pose."""
+    pose, task = scenario.perturbed_head_to_world(8), scenario.task("task-1")
+    places = transforms.apply(pose, skin.measured(task.fiducials, read_head_mesh(scenario.head)))
+    value = make_record(trainee="P01", motion=dict.fromkeys(SAFETY_METRICS, 0.0))
+    for point, place in zip(value["points"], places.tolist(), strict=True):
+        point["positionMm"] = place
+    record = replace(record_from_json(TrialRecord, value), skin=skin)
+    assert record.skin.seed == 0
+    return record, pose
+
+
+def scored(scenario, skin):
+    record, pose = touched(scenario, skin)
+    analysis = analyze_trial(record, scenario)
+    off = transforms.apply(analysis.rigid.matrix @ pose, scenario.target.position_ras)
+    tre_mm = float(np.linalg.norm(off - scenario.target.position_ras))
+    truth = RevealedTruth(tuple(pose.ravel().tolist()), tre_mm, skin)
+    return analysis.scored(scenario, truth), truth
+
+
+def test_unshifted_skin_leaves_score_and_record_unchanged(scenario):
+    analysis, _truth = scored(scenario, UNMOVED)
+    assert analysis.feedback.skin == ()
+    assert "unshiftedTreMm" not in record_to_json(analysis.score)
+    assert "skin" not in record_to_json(analysis.record)
+
+
+def test_a_study_stores_the_skin_shift_and_shows_it_in_tables_and_report(scenario, tmp_path):
+    analysis, truth = scored(scenario, SKIN)
+    record = analysis.record
+    with Study.open(tmp_path / "study.db") as study:
+        study.add_trial(
+            record, analysis.fits.values(), analysis.target_errors, delivered=record_to_json(record)
+        )
+        study.add_results(record.trial_id, score=analysis.score)
+        study.add_results(
+            record.trial_id, truth=RevealedTruth(tuple(truth.head_to_world), truth.true_tre_mm)
+        )
+        (stored,) = study.history("P01")
+    again = analyze_trial(stored.record, scenario).scored_as(stored.score, scenario, stored.truth)
+    assert again.feedback.skin == analysis.feedback.skin
+    rows = trial_rows([stored])
+    header, values = (line.split(",") for line in trials_csv(rows).splitlines())
+    cells = dict(zip(header, values, strict=True))
+    assert (cells["skin_shift_mm"], cells["skin_indentation_mm"]) == ("4.0", "0.5")
+    assert float(cells["unshifted_tre_mm"]) == analysis.score.unshifted_tre_mm
+    words = words_of(shifted_skin(StudyData("Skin", tuple(rows))))
+    without = f"{truth.true_tre_mm:.2f} {analysis.score.unshifted_tre_mm:.2f}"
+    assert "4.0 0.5 Fiducials 1" in words
+    assert without in words
+    plain = replace(rows[0], values={"true_tre_mm": 1.0})
+    assert shifted_skin(StudyData("Skin", (plain,))) == ""

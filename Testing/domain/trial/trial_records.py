@@ -8,7 +8,7 @@ from rastrainer.protocol import COARSE_LANDMARKS, MIN_TRACE_POINTS
 from rastrainer.trial.scoring import ScoreMeasures, ScoreReference, TrialScore, score_trial
 
 
-def make_record(**changes):
+def make_record(number=7, **changes):
     points = [
         {
             "label": str(i + 1),
@@ -19,7 +19,7 @@ def make_record(**changes):
         for i in range(15)
     ]
     record = {
-        "trialId": str(uuid.UUID(int=7)),
+        "trialId": str(uuid.UUID(int=number)),
         "trainee": "T-001",
         "task": "task-1",
         "mode": "desktop",
