@@ -1,11 +1,10 @@
-"""Landmarks are proposed on other heads, checked with the robot's reach, and kept in a copy."""
+"""Landmarks are proposed on other heads, and checked with the robot's reach."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from rastrainer.errors import InputError
 from rastrainer.files.point_files import write_markups
 from rastrainer.files.point_list import PointList
 from rastrainer.head.mesh import HeadMesh
@@ -97,10 +96,3 @@ def test_landmarks_out_of_reach_or_off_the_skin_are_refused_and_nothing_is_writt
     assert main([*words, "--landmarks", str(path)]) == 2
     assert "Nasion is " in capsys.readouterr().err
     assert not folder.exists()
-
-
-def test_a_landmark_without_a_name_is_refused(tmp_path):
-    path = tmp_path / "nameless.mrk.json"
-    write_markups(path, PointList(("Nasion", " "), np.zeros((2, 3))))
-    with pytest.raises(InputError, match="Landmark 2 needs a name of 1 to 40 characters"):
-        read_placed_landmarks(path)

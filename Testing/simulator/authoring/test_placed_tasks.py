@@ -1,6 +1,4 @@
-"""Fiducials placed by hand: moved onto the skin, in the order of their labels, or refused."""
-
-from dataclasses import replace
+"""Fiducials placed by hand: moved onto the skin, or refused."""
 
 import numpy as np
 import pytest
@@ -8,7 +6,7 @@ import pytest
 from rastrainer.files.point_files import write_markups
 from rastrainer.files.point_list import PointList
 from rastrainer.head.mesh import nearest_on_mesh, outward_normals
-from rastrainer.scenario.points import LABELS, PlannedTarget
+from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
@@ -78,14 +76,6 @@ def test_clicks_farther_away_are_named_with_their_distance(planning, on_skin, tm
     assert "12 (" in sentence
 
 
-@pytest.mark.usefixtures("unchecked")
-def test_numbers_in_the_labels_give_the_touch_order(planning, on_skin, tmp_path):
-    backward = [f"F-{number}" for number in range(15, 0, -1)]
-    (task,), _, _ = read(planning, tmp_path, on_skin, backward)
-    assert np.allclose(task.fiducials, on_skin[::-1], atol=0.01)
-    assert task.labels == LABELS
-
-
 def test_an_invalid_list_and_a_seventh_list_are_refused(planning, on_skin, tmp_path):
     _, wrong, _ = read(planning, tmp_path, on_skin[:14], LABELS[:14])
     assert wrong == ["Trial run: it has 14 fiducials; a task has 15."]
@@ -94,15 +84,3 @@ def test_an_invalid_list_and_a_seventh_list_are_refused(planning, on_skin, tmp_p
     assert read(planning, tmp_path, twice)[1] == ["Trial run: two fiducials are at the same place."]
     _, wrong, _ = read(planning, tmp_path, on_skin, count=7)
     assert wrong == ["A scenario has at most 6 tasks; 7 are given."]
-
-
-def test_everything_that_is_wrong_is_reported_at_once(planning, on_skin, tmp_path):
-    low = on_skin.copy()
-    low[8] = nearest_on_mesh(planning.mesh, np.array([0.0, -30.0, -75.0])).position
-    low[5] = nearest_on_mesh(planning.mesh, np.array([30.0, -20.0, -75.0])).position
-    far = PlanningSetup(
-        replace(planning.scenario, target=PlannedTarget("Tumor", np.array([0.0, 0.0, -60.0]))),
-        planning.mesh,
-    )
-    _, wrong, _ = read(far, tmp_path, low)
-    assert "cannot touch fiducials 6, 9 where the head is" in " ".join(wrong)

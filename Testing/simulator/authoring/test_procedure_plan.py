@@ -9,7 +9,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh, write_head_mesh
-from rastrainer.procedure.plan import ProcedureKind, read_procedure, read_procedure_meshes
+from rastrainer.procedure.plan import ProcedureKind, read_procedure_meshes
 from rastrainer.scenario.library import checked_scenario
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
@@ -17,7 +17,6 @@ from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.procedure_plan import (
     check_procedures,
     require_usable_procedures,
-    with_procedure,
 )
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.core.setup import load_setup
@@ -61,16 +60,6 @@ def test_the_default_head_has_one_feasible_procedure_of_each_kind(planning):
     assert check_procedures(planning) == []
 
 
-def test_the_targets_of_the_default_head_are_the_cited_ones():
-    left, right = SCENARIO.procedure("dbs").trajectories
-    assert right.target_ras.tolist() == STN.tolist()
-    assert left.target_ras.tolist() == (STN * [-1.0, 1.0, 1.0]).tolist()
-    for procedure in SCENARIO.procedures:
-        assert "schematic" in procedure.source
-    for name in ("dbs", "seeg"):
-        assert "doi:10." in SCENARIO.procedure(name).source
-
-
 def test_a_line_on_which_the_robot_cannot_hold_the_guide_is_named(copy):
     """The arm has no room on the right, between the robot's base and the head."""
     head = read_head_mesh(SCENARIO.head)
@@ -93,14 +82,6 @@ def test_a_target_outside_the_head_is_refused_when_packed_and_when_loaded(copy):
         checked_scenario(copy)
     with pytest.raises(InputError, match=sentence):
         require_usable_procedures(load_setup(copy))
-
-
-def test_the_command_reports_what_is_wrong_with_a_procedure(copy, capsys):
-    path = copy / "no-go/right-ventricle.ply"
-    mesh = read_head_mesh(path)
-    write_head_mesh(path, replace(mesh, triangles=mesh.triangles[1:]))
-    assert main(["scenario", "check", str(copy)]) == 2
-    assert "right-ventricle.ply is not closed: it has a hole." in capsys.readouterr().err
 
 
 @pytest.fixture
@@ -136,13 +117,6 @@ def test_a_procedure_from_a_file_is_added_with_its_meshes(copy, own_procedure, t
     assert shift == pytest.approx(np.tile([0.0, 0.0, 0.5], (len(shift), 1)), abs=1e-4)
 
 
-def test_a_procedure_of_the_same_name_is_replaced(copy, own_procedure):
-    changed = replace(read_procedure(own_procedure), name="dbs", title="Again")
-    scenario, meshes = with_procedure(load_scenario(copy), changed)
-    assert [(each.name, each.title) for each in scenario.procedures] == [("dbs", "Again")]
-    assert list(meshes) == [changed.no_go[0].file.name]
-
-
 def test_an_infeasible_procedure_is_not_saved(copy, own_procedure, tmp_path, capsys):
     values = json.loads(own_procedure.read_text(encoding="utf-8"))
     values["trajectories"][0]["targetRas"] = [0.0, 0.0, 150.0]
@@ -154,15 +128,6 @@ def test_an_infeasible_procedure_is_not_saved(copy, own_procedure, tmp_path, cap
     assert "outside of the head." in said
     assert main(["scenario", "lines", str(copy), "--procedure", str(own_procedure)]) == 1
     assert sorted(tmp_path.rglob("*")) == before
-
-
-def test_a_scenario_without_a_skull_accepts_no_procedure(copy, own_procedure, tmp_path, capsys):
-    values = json.loads((copy / "scenario.json").read_text(encoding="utf-8"))
-    del values["skull"], values["procedures"]
-    write(copy, values)
-    assert main(plan_arguments(copy, tmp_path / "made", own_procedure)) == 2
-    assert "has no skull, which a procedure needs for drilling" in capsys.readouterr().err
-    assert not (tmp_path / "made").exists()
 
 
 def test_the_planned_lines_are_measured_in_a_table_and_a_file(copy, tmp_path, capsys):

@@ -35,16 +35,10 @@ def scenario_of(setup):
             "robot's foot",
             id="robot beside it",
         ),
-        pytest.param(SetUp(HeadPlace((480.0, 700.0, 220.0))), "head's stand", id="head beside it"),
         pytest.param(
             SetUp(table=OperatingTable((0.0, 0.0), (1050.0, 1000.0, 40.0))),
             "head's stand",
             id="a trial's head over its edge",
-        ),
-        pytest.param(
-            SetUp(HeadPlace((480.0, 0.0, 120.0)), Perturbation(60.0, 0.0, 0.0)),
-            "mm into the table",
-            id="head moved into it",
         ),
         pytest.param(
             SetUp(HeadPlace((480.0, 0.0, 110.0)), Perturbation(0.0, 0.0, 40.0)),
@@ -71,7 +65,7 @@ def test_no_trial_places_the_head_lower_than_reported():
     reported = lowest_in_trials_mm(scenario, head)
     lowest = [
         transforms.apply(scenario.perturbed_head_to_world(seed), head.vertices)[:, 2].min()
-        for seed in range(400)
+        for seed in range(100)
     ]
     assert reported <= min(lowest)
     assert reported > min(lowest) - 15.0

@@ -137,20 +137,10 @@ def test_a_problem_with_a_new_seat_is_reported_and_nothing_is_added(board, simul
     assert board.tiles_until(lambda _tiles: True) == []
 
 
-@pytest.mark.parametrize(
-    "address",
-    [
-        "ftp://127.0.0.1:1",
-        "https://127.0.0.1",
-        "https://me:secret@127.0.0.1:1",
-        "https://127.0.0.1:99999",
-        "https://[127.0.0.1:1",
-        "192.0.2.7",
-    ],
-)
-def test_an_address_that_is_none_of_a_simulator_is_refused(address):
-    with pytest.raises(InputError, match="is not the address of a simulator"):
-        checked_address(address)
+def test_an_address_that_is_none_of_a_simulator_is_refused():
+    for address in ("ftp://127.0.0.1:1", "https://me:secret@127.0.0.1:1", "https://[127.0.0.1:1"):
+        with pytest.raises(InputError, match="is not the address of a simulator"):
+            checked_address(address)
 
 
 def test_an_order_needs_the_pin_once_and_is_carried_out(board, simulator):
@@ -238,50 +228,25 @@ def checked_seat(values: dict) -> dict:
 
 
 def good_seat() -> dict:
-    return {
-        "trainee": "P07",
-        "task": "Task 2",
-        "count": 15,
-        "screen": "",
-        "instruction": "",
-        "warnings": [],
-        "score": None,
-        "holder": "",
-        "slicer": False,
-        "language": "en",
-        "assignments": "",
-        "phase": "running",
-        "touched": 3,
-        "rejected": 1,
-        "elapsedS": 70,
-        "touch": "near",
-    }
+    reported = {"phase": "running", "touched": 3, "rejected": 1, "elapsedS": 70, "touch": "near"}
+    return record_to_json(AT_WORK, with_defaults=True) | reported
 
 
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [
-        *(("trainee", value) for value in (None, "x" * 201, "\x1b[2J")),
+def test_a_seat_that_sends_invalid_values_is_not_shown():
+    assert checked_seat(good_seat()) == good_seat()
+    for name, value in (
+        ("trainee", "\x1b[2J"),
         ("count", 10**9),
         ("warnings", ["x" * 601]),
         ("touch", "<b>"),
-    ],
-)
-def test_a_seat_that_sends_invalid_values_is_not_shown(name, value):
-    assert checked_seat(good_seat()) == good_seat()
-    with pytest.raises(ValueError, match=f"The seat: {name}.* must be"):
-        checked_seat({**good_seat(), name: value})
-
-
-def test_a_seat_with_too_many_warnings_shows_the_first_and_an_incomplete_one_is_refused():
+    ):
+        with pytest.raises(ValueError, match=f"The seat: {name}.* must be"):
+            checked_seat({**good_seat(), name: value})
     shown = checked_seat({**good_seat(), "warnings": [str(n) for n in range(1000)], "new": 1})
     assert (len(shown["warnings"]), "new" in shown) == (8, False)
-    with pytest.raises(ValueError, match='needs the key "touch"'):
-        checked_seat({k: v for k, v in good_seat().items() if k != "touch"})
 
 
-@pytest.mark.parametrize("content", ["{", '{"seats": 7}', '{"seats": [{"id": "../../x"}]}'])
-def test_a_damaged_list_of_seats_is_named(tmp_path, content):
-    (tmp_path / SEATS_FILE).write_text(content, encoding="utf-8")
+def test_a_damaged_list_of_seats_is_named(tmp_path):
+    (tmp_path / SEATS_FILE).write_text('{"seats": [{"id": "../../x"}]}', encoding="utf-8")
     with pytest.raises(ValueError, match=SEATS_FILE):
         read_seats(tmp_path)

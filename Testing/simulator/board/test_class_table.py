@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 
 from rastrainer.json_records import record_to_json
-from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.database.database import LockWait
 from rastrainer.study.database.study import Study
@@ -18,8 +17,7 @@ from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.board.class_table import ClassReader, class_table
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.report.trainees import curricula
-from rastrainer_simulator.texts.texts import LANGUAGES, Texts
-from Testing.simulator.board.class_study import SHIPPED, as_in_narrow_columns, play_class
+from Testing.simulator.board.class_study import as_in_narrow_columns, play_class
 from Testing.simulator.net.igtl.servers import PATIENCE_S
 from Testing.simulator.net.views.served import request
 
@@ -70,23 +68,6 @@ def test_the_table_is_that_of_the_report(study):
         for row in table["trainees"]
     ]
     assert shown == [[name, reached, *cells] for name, _n, reached, *cells in report]
-
-
-@pytest.mark.parametrize("language", LANGUAGES)
-def test_the_table_uses_the_words_that_trainees_read(reader, language):
-    say = Texts(LANGUAGES[language]).say
-    (table,) = tables(reader, language)
-    words = {
-        cell["state"]: cell["progress"]
-        for row in table["trainees"]
-        for cell in row["cells"]
-        if cell["state"] != "open"
-    }
-    assert words == {"reached": say("assignments.reached"), "locked": say("assignments.locked")}
-    labels = [column["label"] for column in table["assignments"]]
-    assert labels[0] == say("task.task-1")
-    assert labels[3] == f"{say('task.task-3')} · {say('method.surface')}"
-    assert all(column["goal"] for column in table["assignments"])
 
 
 def test_the_study_is_read_again_only_when_something_is_new(reader, study):
@@ -147,11 +128,6 @@ def test_while_the_study_is_unreachable_the_last_table_stays_and_the_page_is_inf
     assert until(board, lambda found: not found["problem"])["curricula"] == first["curricula"]
 
 
-def test_without_a_study_the_board_says_so(board):
-    nothing = {"hasStudy": False, "problem": "", "asOf": "", "curricula": [], "without": []}
-    assert board.ask("/class?language=xx") == (200, nothing)
-
-
 def test_the_table_is_served_only_to_paired_clients_and_to_no_other_page(open_board, study):
     board = open_board(study)
     assert board.ask("/class", key="x" * 40)[0] == 401
@@ -159,18 +135,6 @@ def test_the_table_is_served_only_to_paired_clients_and_to_no_other_page(open_bo
     assert request(board.url, "/class", headers=headers)[0] == 403
     assert board.ask("/class", "POST")[0] == 405
     assert board.ask("/class", key=board.paired("spectator"))[0] == 200
-
-
-def test_a_class_with_two_curricula_has_two_tables(study):
-    with Study.open(study) as opened:
-        own = Curriculum.read(SHIPPED)
-        other = type(own)("other", "Others", own.assignments[:1])
-        CurriculumStore(opened).choose(other, "T002")
-    reader = ClassReader(study)
-    found = tables(reader)
-    reader.close()
-    assert [table["title"] for table in found] == ["First steps", "Others"]
-    assert [row["trainee"] for row in found[1]["trainees"]] == ["T002"]
 
 
 def test_the_command_reports_a_path_that_is_not_a_study(tmp_path, capsys):

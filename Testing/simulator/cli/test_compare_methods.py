@@ -103,17 +103,10 @@ def test_a_study_is_registered_by_every_method_that_its_trials_allow(
     assert methods["surface"]["expected_tre_mm"] < methods["landmarks"]["expected_tre_mm"]
 
 
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (["--skin-shift", "30"], "skin shift must be 0 to 20 mm"),
-        (["--indentation", "-1"], "indentation must be 0 to 20 mm"),
-        (["--task", "task-9"], "has no such task"),
-    ],
-)
-def test_an_unusable_option_is_refused_with_a_message(landmarked, capsys, words, said):
-    assert main(["compare-methods", "--scenario", str(landmarked), *words]) == 2
-    assert said in capsys.readouterr().err
+def test_an_unusable_option_is_refused_with_a_message(landmarked, capsys):
+    words = ["compare-methods", "--scenario", str(landmarked), "--skin-shift", "30"]
+    assert main(words) == 2
+    assert "skin shift must be 0 to 20 mm" in capsys.readouterr().err
 
 
 def test_a_traced_surface_is_registered(files, landmarked, traced, capsys):
@@ -124,11 +117,3 @@ def test_a_traced_surface_is_registered(files, landmarked, traced, capsys):
     assert content["rms_mm"] < 0.05
     low, high = content["expected_tre"]["interval_mm"]
     assert low < content["expected_tre"]["expected_mm"] < high
-
-
-def test_a_surface_match_takes_no_weights_and_needs_a_head(files, landmarked, capsys):
-    assert matched(files, landmarked, "--type", "affine") == 2
-    assert "leave out --type" in capsys.readouterr().err
-    # Before any file is read.
-    assert main(["register", "no moving", "no fixed", "--surface", "no trace"]) == 2
-    assert "--head" in capsys.readouterr().err

@@ -49,30 +49,6 @@ def together(*surfaces: Surface) -> Surface:
     )
 
 
-def groove(half_width: float = 0.05, depth: float = 0.03, length: float = 0.1) -> Surface:
-    """Return a block whose top is a groove along y; its bottom line is at x = 0, z = 0."""
-    top, bottom = depth, -0.02
-    profile = np.array(
-        [
-            (0.0, 0.0),
-            (half_width, top),
-            (half_width, bottom),
-            (-half_width, bottom),
-            (-half_width, top),
-        ]
-    )
-    count = len(profile)
-    ends = [np.insert(profile, 1, y, axis=1) for y in (-length / 2.0, length / 2.0)]
-    faces = []
-    for i in range(count):
-        j = (i + 1) % count
-        faces += [(i, j, j + count), (i, j + count, i + count)]
-    # The corner in the groove sees all others: fans around it close the ends.
-    for i in range(1, count - 1):
-        faces += [(0, i + 1, i), (count, count + i, count + i + 1)]
-    return np.concatenate(ends), np.array(faces)
-
-
 TICK = 0.004
 ROBOT = load_robot()
 SHAPE = load_shape()

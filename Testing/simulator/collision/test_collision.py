@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from rastrainer.errors import InputError
 from rastrainer_simulator.collision.clearance import FAR, SHAFT_NEAR
 from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.robot_shape import ArmCapsules
@@ -162,39 +161,3 @@ def test_the_heads_stand_is_an_upright_column_under_its_base(head):
         q = posture((x, y - 0.03 - gap, 0.2), (0.0, 1.0, 0.0))
         found = collision.check(KINEMATICS.links(q))
         assert found.table_m == pytest.approx(gap + behind, abs=0.002)
-
-
-def test_earlier_queries_do_not_change_an_answer_by_a_single_bit(head, head_to_world, collision):
-    steps = (0.003, 0.01, 0.3)
-    path = [q for step in steps for q in wander(40, seed=24, step=step)]
-    poses = [KINEMATICS.links(q) for q in path]
-    there = [collision.check(links) for links in poses]
-    fresh = placed(head, head_to_world)
-    back = [fresh.check(links) for links in reversed(poses)]
-    assert back[::-1] == there
-    assert {clearance.self_m < FAR for clearance in there} == {True, False}
-
-
-def test_the_quick_clearance_check_agrees_with_the_computed_clearances(
-    collision, head, head_to_world, postures
-):
-    quick = placed(head, head_to_world)
-    path = [*postures, *wander(60, seed=25, step=0.1)]
-    said = []
-    for links in map(KINEMATICS.links, path):
-        for clearance in (0.005, 0.05):
-            found = collision.check(links)
-            others = min(found.links_m, found.self_m, found.table_m)
-            is_clear = found.shaft_m > 0.0 and others >= clearance
-            assert quick.is_clear(links, clearance) == is_clear
-            said.append(is_clear)
-    assert 0.1 < np.mean(said) < 0.9
-
-
-@pytest.mark.parametrize(
-    "matrix",
-    [np.diag([1.0, 1.0, 2.0, 1.0]), np.diag([1.0, 1.0, -1.0, 1.0]), np.full((4, 4), np.nan)],
-)
-def test_a_head_pose_that_is_not_rigid_is_refused(collision, matrix):
-    with pytest.raises(InputError, match="rigid"):
-        collision.set_head_pose(matrix)

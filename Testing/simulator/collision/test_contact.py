@@ -21,7 +21,6 @@ from Testing.simulator.collision.heads_and_arms import (
     at,
     ball,
     box,
-    groove,
     posture,
     together,
 )
@@ -88,8 +87,9 @@ def approaches(head, vertices, random):
             yield q, direction
 
 
-@pytest.mark.parametrize("holds", [True, False], ids=["direction held", "direction free"])
-@pytest.mark.parametrize("count", [20, pytest.param(70, marks=pytest.mark.soak)])
+@pytest.mark.parametrize(
+    ("holds", "count"), [(True, 20), pytest.param(False, 70, marks=pytest.mark.soak)]
+)
 def test_ramming_at_full_speed_from_all_sides_never_penetrates(head, holds, count):
     random = np.random.default_rng(41)
     high = np.flatnonzero(head.vertices[:, 2] > head.vertices[:, 2].min() + 0.03)
@@ -125,44 +125,6 @@ def test_every_fiducial_of_the_default_tasks_can_be_touched_with_the_tip(head, s
             assert driver.clearance.tip_m <= TOUCHING
 
 
-def test_the_tip_slides_evenly_over_the_edges_of_triangles():
-    driver = above(ball(0.08, 4), (0.5, 0.0, 0.2))
-    for _ in range(20):
-        driver.push(DOWN * 0.25 * TICK)
-    push = np.array([0.6, 0.2, -0.8]) * 0.15 * TICK
-    tips = [driver.tip]
-    for _ in range(60):
-        driver.push(push)
-        tips.append(driver.tip)
-        assert driver.clearance.tip_m <= TOUCHING
-        assert not driver.moved.stopped_by
-    steps = np.diff(tips, axis=0)
-    sizes = np.linalg.norm(steps, axis=1)
-    assert sizes.min() > 0.8 * np.linalg.norm(push[:2])
-    assert sizes.max() < np.linalg.norm(push)
-    # The ball turns by 3° between facets, 4 mm long, and the tip speeds up by no more.
-    assert np.abs(np.diff(sizes) / sizes[1:]).max() < 0.05
-    turns = np.einsum("ij,ij->i", steps[1:], steps[:-1]) / sizes[1:] / sizes[:-1]
-    assert np.degrees(np.arccos(turns.clip(-1, 1))).max() < 5.0
-
-
-def test_the_tip_settles_in_a_groove_and_can_be_guided_along_it():
-    surface = groove()
-    driver = above(surface, (0.5, 0.0, 0.2), x=0.01, y=0.0)
-    for _ in range(60):
-        driver.push(DOWN * 0.5 * TICK)
-    rest = driver.tip
-    for _ in range(30):
-        driver.push(DOWN * 0.5 * TICK)
-        np.testing.assert_allclose(driver.tip, rest, rtol=0, atol=2e-6)
-    assert rest[0] == pytest.approx(0.5, abs=1e-4)
-    for _ in range(30):
-        driver.push(np.array([0.2, 0.5, -0.8]) * 0.3 * TICK)
-    moved = driver.tip - rest
-    assert moved[1] == pytest.approx(30 * 0.5 * 0.3 * TICK, rel=0.02)
-    np.testing.assert_allclose(moved[[0, 2]], 0.0, atol=5e-5)
-
-
 def test_a_tip_at_full_speed_does_not_jump_through_a_thin_plate():
     plate = together(box((0.1, 0.1, 0.001), (0.0, 0.0, 0.0)), ball(0.02, 2))
     plate[0][8:] += [0.0, 0.0, -0.1]
@@ -173,22 +135,6 @@ def test_a_tip_at_full_speed_does_not_jump_through_a_thin_plate():
             for _ in range(20):
                 driver.push(DOWN * speed * TICK)
                 assert driver.tip[2] >= top
-
-
-def test_the_shaft_slides_along_what_it_leans_on():
-    post = ball(0.02, 5)
-    collision = collision_with(post, (0.5, 0.0, 0.3))
-    # The tip passes 60 mm below the ball's center, the shaft runs into the ball.
-    driver = Driver(collision, posture((0.45, 0.01, 0.24), DOWN))
-    depths, stops = [], 0
-    for _ in range(120):
-        driver.push(np.array([1.0, 0.0, 0.0]) * 0.25 * TICK)
-        depths.append(driver.clearance.shaft_m)
-        stops += bool(driver.moved.stopped_by)
-    assert min(depths) >= -DEEPEST
-    assert min(depths) < TOUCHING
-    assert driver.tip[0] > 0.53
-    assert stops < 20
 
 
 def test_a_link_in_the_way_stops_the_arm_and_is_named():
@@ -222,19 +168,13 @@ def test_a_tool_inside_a_newly_placed_head_can_move_out_but_never_deeper():
 
 
 def test_the_same_pushes_give_the_same_joints_to_the_last_bit(head):
-    def played(collision):
+    def played():
         random = np.random.default_rng(42)
         q, direction = next(approaches(head, [*head.hollows(50)], random))
-        driver = Driver(collision, q)
-        joints = []
+        driver = Driver(head.collision, q)
         for _ in range(120):
             push = direction + 0.6 * random.normal(size=3)
             driver.push(push * 0.4 * TICK)
-            joints.append(driver.moved.q)
-        return joints
+            yield driver.moved.q
 
-    first = played(head.collision)
-    assert played(head.collision) == first
-    q = posture((0.5, 0.1, 0.45), DOWN)
-    head.collision.check(KINEMATICS.links(q))
-    assert played(head.collision) == first
+    assert list(played()) == list(played())

@@ -63,15 +63,6 @@ def test_the_sign_is_right_on_the_default_head(scenario):
     )
 
 
-def test_the_normal_points_where_the_clearance_grows(bumpy):
-    surface = HeadSurface(*bumpy)
-    for point in around(bumpy[0], 60, 8):
-        here = surface.nearest_to_point(tuple(point))
-        farther = surface.nearest_to_point(tuple(point + 1e-7 * np.array(here.normal)))
-        assert farther.distance_m - here.distance_m == pytest.approx(1e-7, abs=1e-12)
-        assert np.linalg.norm(here.normal) == pytest.approx(1.0)
-
-
 def test_the_distance_of_a_capsule_matches_brute_force_along_its_axis():
     vertices, triangles = bumpy_head(subdivisions=3)
     surface, random = HeadSurface(vertices, triangles), np.random.default_rng(9)
@@ -103,13 +94,6 @@ def test_a_triangle_without_area_does_not_corrupt_the_sign():
         assert np.sign(surface.nearest_to_point(tuple(point)).distance_m) == -np.sign(inward)
 
 
-def test_duplicate_vertices_are_merged():
-    vertices, triangles = ball(0.1, 3)
-    loose = vertices[triangles].reshape(-1, 3)
-    surface = HeadSurface(loose, np.arange(len(loose)).reshape(-1, 3))
-    assert surface.nearest_to_point((0.0, 0.0, 0.05)).distance_m < 0.0
-
-
 def test_an_inside_out_surface_is_turned_outward():
     vertices, triangles = ball(0.1, 3)
     surface = HeadSurface(vertices, triangles[:, ::-1])
@@ -117,13 +101,7 @@ def test_an_inside_out_surface_is_turned_outward():
     assert surface.nearest_to_point((0.0, 0.0, 0.2)).distance_m > 0.0
 
 
-@pytest.mark.parametrize(
-    ("spoil", "sentence"),
-    [
-        (lambda v, t: (v, t[1:]), "should be closed.* 3 edges are not"),
-        (lambda v, t: (v, np.concatenate([t[:1, ::-1], t[1:]])), "should be closed"),
-    ],
-)
-def test_an_unusable_surface_is_refused_with_a_message(spoil, sentence):
-    with pytest.raises(InputError, match=sentence):
-        HeadSurface(*spoil(*ball(0.1, 2)))
+def test_an_unusable_surface_is_refused_with_a_message():
+    vertices, triangles = ball(0.1, 2)
+    with pytest.raises(InputError, match=r"should be closed.* 3 edges are not"):
+        HeadSurface(vertices, triangles[1:])

@@ -23,10 +23,10 @@ def clearance(tip_mm, shaft_mm=1000.0):
     return Clearance(tip, shaft, shaft.distance_m, tool_m, FAR, FAR, FAR)
 
 
-def states(tips_mm, settings=ProximitySettings(), start=FREE):  # noqa: B008
-    found, state = [], start
+def states(tips_mm):
+    found, state = [], FREE
     for tip_mm in tips_mm:
-        state = next_proximity(state, clearance(tip_mm), settings)
+        state = next_proximity(state, clearance(tip_mm), ProximitySettings())
         found.append(state)
     return found
 
@@ -39,14 +39,11 @@ def test_the_tool_approaches_touches_and_leaves():
     )
 
 
-@pytest.mark.parametrize(
-    ("edge_mm", "shiver_mm"), [(20.0, 0.4), (20.5, 0.4), (0.05, 0.04), (0.15, 0.1)]
-)
-def test_no_state_flickers_while_the_hand_trembles_at_its_threshold(edge_mm, shiver_mm):
+def test_no_state_flickers_while_the_hand_trembles_at_its_threshold():
     random = np.random.default_rng(31)
-    found = states(edge_mm + random.uniform(-shiver_mm, shiver_mm, 1000))
-    changes = sum(a is not b for a, b in pairwise(found))
-    assert changes <= 1
+    for edge_mm, shiver_mm in ((20.0, 0.4), (20.5, 0.4), (0.05, 0.04), (0.15, 0.1)):
+        found = states(edge_mm + random.uniform(-shiver_mm, shiver_mm, 200))
+        assert sum(a is not b for a, b in pairwise(found)) <= 1
 
 
 UP = (0.0, 0.0, 1.0)
@@ -71,20 +68,9 @@ def test_commanded_motion_into_the_skin_that_is_not_carried_out_adds_up(pressing
     assert pressing.depth == pytest.approx(0.002)
     pressing.move((0.0, 0.0, -0.0005), (0.0, 0.0, -0.0002), skin())
     assert pressing.depth == pytest.approx(0.0023)
-
-
-def test_an_oblique_push_counts_by_its_component_into_the_skin(pressing):
+    # By its component into the skin.
     pressing.move((0.003, 0.0, -0.0004), (0.003, 0.0, 0.0), skin())
-    assert pressing.depth == pytest.approx(0.0004)
-
-
-def test_commanded_outward_motion_reduces_the_depth_but_not_below_zero(pressing):
-    pressing.move((0.0, 0.0, -0.002), ZERO, skin())
-    pressing.move((0.0, 0.0, 0.0005), (0.0, 0.0, 0.0), skin())
-    assert pressing.depth == pytest.approx(0.0015)
-    pressing.move((0.0, 0.0, 0.005), (0.0, 0.0, 0.0001), skin())
-    assert pressing.depth == 0.0
-    assert pressing.deepest == pytest.approx(0.002)
+    assert pressing.depth == pytest.approx(0.0027)
 
 
 def test_free_motion_is_not_pressing_even_if_the_arm_was_too_slow(pressing):
@@ -92,22 +78,6 @@ def test_free_motion_is_not_pressing_even_if_the_arm_was_too_slow(pressing):
     assert pressing.depth == pytest.approx(0.0, abs=1e-12)
     pressing.move((0.0, 0.0, -0.0005), (0.0, 0.0, -0.0002), skin(REST))
     assert pressing.depth == pytest.approx(0.0003)
-
-
-def test_the_end_of_contact_resets_the_depth_and_the_maximum_is_kept_until_the_next(pressing):
-    pressing.move((0.0, 0.0, -0.002), ZERO, skin())
-    pressing.end()
-    assert (pressing.depth, pressing.deepest) == (0.0, pytest.approx(0.002))
-    pressing.move((0.0, 0.0, -0.001), ZERO, skin())
-    assert (pressing.depth, pressing.deepest) == (pytest.approx(0.001), pytest.approx(0.001))
-
-
-def test_a_move_presses_no_farther_than_its_target(pressing):
-    for _ in range(100):
-        pressing.move((0.0, 0.0, -0.0005), ZERO, skin(), to_goal=(0.01, 0.0, -0.002))
-    assert pressing.depth == pytest.approx(0.002)
-    pressing.move((0.0, 0.0, -0.0005), ZERO, skin(), to_goal=(0.01, 0.0, -0.001))
-    assert pressing.depth == pytest.approx(0.002)
 
 
 def test_the_nearer_of_tip_and_shaft_counts(pressing):

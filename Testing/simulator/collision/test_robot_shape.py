@@ -55,9 +55,8 @@ def test_the_tool_is_covered_except_for_its_last_three_millimeters():
     assert beyond(np.zeros((1, 3)), SHAPE.tool.capsules)[0] > 0.002
 
 
-@pytest.mark.parametrize("leaning_deg", [0.0, 20.0, 40.0, 55.0, 60.0])
-def test_a_tool_tilted_by_sixty_degrees_still_touches_a_plane_with_its_tip_first(leaning_deg):
-    lean = np.radians(leaning_deg)
+def test_a_tool_tilted_by_sixty_degrees_still_touches_a_plane_with_its_tip_first():
+    lean = np.radians(60.0)
     to_plane = np.array([np.sin(lean), 0.0, -np.cos(lean)])
     for capsule in SHAPE.tool.capsules[:2]:
         heights = [end @ to_plane - capsule.radius for end in (capsule.start, capsule.end)]

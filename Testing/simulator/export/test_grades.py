@@ -37,9 +37,7 @@ TRIALS = [
     [
         ((None, None, FIDUCIALS, "best"), 90.0),
         ((None, None, FIDUCIALS, "latest"), 70.0),
-        (("task-1", None, FIDUCIALS, "best"), 80.0),
         (("task-1", "desktop", FIDUCIALS, "best"), 70.0),
-        ((None, "hmd", FIDUCIALS, "latest"), 80.0),
         ((None, None, SURFACE, "best"), 95.0),
         (("task-3", None, FIDUCIALS, "best"), None),
     ],

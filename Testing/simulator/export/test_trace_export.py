@@ -10,13 +10,13 @@ from rastrainer.registration.registration import register
 from rastrainer.study.database.values import StoredRegistration, StoredTrial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.export.trial_files import write_slicer_files
-from Testing.simulator.record.test_recorded_trace import record_of
+from Testing.domain.trial.trial_records import make_traced
 
 LANDMARKS = np.array([[0.0, 90.0, -30.0], [50.0, 60.0, -40.0], [-50.0, 60.0, -40.0]])
 
 
 def test_points_of_a_trace_are_exported_in_world_and_registered_coordinates(tmp_path):
-    record = record_from_json(TrialRecord, record_of())
+    record = record_from_json(TrialRecord, make_traced())
     moved = transforms.apply(transforms.rigid(np.eye(3), [100.0, 0.0, 50.0]), LANDMARKS)
     rigid = register(moved, LANDMARKS, labels=record.labels)
     stored = StoredTrial(record, {"rigid": StoredRegistration.of(rigid, None)})
@@ -30,9 +30,3 @@ def test_points_of_a_trace_are_exported_in_world_and_registered_coordinates(tmp_
         cloud = read_point_cloud(tmp_path / f"traced-{frame}.ply")
         np.testing.assert_allclose(cloud, places, atol=1e-3)
     assert read_markups(tmp_path / "touched-world.mrk.json").labels == record.labels
-
-
-def test_without_a_registration_they_are_exported_only_in_world_coordinates(tmp_path):
-    stored = StoredTrial(record_from_json(TrialRecord, record_of()), {}, None, None, None)
-    names = [path.name for path in write_slicer_files(stored, tmp_path)]
-    assert names == ["touched-world.mrk.json", "traced-world.mrk.json", "traced-world.ply"]

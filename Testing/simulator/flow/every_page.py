@@ -11,9 +11,11 @@ from pkgutil import iter_modules
 from types import MappingProxyType, SimpleNamespace
 from unicodedata import east_asian_width
 
+import numpy as np
 import pytest
 
-from rastrainer.decision.drill_record import DecidedCase, Decision, Fault
+from rastrainer.decision.drill_record import Decision, Fault
+from rastrainer.procedure.plan import ProcedureKind
 from rastrainer.procedure.record import UsedRegistration
 from rastrainer.protocol import MAX_ASSIGNMENTS, AssignmentState, GoalKind, Phase
 from rastrainer.registration.fits import RIGID
@@ -48,6 +50,8 @@ from rastrainer_simulator.trial_state import (
     TouchState,
     TrajectoryState,
 )
+from Testing.drawn_drills import draw_drill
+from Testing.simulator.report.studied_procedures import outcome
 
 QUESTIONNAIRE = StudyStep("P07", "questionnaire", 2, 19, questionnaire="nasa-tlx")
 FAILED = {
@@ -99,41 +103,10 @@ PROCEDURE_SCORED = replace(
         Phase.REGISTERED,
         trajectories=(TrajectoryState(PlannedLine("Lesion", (0.5, 0.0, 0.4), (0.5, 0.0, 0.3))),),
     ),
-    result=replace(
-        SCORED.result,
-        details={
-            "procedure": {
-                "score": 42.0,
-                "acceptable": True,
-                "targetRmsMm": 2.31,
-                "targetByRegistrationRmsMm": 1.98,
-                "targetByHandRmsMm": 0.95,
-                "trajectories": [
-                    {
-                        "name": "Right frontal lesion",
-                        "targetMm": 2.31,
-                        "byRegistrationMm": 1.98,
-                        "byHandMm": 0.95,
-                        "entryMm": 1.2,
-                        "entryByRegistrationMm": 1.1,
-                        "entryByHandMm": 0.4,
-                        "radialMm": 1.6,
-                        "radialByRegistrationMm": 1.5,
-                        "radialByHandMm": 0.3,
-                        "depthMm": -1.7,
-                        "depthByRegistrationMm": -0.9,
-                        "depthByHandMm": -0.8,
-                        "angleDeg": 1.4,
-                        "angleByRegistrationDeg": 1.1,
-                        "angleByHandDeg": 0.6,
-                        "plungeMm": 6.25,
-                        "nearest": "Superior sagittal sinus (schematic)",
-                        "keptMm": 7.5,
-                    }
-                ],
-            }
-        },
-    ),
+    result=replace(SCORED.result, details={"procedure": outcome(ProcedureKind.BIOPSY).summary()}),
+)
+PROCEDURE_SCORED.result.details["procedure"]["trajectories"][0].update(
+    name="Right frontal lesion", nearest="Superior sagittal sinus (schematic)"
 )
 
 OWN_TRIALS = tuple(
@@ -331,23 +304,9 @@ def _case(scenario):
 def _drill(scenario, is_decided: bool) -> SimpleNamespace:
     """Return a drill at its last case, as far as pages show it."""
     made = _case(scenario)
-    decided = [
-        DecidedCase(
-            seed=number,
-            fault=fault,
-            method=made.method,
-            limit_mm=made.limit_mm,
-            true_error_mm=5.0,
-            expected_error_mm=1.0,
-            residual_mm=1.0,
-            difficulty=0.0,
-            decision=Decision.PROCEED if number % 3 else Decision.REGISTER_AGAIN,
-            confidence=100,
-            suspected=Fault.MIRRORED,
-            time_s=99.0,
-        )
-        for number, fault in enumerate((*Fault, Fault.MIRRORED))
-    ]
+    cases = draw_drill(np.random.default_rng(1), "P07").cases
+    mirrored = {"fault": Fault.MIRRORED, "suspected": Fault.MIRRORED}
+    decided = [*cases, replace(cases[0], **mirrored, decision=Decision.PROCEED, confidence=100)]
     return SimpleNamespace(
         case=made,
         number=20,

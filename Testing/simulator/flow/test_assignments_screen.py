@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from rastrainer.protocol import FREE, TRIAL_RUN, AssignmentState, GoalKind
-from rastrainer.study_messages import AssignmentStanding, CurriculumMessage, StudyStep
+from rastrainer.protocol import TRIAL_RUN, AssignmentState, GoalKind
+from rastrainer.study_messages import AssignmentStanding, CurriculumMessage
 from rastrainer_simulator.flow.pages.result import waiting_page
 from rastrainer_simulator.flow.session.session import REACHED_S
 from rastrainer_simulator.presentation.screen import Tone
@@ -17,8 +17,8 @@ LOCKED, OPEN, REACHED = AssignmentState
 SCORE, COMPETENT = GoalKind
 
 
-def toward(goal, state, needed):
-    return {"goal": goal, "state": state, "needed": needed}
+def standing(name, task, state=OPEN, needed=1, goal=SCORE, **others):
+    return AssignmentStanding(name, task, goal=goal, state=state, needed=needed, **others)
 
 
 TOLD = CurriculumMessage(
@@ -26,28 +26,12 @@ TOLD = CurriculumMessage(
     "First steps",
     "two",
     (
-        AssignmentStanding(
-            "one", "task-1", **toward(SCORE, REACHED, 2), done=2, mark=70.0, played=3
-        ),
-        AssignmentStanding(
-            "two",
-            "task-2",
-            goal=SCORE,
-            state=OPEN,
-            needed=3,
-            done=1,
-            mark=72.5,
-            played=2,
-            weakest="time",
-        ),
-        AssignmentStanding(
-            "three", "task-3", **toward(COMPETENT, LOCKED, 100), mark=70.0, missing=("two",)
-        ),
-        AssignmentStanding("four", "task-4", **toward(SCORE, OPEN, 1), mode="hmd", mark=70.0),
-        AssignmentStanding("five", "task-9", **toward(SCORE, OPEN, 1), procedure="none", mark=70.0),
-        AssignmentStanding(
-            "six", "task-4", **toward(SCORE, OPEN, 1), scenario="elsewhere", mark=70.0
-        ),
+        standing("one", "task-1", REACHED, 2, done=2, mark=70.0, played=3),
+        standing("two", "task-2", OPEN, 3, done=1, mark=72.5, played=2, weakest="time"),
+        standing("three", "task-3", LOCKED, 100, COMPETENT, mark=70.0, missing=("two",)),
+        standing("four", "task-4", mode="hmd", mark=70.0),
+        standing("five", "task-9", procedure="none", mark=70.0),
+        standing("six", "task-4", scenario="elsewhere", mark=70.0),
     ),
 )
 
@@ -64,29 +48,26 @@ def menu(trainee, outside):
     return trainee
 
 
-@pytest.fixture
-def page(menu):
-    menu.choose("assignments", "assignments")
-    return menu
-
-
-def test_the_menu_shows_the_trainees_progress_and_what_comes_next(menu):
+def test_menu_and_board_show_the_progress_only_while_slicer_is_connected(menu, outside):
     row = menu.item("assignments")
     assert (row.label, row.value) == ("Your assignments", "1 of 6 reached")
     assert row.help == "Next: Task 2, your weakest. Most points are lost on time."
-
-
-def test_a_board_can_read_a_trainees_progress(menu, outside):
     text = "1 of 6 reached · Next: Task 2 (1 / 3)"
     assert menu.presenter.seat().assignments == text
+    assert menu.item("task-2").is_enabled
+    assert menu.item("task-3").help == "Locked. First reach: Task 2."
+    assert menu.item("task-5").help == "Task 1 comes first."
     outside.has_slicer = False
+    menu.step(20)
     assert menu.presenter.seat().assignments == ""
+    assert "assignments" not in [item.name for item in menu.menu.items]
+    assert menu.item("task-3").help == "Task 1 comes first."
 
 
-def test_each_assignment_is_a_row_with_its_state_and_the_next_one_has_focus(page):
-    assert page.menu.paragraphs[0] == "First steps"
-    assert page.menu.focus == "assignment two"
-    rows = [(item.label, item.value, item.is_enabled) for item in page.menu.items]
+def test_each_assignment_is_a_row_with_its_state_until_the_curriculum_ends(menu, outside):
+    menu.choose("assignments", "assignments")
+    assert menu.menu.focus == "assignment two"
+    rows = [(item.label, item.value, item.is_enabled) for item in menu.menu.items]
     assert rows == [
         ("Task 1", "reached", True),
         ("Task 2", "1 / 3", True),
@@ -96,60 +77,19 @@ def test_each_assignment_is_a_row_with_its_state_and_the_next_one_has_focus(page
         ("Task 4", "0 / 1", False),
         ("Back", "", True),
     ]
-    assert page.item("assignment two").help == (
-        "Task 2. Reached when 3 trials in a row have 72.5 points or more, within all limits."
-    )
-    assert page.item("assignment three").help == "Locked. First reach: Task 2."
-    for elsewhere in ("five", "six"):
-        assert "Not possible on this head" in page.item(f"assignment {elsewhere}").help
-
-
-def test_an_assignment_begins_its_trial_in_its_mode(page):
-    page.choose("assignment four", None)
-    assert (page.state.training.task, page.state.training.mode) == ("task-4", "hmd")
-
-
-def test_after_a_trial_the_next_assignment_is_offered_instead_of_the_next_task(page, outside):
-    page.choose("assignment one", None)
-    finished = waiting_page(page.presenter._session)
-    offered = {row.item.name: row.item.label for row in finished.content().rows}
-    assert offered["next"] == "Next: Task 2"
-    outside.services.assigned.take_curriculum(replace(TOLD, next="four"))
-    offered = {row.item.name: row.item.label for row in finished.content().rows}
-    assert offered["next"] == "Next: Task 4 · Headset"
-    finished.back()
-    assert page.presenter._session.pages.top.content().first == "assignments"
-    outside.services.assigned.take_curriculum(replace(TOLD, next=""))
-    assert "next" not in [row.item.name for row in finished.content().rows]
-
-
-def test_a_locked_task_waits_for_its_gate_and_an_open_one_for_no_earlier_task(menu):
-    assert menu.item("task-2").is_enabled
-    assert not menu.item("task-3").is_enabled
-    assert menu.item("task-3").help == "Locked. First reach: Task 2."
-    assert menu.item("task-5").help == "Task 1 comes first."
-
-
-def test_a_study_takes_precedence_over_a_curriculum(menu, outside):
-    outside.services.assigned.take_step(StudyStep("P07", "trial", 3, 19, "task-3", "desktop"))
-    menu.step(20)
-    assert "assignments" not in [item.name for item in menu.menu.items]
-    assert menu.item("task-3").is_enabled
-    outside.services.assigned.take_step(StudyStep("P07", FREE))
-    menu.step(20)
-    assert menu.item("assignments").is_enabled
-
-
-def test_without_slicer_nothing_is_locked_and_nothing_is_announced(menu, outside):
-    outside.has_slicer = False
-    menu.step(20)
-    assert "assignments" not in [item.name for item in menu.menu.items]
-    assert menu.item("task-3").help == "Task 1 comes first."
-
-
-def test_the_page_closes_when_the_curriculum_ends(page, outside):
     outside.services.assigned.take_curriculum(CurriculumMessage("P07"))
-    page.until_menu("experiment")
+    menu.until_menu("experiment")
+
+
+def test_an_assignment_begins_its_trial_in_its_mode_and_the_next_one_follows(menu, outside):
+    menu.choose("assignments", "assignments")
+    menu.choose("assignment four", None)
+    assert (menu.state.training.task, menu.state.training.mode) == ("task-4", "hmd")
+    finished = waiting_page(menu.presenter._session)
+    for name, label in (("one", "Next: Task 1"), ("four", "Next: Task 4 · Headset"), ("", None)):
+        outside.services.assigned.take_curriculum(replace(TOLD, next=name))
+        offered = {row.item.name: row.item.label for row in finished.content().rows}
+        assert offered.get("next") == label
 
 
 def said(menu):

@@ -36,21 +36,19 @@ def test_a_trial_and_its_clock_wait_until_the_view_has_drawn_it(waiting):
     assert waiting.state.training.phase is Phase.RUNNING
 
 
-def test_a_picture_that_makes_no_progress_is_not_waited_for_any_longer(waiting, monkeypatch):
-    waiting.step(100)
-    assert waiting.menu.name == "preparing"
-    monkeypatch.setattr(operated_views, "LONGEST_WAIT_S", 0.0)
-    waiting.until_menu(None)
-    assert waiting.state.training.phase is Phase.RUNNING
-
-
-def test_the_trainee_may_begin_without_the_picture_or_leave(waiting):
-    waiting.step(50)
-    waiting.choose("menu", "trial")
-    waiting.choose("resume", "preparing")
+def test_a_picture_is_not_waited_for_without_progress_or_if_the_trainee_begins(
+    waiting, monkeypatch
+):
     waiting.step(50)
     waiting.choose("begin", None)
     waiting.step(100)
+    assert waiting.state.training.phase is Phase.RUNNING
+    assert waiting.submit("Abort").ok
+    waiting.presenter.on_picture(VIEW, "", 1.0)
+    assert waiting.submit("StartTask", task="task-1", trainee="P07", mode="desktop").ok
+    waiting.until_menu("preparing")
+    monkeypatch.setattr(operated_views, "LONGEST_WAIT_S", 0.0)
+    waiting.until_menu(None)
     assert waiting.state.training.phase is Phase.RUNNING
 
 
@@ -78,12 +76,3 @@ def test_the_tutorial_asks_for_nothing_before_its_picture_is_there(trainee):
     assert session.tutorial._seconds == {}
     trainee.presenter.on_picture(VIEW, "trial-run", 1.0)
     trainee.until(lambda: "30 mm to the right" in said(), "the first step")
-
-
-def test_a_menu_over_an_empty_picture_says_that_it_is_being_prepared(trainee):
-    trainee.presenter.on_picture(VIEW, "", 0.0)
-    trainee.step(15)
-    assert trainee.presenter.screen.warnings[0].text.startswith("The picture is being prepared")
-    trainee.presenter.on_picture(VIEW, "", 1.0)
-    trainee.step(15)
-    assert trainee.presenter.screen.warnings == ()

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import os
 import time
 
 import pytest
 
 from rastrainer.decision.drill_record import CASES, Decision
-from rastrainer.journal.folder import DRILL_SUFFIX
-from rastrainer_simulator.decision.drill import CLOCK_S
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.controls import Controls, ControlsListener
 from Testing.simulator.decision.drills import PATIENCE_S, AtOnce, cheap_forms
-from Testing.simulator.record.test_interrupted_trial import on_full_disk
 
 
 @pytest.fixture(autouse=True)
@@ -99,36 +95,6 @@ def test_an_open_drill_has_to_be_continued_by_its_trainee_alone_until_it_is_over
     restarted.leave_drill()
 
 
-def test_a_full_disk_is_told_in_the_trainees_language_and_the_drill_begins_with_room(
-    loop, outside, monkeypatch
-):
-    session = start(loop, outside, language="de")
-    with monkeypatch.context() as full:
-        full.setattr(os, "write", on_full_disk)
-        session.begin_drill()
-    assert session.drill is None
-    assert any("zählt nicht; schaffe Platz" in text for text in told(session))
-    drill = begin(session)
-    with monkeypatch.context() as full:
-        full.setattr(os, "write", on_full_disk)
-        session.advance(CLOCK_S, loop.latest)
-    assert drill.time_s == 0.0
-    session.advance(CLOCK_S, loop.latest)
-    assert drill.time_s > 0.0
-    session.leave_drill()
-
-
-def test_a_drill_whose_journal_was_altered_is_left_and_another_begins(session, loop, outside):
-    drill = begin(session)
-    session.leave_drill()
-    (path,) = outside.services.records.glob(f"*{DRILL_SUFFIX}")
-    path.write_bytes(path.read_bytes().replace(b'"timeS":0.0', b'"timeS":0.1', 1))
-    session = start(loop, outside)
-    assert begin(session).trial_id != drill.trial_id
-    assert any("the drill cannot be continued" in text for text in told(session))
-    session.leave_drill()
-
-
 def test_a_drill_of_another_version_is_abandoned_once_another_begins_and_the_trainee_is_told(
     session, loop, monkeypatch
 ):
@@ -145,15 +111,3 @@ def test_a_drill_of_another_version_is_abandoned_once_another_begins_and_the_tra
     session.leave_drill()
     assert begin(session).trial_id == again.trial_id
     session.leave_drill()
-
-
-def test_no_drill_begins_without_an_id_or_while_another_head_is_loaded(session, outside):
-    session.trainee = "  "
-    session.begin_drill()
-    assert session.drill is None
-    assert any("trainee must be" in text for text in told(session))
-    session.trainee = "P01"
-    session.reload.use_scenario("other")
-    session.begin_drill()
-    assert session.drill is None
-    assert list(outside.services.records.glob(f"*{DRILL_SUFFIX}")) == []

@@ -7,16 +7,15 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from rastrainer.journal.entries import CameraChange, ProximityChange
-from rastrainer.protocol import Phase, Proximity
+from rastrainer.journal.entries import ProximityChange
+from rastrainer.protocol import Proximity
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.presentation.feedback_event import (
     FeedbackEvent,
     feedback_event,
     touch_feedback,
 )
-from rastrainer_simulator.state import TOUCH_ERRORS, Event, TouchStage, TrainingState
-from rastrainer_simulator.training.replies import phase_change
+from rastrainer_simulator.state import TOUCH_ERRORS, Event, TouchStage
 from Testing.simulator.flow.test_whole_flow import REGISTRATION, SCORE
 
 
@@ -84,39 +83,15 @@ def test_every_named_sound_ships_with_rastrainer():
     assert sounds == {path.stem for path in asset_path("sounds").glob("*.wav")}
 
 
-def test_muted_sounds_have_zero_volume(trainee):
-    trainee.choose("settings", "settings")
-    trainee.focus("volume")
-    trainee.tap("right")
-    trainee.step()
-    assert trainee.watcher.feedbacks[-1].volume == pytest.approx(0.7)
-    trainee.focus("muted")
-    assert trainee.watcher.feedbacks[-1].volume == pytest.approx(0.8)
-    trainee.tap("right", "up")
-    assert trainee.watcher.feedbacks[-1].volume == 0.0
-
-
-def change(before, after):
-    return ProximityChange(from_=before, to=after, clearance_mm=0.0)
-
-
-@pytest.mark.parametrize(
-    ("entry", "meant"),
-    [
-        (change(Proximity.FREE, Proximity.CONTACT), FeedbackEvent.CONTACT),
-        (change(Proximity.FREE, Proximity.PROXIMITY), FeedbackEvent.PROXIMITY_IN),
-        (change(Proximity.CONTACT, Proximity.FREE), FeedbackEvent.PROXIMITY_OUT),
-        (phase_change(TrainingState(phase=Phase.PAUSED)), None),
-        (CameraChange("far"), None),
-    ],
-)
-def test_each_event_maps_to_its_feedback(entry, meant):
-    assert feedback_event(Event(0.0, entry), TouchStage.ELSEWHERE) is meant
-
-
-@pytest.mark.parametrize("error", TOUCH_ERRORS)
-def test_a_touch_that_goes_wrong_sounds_the_alarm_once(error):
-    assert touch_feedback(TouchStage.ON_SKIN, error) is FeedbackEvent.CONTACT
-    assert touch_feedback(error, error) is None
-    assert touch_feedback(error, TouchStage.ON_SKIN) is FeedbackEvent.ON_SKIN
-    assert touch_feedback(TouchStage.ON_SKIN, TouchStage.NEAR) is None
+def test_the_alarm_sounds_once_when_a_touch_goes_wrong_and_when_the_arm_touches():
+    for error in TOUCH_ERRORS:
+        assert touch_feedback(TouchStage.ON_SKIN, error) is FeedbackEvent.CONTACT
+        assert touch_feedback(error, error) is None
+    assert touch_feedback(TouchStage.TOO_DEEP, TouchStage.ON_SKIN) is FeedbackEvent.ON_SKIN
+    for before, after, meant in (
+        (Proximity.FREE, Proximity.CONTACT, FeedbackEvent.CONTACT),
+        (Proximity.FREE, Proximity.PROXIMITY, FeedbackEvent.PROXIMITY_IN),
+        (Proximity.CONTACT, Proximity.FREE, FeedbackEvent.PROXIMITY_OUT),
+    ):
+        entry = ProximityChange(from_=before, to=after, clearance_mm=0.0)
+        assert feedback_event(Event(0.0, entry), TouchStage.ELSEWHERE) is meant

@@ -16,7 +16,6 @@ from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.loop.timing import TrialLimits
-from rastrainer_simulator.replay.ghost import Ghost
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial
 from Testing.simulator.flow.conftest import Outside
 from Testing.simulator.flow.test_replay_screen import Place
@@ -160,10 +159,3 @@ def test_in_a_study_a_ghost_is_shown_only_if_its_protocol_says_so(place, ghost, 
     place.step(5)
     assert (place.ghost is not None) is bool(ghost)
     assert place.noted() == noted
-
-
-def test_the_ghost_disappears_soon_after_its_last_touch(place, anywhere):
-    ghost = Ghost(read_track(place.best), anywhere, np.eye(4))
-    last = read_track(place.best).trajectory.touches[-1].time_s
-    assert ghost.poses(last) is not None
-    assert ghost.poses(last + 1.0) is None

@@ -6,10 +6,8 @@ import re
 
 import pytest
 
-from rastrainer_simulator.flow.session.preferences import OF_TRAINEES, OPTIONS
-from rastrainer_simulator.ops.instructor_pin import PIN_FILE
+from rastrainer_simulator.flow.session.preferences import OF_TRAINEES
 from rastrainer_simulator.presentation.messages import Hello
-from Testing.simulator.flow.trainee import Mouse, Trainee
 
 PIN = "402817"
 OTHER = "402818"
@@ -28,11 +26,9 @@ def open_pin(trainee):
     trainee.choose("unlock", "pin")
 
 
-def enter(trainee, digits=PIN):
-    """Choose one digit after the other, and the item that unlocks."""
-    for digit in digits:
-        trainee.choose(digit)
-    trainee.choose("unlock")
+def enter(trainee, digits):
+    trainee.hands.type(digits)
+    trainee.tap("accept")
 
 
 def until_unlocked(trainee):
@@ -63,13 +59,6 @@ def test_with_a_pin_set_only_language_and_sound_can_be_changed_without_it(traine
     assert trainee.item("coarse").help == "Locked: an instructor enters the PIN below."
 
 
-def test_without_a_pin_nothing_is_locked_and_the_order_is_in_the_file(trainee, outside):
-    outside.pin.set("")
-    trainee.choose("settings", "settings")
-    assert enabled(trainee) == {*OPTIONS, "back"} - {"order", "tutorial"}
-    assert "unlock" not in {item.name for item in trainee.menu.items}
-
-
 def test_after_the_pin_is_typed_the_order_can_be_chosen_and_locked_again(trainee):
     open_pin(trainee)
     trainee.hands.type("77")
@@ -88,90 +77,30 @@ def test_after_the_pin_is_typed_the_order_can_be_chosen_and_locked_again(trainee
     trainee.until(lambda: "order" not in enabled(trainee), "the items are locked")
 
 
-def test_the_pin_is_entered_by_clicks(loop, presenter):
-    clicking = Trainee(loop, presenter, lambda it: Mouse(it, "page"))
-    for menu, item in (("start", "settings"), ("settings", "unlock")):
-        clicking.until_menu(menu)
-        clicking.hands.click(item)
-    for item in (*PIN, "unlock"):
-        clicking.hands.click(item)
-    until_unlocked(clicking)
-    clicking.close()
-
-
 def test_a_wrong_pin_unlocks_nothing_and_after_five_no_pin_is_checked(trainee, outside):
+    # The boards and the seat share the limit.
+    assert not outside.services.pin.guess(OTHER).is_right
     open_pin(trainee)
-    lock = trainee.presenter._session.lock
-    trainee.hands.type("4028")
-    trainee.tap("accept")
+    enter(trainee, "4028")
     assert trainee.item("unlock").help == "A PIN has 6 to 12 digits."
-    trainee.hands.type("18")
-    for number in range(5):
-        trainee.hands.type("" if number == 0 else OTHER)
-        trainee.tap("accept")
+    for number in range(1, 5):
+        enter(trainee, "18" if number == 1 else OTHER)
         until_message(trainee, "wait 1 s" if number == 4 else "not the PIN of this seat")
         trainee.until(lambda: trainee.item("unlock").value == "_", "the digits are cleared")
         trainee.presenter.advance(6.0)
-    trainee.hands.type(PIN)
-    trainee.tap("accept")
+    enter(trainee, PIN)
     until_message(trainee, "wait 1 s")
-    assert lock.is_locked
-    outside.now = 1.5
-    trainee.hands.type(PIN)
-    trainee.tap("accept")
-    until_unlocked(trainee)
-
-
-def test_boards_and_the_seat_share_one_limit_on_pin_attempts(trainee, outside):
-    for _ in range(4):
-        assert not outside.services.pin.guess(OTHER).is_right
-    open_pin(trainee)
-    trainee.hands.type(OTHER)
-    trainee.tap("accept")
-    until_message(trainee, "too many wrong PINs")
     assert outside.services.pin.guess(PIN).wait_s == 1.0
-
-
-@pytest.mark.parametrize("content", ["{}", "7"])
-def test_a_damaged_pin_file_unlocks_nothing_and_is_named(trainee, outside, content):
-    (outside.services.config / PIN_FILE).write_text(content, encoding="utf-8")
-    open_pin(trainee)
-    trainee.hands.type(PIN)
-    trainee.tap("accept")
-    until_message(trainee, PIN_FILE)
     assert trainee.presenter._session.lock.is_locked
-
-
-def test_leaving_the_page_before_the_answer_unlocks_nothing(trainee):
-    open_pin(trainee)
-    session = trainee.presenter._session
-    trainee.hands.type(PIN)
-    session.pages.choose("unlock")
-    session.pages.choose("cancel")
-    trainee.until_menu("settings")
-    trainee.step(20)
-    assert session.lock.is_locked
+    outside.now = 1.5
+    enter(trainee, PIN)
+    until_unlocked(trainee)
 
 
 def unlock(trainee):
     open_pin(trainee)
-    trainee.hands.type(PIN)
-    trainee.tap("accept")
+    enter(trainee, PIN)
     until_unlocked(trainee)
-
-
-def begin_trial(trainee):
-    trainee.start("task-1")
-
-
-def change_trainee(trainee):
-    trainee.presenter._session.trainee = "P08"
-    trainee.step(2)
-
-
-def begin_tutorial(trainee):
-    trainee.presenter._session.begin_tutorial()
-    trainee.step(2)
 
 
 def unlock_in_the_trials_menu(trainee):
@@ -179,8 +108,7 @@ def unlock_in_the_trials_menu(trainee):
     trainee.tap_until("menu", "trial")
     trainee.choose("settings", "settings")
     trainee.choose("unlock", "pin")
-    trainee.hands.type(PIN)
-    trainee.tap("accept")
+    enter(trainee, PIN)
     until_unlocked(trainee)
 
 
@@ -188,7 +116,7 @@ def test_the_settings_lock_again_when_a_trial_begins_and_stay_locked_in_its_menu
     trainee.presenter._session.trainee = "P07"
     trainee.step(2)
     unlock(trainee)
-    begin_trial(trainee)
+    trainee.start("task-1")
     assert trainee.presenter._session.lock.is_locked
     unlock_in_the_trials_menu(trainee)
     assert "order" in enabled(trainee)
@@ -196,17 +124,6 @@ def test_the_settings_lock_again_when_a_trial_begins_and_stay_locked_in_its_menu
     assert trainee.submit("Abort").ok
     trainee.until_menu("experiment")
     assert not trainee.presenter._session.lock.is_locked
-
-
-@pytest.mark.parametrize("event", [change_trainee, begin_tutorial])
-def test_the_settings_lock_again_when_somebody_else_trains(trainee, event):
-    unlock(trainee)
-    trainee.presenter._session.trainee = "P07"
-    trainee.step(2)
-    trainee.presenter._session.pages.show_start()
-    unlock(trainee)
-    event(trainee)
-    assert trainee.presenter._session.lock.is_locked
 
 
 def press_menu(presenter):

@@ -1,11 +1,10 @@
-"""The flow by the mouse alone: menus, hints and sticks that are dragged, up to a scored trial."""
+"""The flow by the mouse alone: menus, hints and sticks that are dragged."""
 
 from __future__ import annotations
 
 import pytest
 
 from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
-from rastrainer_simulator.input.inputs import ControlName
 from Testing.simulator.flow.trainee import VIEW, ClickingTrainee, Mouse
 
 
@@ -17,21 +16,19 @@ def clicking(loop, presenter):
     trainee.close()
 
 
-def test_a_new_id_is_clicked_character_by_character(clicking):
-    clicking.open_experiment()
-    for item in ("clicked", "row 1", "P", "row 0", "A", "delete", "row 3", "7"):
+def test_an_id_is_clicked_character_by_character_and_a_known_one_at_once(clicking, outside):
+    clicking.start("task-1", "P21")
+    clicking.submit("Abort")
+    clicking.until_menu("experiment")
+    session = clicking.presenter._session
+    session.history, session.trainee = TraineeHistory(outside.services.records), ""
+    clicking.choose("mode")
+    clicking.choose("clicked")
+    for item in ("row 1", "P", "row 0", "A", "delete", "row 3", "7"):
         clicking.hands.click(item)
     assert clicking.menu.facts[0].value == "P7_"
     clicking.hands.click("done")
     assert clicking.item("trainee").value == "P7"
-
-
-def test_a_previously_used_id_is_one_click_away(clicking, outside):
-    clicking.start("task-1", "P21")
-    clicking.submit("Abort")
-    clicking.until_menu("experiment")
-    clicking.presenter._session.history = TraineeHistory(outside.services.records)
-    clicking.hands.click("mode")
     clicking.hands.click("clicked")
     clicking.hands.click("known P21")
     assert clicking.item("trainee").value == "P21"
@@ -64,38 +61,8 @@ def test_the_right_stick_tilts_once_its_hint_has_been_clicked(clicking):
     clicking.hands.click("train")
     session, presenter = clicking.presenter._session, clicking.presenter
     session.operator.screen_sticks.is_shown = True
-    presenter.on_sticks(VIEW, (0.0, 0.0, 0.5), (0.2, 0.0), False, 0.0)
-    held = session.controls.held
-    assert (held.translation, held.rotation) == (
-        (0.0, 0.0, 0.5),
-        (0.2, 0.0),
-    )
-    presenter.on_item(VIEW, "press tilt")
-    presenter.on_sticks(VIEW, (0.0, 0.0, 0.5), (0.2, 0.0), False, 0.0)
-    held = session.controls.held
-    assert (held.translation, held.rotation) == (
-        (0.0, 0.0, 0.0),
-        (0.2, 0.5),
-    )
-
-
-def test_a_trainee_with_a_gamepad_is_not_shown_mouse_controls(pilot):
-    pilot.start("task-1")
-    pilot.hands.push(0.0, 0.0, 0.5, False)
-    pilot.step(5)
-    items = [hint.item for hint in pilot.presenter.screen.hints]
-    assert "press sticks" not in items
-    assert f"press {ControlName.TOUCH.value}" in items
-
-
-def test_an_optional_tutorial_is_skipped_and_a_trial_run_ended_with_the_mouse_alone(clicking):
-    clicking.presenter._session.prefer(tutorial="optional", order="fixed")
-    clicking.open_experiment()
-    for item in ("clicked", "row 1", "P", "row 3", "7", "done"):
-        clicking.choose(item)
-    clicking.choose("tutorial", None)
-    clicking.tap_until("menu", "tutorial")
-    clicking.choose("leave", "experiment")
-    clicking.choose("trial-run", None)
-    clicking.tap_until("menu", "trial")
-    clicking.choose("finish", "experiment")
+    for translation, rotation in (((0.0, 0.0, 0.5), (0.2, 0.0)), ((0.0, 0.0, 0.0), (0.2, 0.5))):
+        presenter.on_sticks(VIEW, (0.0, 0.0, 0.5), (0.2, 0.0), False, 0.0)
+        held = session.controls.held
+        assert (held.translation, held.rotation) == (translation, rotation)
+        presenter.on_item(VIEW, "press tilt")

@@ -51,8 +51,3 @@ def test_a_teacher_pauses_a_trial_and_the_trainee_sees_who_did(trainee, presente
     assert presenter.instruct(InstructorOrder.PAUSE, "") == nothing
     trainee.choose("resume", None)
     assert "Paused by your instructor." not in said(trainee)
-
-
-def test_a_replay_needs_a_result_on_the_screen(presenter):
-    sentence = presenter.instruct(InstructorOrder.REPLAY, "")
-    assert sentence.startswith("A replay can be shown while the result of a trial is on the screen")

@@ -42,29 +42,6 @@ def process():
     return Process()
 
 
-def test_settings_wait_for_the_end_of_a_trial(process):
-    process.has_open_trial = True
-    process.reload.request(PRESENT, NEW)
-    process.advance()
-    assert process.names == []
-    process.has_open_trial = False
-    process.advance()
-    assert process.names == [NEW]
-    process.answer()
-    assert not process.reload.is_under_way
-
-
-def test_settings_wait_until_a_clients_scenario_is_loaded(process):
-    process.loop.is_being_replaced = True
-    assert process.reload.is_under_way
-    process.reload.request(PRESENT, NEW)
-    process.advance()
-    assert process.names == []
-    process.loop.is_being_replaced = False
-    process.advance()
-    assert process.names == [NEW]
-
-
 @pytest.mark.parametrize("reason", [TRIAL_IS_OPEN, BEING_SET_UP], ids=["trial", "loading"])
 def test_settings_are_not_lost_if_a_client_was_faster(process, reason):
     process.reload.request(PRESENT, NEW)
@@ -77,20 +54,3 @@ def test_settings_are_not_lost_if_a_client_was_faster(process, reason):
     assert process.names == [NEW, NEW]
     process.answer()
     assert not process.reload.is_under_way
-
-
-def test_settings_that_cannot_be_used_are_not_tried_again(process):
-    process.reload.request(PRESENT, NEW)
-    process.advance()
-    process.answer("scenario.json is empty.")
-    process.advance()
-    assert (process.names, process.complaints) == ([NEW], ["scenario.json is empty."])
-    assert not process.reload.is_under_way
-
-
-@pytest.mark.parametrize("reason", [TRIAL_IS_OPEN, BEING_SET_UP], ids=["trial", "loading"])
-def test_a_chosen_head_is_not_loaded_later_if_a_client_was_faster(process, reason):
-    process.reload.use_scenario("mine")
-    process.answer(reason)
-    process.advance()
-    assert (process.names, process.complaints) == (["mine"], [reason])

@@ -11,8 +11,6 @@ from rastrainer.study.protocol.steps import StepAnswers
 from rastrainer.study_messages import StudyStep
 from rastrainer_simulator.flow.session.assigned_training import (
     ANSWERED,
-    MAX_TRAINEES,
-    AssignedTraining,
 )
 from rastrainer_simulator.flow.session.chosen_trial import registration_method, start_task
 
@@ -63,7 +61,10 @@ def test_only_what_comes_next_can_be_started_and_the_menu_says_what_that_is(menu
     assert (menu.state.training.task, menu.state.training.mode) == ("task-2", "desktop")
 
 
-def test_nothing_can_be_started_in_another_mode(menu, guide):
+def test_nothing_can_be_started_in_another_mode_or_at_another_step(menu, guide):
+    tell(menu, guide, StudyStep("P07", "break", 4, 9, minutes=10.0, over=9.9))
+    assert enabled(menu) == []
+    assert "take a break of at least 10 minutes, 00:0" in menu.menu.paragraphs[0]
     tell(menu, guide, TASK_2)
     menu.focus("mode")
     menu.tap("right")
@@ -72,32 +73,7 @@ def test_nothing_can_be_started_in_another_mode(menu, guide):
     assert "on the desktop screen" in menu.item("task-2").help
 
 
-@pytest.mark.parametrize(
-    ("step", "sentence"),
-    [
-        (
-            StudyStep("P07", "repeat", 3, 19, "task-2", "desktop"),
-            "Step 3 of 19: Task 2 was aborted. The instructor must enter a reason for repeating "
-            "it in 3D Slicer.",
-        ),
-        (
-            StudyStep("P07", "questionnaire", 1, 19, mode="hmd", questionnaire="nasa-tlx"),
-            "Step 1 of 19: answer the questionnaire NASA-TLX (raw)",
-        ),
-        (
-            StudyStep("P07", "break", 4, 9, minutes=10.0, over=9.9),
-            "take a break of at least 10 minutes, 00:0",
-        ),
-        (StudyStep("P07", "all-done", 9, 9), "All steps of the study are done"),
-    ],
-)
-def test_a_step_that_is_not_a_trial_is_described_and_cannot_be_started(menu, guide, step, sentence):
-    tell(menu, guide, step)
-    assert enabled(menu) == []
-    assert sentence in menu.menu.paragraphs[0]
-
-
-def test_other_trainees_and_those_no_longer_in_the_study_practice_freely(menu, guide):
+def test_trainees_who_are_not_or_no_longer_in_the_study_practice_freely(menu, guide):
     tell(menu, guide, StudyStep("P08", "all-done", 9, 9))
     assert enabled(menu) == ["trial-run"]
     tell(menu, guide, TASK_2)
@@ -105,19 +81,11 @@ def test_other_trainees_and_those_no_longer_in_the_study_practice_freely(menu, g
     assert enabled(menu) == ["trial-run"]
 
 
-TRIAL_RUN = StudyStep("P07", "trial-run", 2, 9, "trial-run", "desktop", minutes=8.0)
-
-
-def test_the_trial_run_lasts_for_the_rest_of_the_studys_minutes(menu, guide):
-    tell(menu, guide, replace(TRIAL_RUN, over=6.0))
-    menu.choose("trial-run", None)
-    # Time continues while the start is written to disk.
-    assert menu.presenter.screen.status[2].startswith(("02:00", "01:5"))
-
-
 def test_the_trial_run_ends_with_the_studys_minutes_even_if_slicer_has_moved_on(menu, guide):
-    tell(menu, guide, replace(TRIAL_RUN, over=7.99))
+    step = StudyStep("P07", "trial-run", 2, 9, "trial-run", "desktop", minutes=8.0, over=7.9)
+    tell(menu, guide, step)
     menu.choose("trial-run", None)
+    assert menu.presenter.screen.status[2].startswith("00:0")
     guide.take_step(TASK_2)
     menu.until_menu("practice")
     assert "end the trial run to continue the study" in menu.menu.paragraphs[0]
@@ -125,63 +93,33 @@ def test_the_trial_run_ends_with_the_studys_minutes_even_if_slicer_has_moved_on(
     assert enabled(menu) == ["task-2"]
 
 
-SUS = StudyStep("P07", "questionnaire", 5, 19, mode="desktop", questionnaire="sus")
+def mark(menu, number, *directions):
+    menu.focus(f"sus_{number}")
+    menu.tap(*directions)
+    menu.step(20)
 
 
-@pytest.fixture
-def form(menu, guide):
-    """The trainee before the empty form of the SUS."""
-    tell(menu, guide, SUS)
+def test_a_questionnaire_is_answered_line_by_line_and_submitted_only_when_complete(menu, guide):
+    step = StudyStep("P07", "questionnaire", 5, 19, mode="desktop", questionnaire="sus")
+    tell(menu, guide, step)
+    assert enabled(menu) == []
     menu.choose("answer", "questionnaire")
-    return menu
-
-
-def mark(form, number, *directions):
-    form.focus(f"sus_{number}")
-    form.tap(*directions)
-    form.step(20)
-
-
-def test_a_questionnaire_is_answered_line_by_line_and_submitted_only_when_complete(form, guide):
-    assert [item.value for item in form.menu.items[:10]] == ["–"] * 10
-    assert "1 is strongly disagree, 5 is strongly agree" in form.menu.paragraphs[0]
+    guide.take_step(TASK_2)
+    menu.until_menu("experiment")
+    tell(menu, guide, step)
+    menu.choose("answer", "questionnaire")
     for number in range(1, 10):
-        mark(form, number, "right", "right")
-    assert not form.item("keep").is_enabled
-    assert tuple(guide.answers.values()) == ()
-    mark(form, 10, "left", "left", "left")
-    form.choose("keep", "experiment")
+        mark(menu, number, "right", "right")
+    assert not menu.item("keep").is_enabled
+    mark(menu, 10, "left", "left", "left")
+    menu.choose("keep", "experiment")
     (answers,) = tuple(guide.answers.values())
     assert answers == StepAnswers("P07", 5, "sus", (2,) * 9 + (3,))
-    assert form.menu.paragraphs == (
-        "Your answers to SUS are on their way to 3D Slicer, which will announce the next step.",
-    )
-
-
-def test_answers_wait_until_slicer_moves_on_and_are_then_forgotten(guide):
-    guide.take_step(SUS)
-    guide.answer("P07", [3] * 10)
-    guide.take_step(SUS)
-    assert [answers.number for answers in tuple(guide.answers.values())] == [5]
-    assert guide.steps.get("P07").kind == ANSWERED
+    # They wait until Slicer moves on, and are then forgotten.
+    guide.take_step(step)
+    assert (len(guide.answers), guide.steps.get("P07").kind) == (1, ANSWERED)
     guide.take_step(TASK_2)
-    assert (tuple(guide.answers.values()), guide.steps.get("P07")) == ((), TASK_2)
-
-
-def test_a_form_closes_when_the_study_moves_on_without_it(form, guide):
-    guide.take_step(TASK_2)
-    form.until_menu("experiment")
-    assert enabled(form) == ["task-2"]
-
-
-def test_a_break_counts_down_from_the_elapsed_time_slicer_sent():
-    now = [100.0]
-    guide = AssignedTraining(lambda: now[0])
-    guide.take_step(StudyStep("P07", "break", 4, 9, minutes=10.0, over=4.0))
-    now[0] += 59.0
-    assert guide.break_left_s("P07") == 301.0
-    now[0] += 600.0
-    assert (guide.break_left_s("P07"), guide.break_left_s("P08")) == (0.0, 0.0)
+    assert (len(guide.answers), guide.steps.get("P07")) == (0, TASK_2)
 
 
 def test_a_requested_trial_is_not_started_twice_before_slicer_sends_the_next_step(menu, guide):
@@ -193,14 +131,6 @@ def test_a_requested_trial_is_not_started_twice_before_slicer_sends_the_next_ste
     menu.step(20)
     assert enabled(menu) == []
     assert menu.menu.paragraphs == ("Task 2 is done. 3D Slicer will announce the next step.",)
-
-
-def test_the_oldest_steps_are_forgotten_beyond_the_limit():
-    guide = AssignedTraining()
-    for number in range(MAX_TRAINEES + 5):
-        guide.take_step(StudyStep(f"P{number}", "all-done", 1, 1))
-    assert guide.steps.get("P4") is None
-    assert guide.steps.get("P5") is not None
 
 
 def test_a_study_trial_is_registered_by_the_method_of_its_protocol(menu, guide):

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from rastrainer.protocol import TRIAL_RUN
-from rastrainer.study_messages import StudyStep
 from rastrainer_simulator.flow.session.chosen_trial import FIRST_ID
 from rastrainer_simulator.input.inputs import ControlName
 from Testing.simulator.flow.scored_journals import TRAINEE, write_scored
@@ -34,20 +33,6 @@ def alone(loop, outside):
         presenter.close()
 
 
-def test_an_id_is_there_to_begin_with_and_typing_replaces_it(alone):
-    trainee = alone()
-    assert trainee.item("trainee").value == FIRST_ID
-    assert trainee.menu.focus == "tutorial"
-    trainee.focus("trainee")
-    trainee.hands.type("P07")
-    assert trainee.item("trainee").value == "P07"
-
-
-def test_who_alone_has_trained_here_is_remembered(alone, outside):
-    write_scored(outside.services.records, 1, 40.0)
-    assert alone().item("trainee").value == TRAINEE
-
-
 @pytest.mark.parametrize("with_pin", [False, True], ids=["Slicer", "PIN"])
 def test_an_instructor_gives_the_id_and_requires_what_comes_first(alone, outside, with_pin):
     if with_pin:
@@ -62,41 +47,19 @@ def test_an_instructor_gives_the_id_and_requires_what_comes_first(alone, outside
     assert offers is not with_pin
 
 
-def test_tutorial_and_trial_run_are_skipped_one_after_the_other(alone):
+def test_an_id_is_there_and_tutorial_and_trial_run_are_skipped_one_after_the_other(alone):
     trainee = alone()
-    assert trainee.item("skip").label == "Skip the tutorial"
-    trainee.choose("skip")
-    trainee.step(2)
-    assert trainee.menu.focus == TRIAL_RUN
-    assert trainee.item("skip").label == "Skip the trial run"
-    trainee.choose("skip")
-    trainee.step(2)
-    assert trainee.menu.focus == "task-1"
+    assert trainee.item("trainee").value == FIRST_ID
+    for label, following in (
+        ("Skip the tutorial", TRIAL_RUN),
+        ("Skip the trial run", "task-1"),
+    ):
+        assert trainee.item("skip").label == label
+        trainee.choose("skip")
+        trainee.step(2)
+        assert trainee.menu.focus == following
     assert trainee.item("task-1").is_enabled
     assert "skip" not in [item.name for item in trainee.menu.items]
-
-
-def test_a_study_that_requires_them_offers_no_way_around(alone, outside):
-    outside.services.assigned.take_step(
-        StudyStep(FIRST_ID, "trial-run", 2, 9, TRIAL_RUN, "desktop", minutes=8.0)
-    )
-    trainee = alone()
-    assert "skip" not in [item.name for item in trainee.menu.items]
-    trainee.choose("tutorial", None)
-    trainee.tap_until("menu", "tutorial")
-    assert trainee.item("leave").label == "Leave"
-
-
-def test_the_introduction_promises_slicer_only_where_it_is_connected(trainee, outside):
-    def said(is_connected):
-        outside.has_slicer = is_connected
-        trainee.step(15)
-        return "3D Slicer" in trainee.menu.paragraphs[0]
-
-    trainee.choose("train", "introduction")
-    trainee.choose("next")
-    trainee.choose("next")
-    assert [said(False), said(True)] == [False, True]
 
 
 def test_own_trials_are_listed_and_a_failed_task_is_not_done(alone, outside):
@@ -105,6 +68,7 @@ def test_own_trials_are_listed_and_a_failed_task_is_not_done(alone, outside):
     write_scored(records, 2, 90.0, task="task-2")
     write_scored(records, 3, 90.0, task="task-3", is_safe=False)
     trainee = alone(order="any", tutorial="skipped")
+    assert trainee.item("trainee").value == TRAINEE
     values = {name: trainee.item(name).value for name in ("task-1", "task-2", "task-3", "task-4")}
     assert values == {
         "task-1": "not passed",

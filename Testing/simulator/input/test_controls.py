@@ -22,7 +22,7 @@ from rastrainer_simulator.input.inputs import (
     Source,
     SourceKind,
 )
-from rastrainer_simulator.state import NEUTRAL_STICKS, OperatorInput
+from rastrainer_simulator.state import NEUTRAL_STICKS
 
 GAMEPAD = Source(SourceKind.GAMEPAD)
 KEYS = Source(SourceKind.KEYBOARD, view=1)
@@ -70,17 +70,9 @@ def test_nobody_has_control_until_somebody_acts(controls):
     controls.set_inputs(GAMEPAD, {"+leftx": 0.4})
     assert controls.holder == GAMEPAD
     assert controls.sticks.operator == "gamepad"
-
-
-def test_even_a_long_rest_does_not_pass_on_control_unasked(controls, ear):
-    controls.set_inputs(GAMEPAD, {"a": 1.0})
-    controls.set_inputs(GAMEPAD, {"a": 0.0})
-    controls.advance(1000.0)
-    tap(controls, PAGE, "Space")
-    controls.set_key(PAGE, "KeyW", True)
-    assert controls.holder == GAMEPAD
-    assert ear.presses == [ControlName.TOUCH]
-    assert PAGE in ear.refusals
+    controls.advance(10.0 * IDLE_S)
+    tap(controls, PAGE, "KeyM")
+    assert controls.holder == GAMEPAD, "a holder who pushes a stick is never idle"
 
 
 def test_the_menu_control_takes_over_from_an_idle_holder_and_does_nothing_else(controls, ear):
@@ -95,22 +87,6 @@ def test_the_menu_control_takes_over_from_an_idle_holder_and_does_nothing_else(c
     assert controls.holder == PAGE
     assert ear.takers == [PAGE]
     assert ear.presses == [ControlName.TOUCH]
-
-
-def test_a_holder_pushing_a_stick_is_never_idle(controls):
-    controls.set_inputs(GAMEPAD, {"+leftx": 0.4})
-    controls.advance(10.0 * IDLE_S)
-    tap(controls, PAGE, "KeyM")
-    assert controls.holder == GAMEPAD
-
-
-def test_a_seat_switches_devices_by_using_one_but_not_while_a_stick_is_pushed(controls):
-    controls.set_inputs(GAMEPAD, {"+leftx": 0.4})
-    controls.set_inputs(Source(SourceKind.BROWSER_GAMEPAD, view=1), {"+lefty": 0.5})
-    assert controls.holder == GAMEPAD
-    controls.set_inputs(GAMEPAD, {"+leftx": 0.0})
-    tap(controls, KEYS, "KeyC")
-    assert controls.holder == KEYS
 
 
 def test_a_holder_that_has_left_no_longer_has_control(controls):
@@ -170,8 +146,9 @@ def hand_with(device):
     return hand, press, lambda: hand.sticks(table).translation[0]
 
 
-@pytest.mark.parametrize("device", InputDevice)
-@pytest.mark.parametrize("held_s", [0.0, 0.03, 0.09])
+@pytest.mark.parametrize(
+    ("device", "held_s"), [(InputDevice.KEYBOARD, 0.0), (InputDevice.GAMEPAD, 0.09)]
+)
 def test_a_tap_is_one_step_however_short_it_was(device, held_s):
     hand, press, pushed = hand_with(device)
     press(True)
@@ -187,17 +164,8 @@ def test_a_tap_is_one_step_however_short_it_was(device, held_s):
     assert held_s + 0.01 * moved.count(STEP_PUSH) == pytest.approx(STEP_S, abs=0.011)
 
 
-def test_a_tap_is_not_carried_through_a_change_of_the_situation():
-    hand, press, pushed = hand_with(InputDevice.KEYBOARD)
-    press(True)
-    press(False)
-    hand.block()
-    assert pushed() == 0.0
-
-
-@pytest.mark.parametrize("device", InputDevice)
-def test_a_key_or_button_pushes_harder_over_time_and_stops_at_once(device):
-    hand, press, pushed_now = hand_with(device)
+def test_a_key_or_button_pushes_harder_over_time_and_stops_at_once():
+    hand, press, pushed_now = hand_with(InputDevice.KEYBOARD)
     press(True)
     pushed = [pushed_now()]
     for _ in range(10):
@@ -230,18 +198,6 @@ def test_inputs_held_through_a_change_count_only_after_being_released():
     assert right(hand) == 0.7
 
 
-def test_a_headsets_sticks_wait_likewise():
-    hand = InputState(InputDevice.GAMEPAD)
-    pushed = OperatorInput((0.5, 0.0, 0.0), (0.0, 0.2), True)
-    hand.set_sticks(pushed)
-    hand.block()
-    assert right(hand) == 0.0
-    hand.set_sticks(OperatorInput())
-    hand.set_sticks(pushed)
-    assert right(hand) == 0.5
-    assert hand.sticks(DEFAULT_BINDINGS).fine
-
-
 DRIFT = {"+leftx": 0.11, "-lefty": 0.12, "-rightx": 0.14}
 
 
@@ -258,7 +214,7 @@ def test_a_stick_that_rests_at_the_edge_of_the_dead_zone_moves_nothing_and_gives
     assert (controls.holder, ear.takers) == (PAGE, [PAGE])
 
 
-@pytest.mark.parametrize("drift", [0.11, 0.14, 0.2, 0.28])
+@pytest.mark.parametrize("drift", [0.11, 0.28])
 def test_a_stick_that_does_not_return_is_not_blocked_for_the_whole_trial(controls, drift):
     controls.set_inputs(GAMEPAD, {"a": 1.0, "+leftx": drift})
     controls.enter(ControlContext.MENU)
@@ -270,16 +226,10 @@ def test_a_stick_that_does_not_return_is_not_blocked_for_the_whole_trial(control
     assert controls.sticks.translation[0] == 0.8
 
 
-def test_a_stick_that_was_pushed_through_a_change_stays_blocked_however_far_it_is_pushed():
-    hand = InputState(InputDevice.GAMEPAD)
-    hand.set_inputs({"+leftx": 0.4})
-    hand.block()
-    hand.set_inputs({"+leftx": 1.0})
-    assert right(hand) == 0.0
-
-
-@pytest.mark.parametrize("value", [float("nan"), float("inf"), -float("inf")])
-def test_what_is_no_number_moves_nothing(controls, value):
-    controls.set_sticks(GAMEPAD, OperatorInput((value, 0.0, 0.0), (0.0, value)))
-    assert controls.sticks.translation == (0.0, 0.0, 0.0)
-    assert controls.sticks.rotation == (0.0, 0.0)
+def test_a_seat_switches_devices_by_using_one_but_not_while_a_stick_is_pushed(controls):
+    controls.set_inputs(GAMEPAD, {"+leftx": 0.4})
+    controls.set_inputs(Source(SourceKind.BROWSER_GAMEPAD, view=1), {"+lefty": 0.5})
+    assert controls.holder == GAMEPAD
+    controls.set_inputs(GAMEPAD, {"+leftx": 0.0})
+    tap(controls, KEYS, "KeyC")
+    assert controls.holder == KEYS

@@ -66,15 +66,6 @@ def test_threads_sharing_the_loops_interpreter_rank_between_it_and_ordinary_thre
         assert itself == in_a_thread(first) == ordinary
 
 
-@linux_only
-def test_a_loop_that_never_sleeps_gets_no_priority():
-    def inside() -> int:
-        with precise_timing(is_first_in_line=False):
-            return policy()
-
-    assert in_a_thread(inside) == os.SCHED_OTHER
-
-
 def test_the_interpreters_switching_is_restored_when_the_loop_ends():
     interval = sys.getswitchinterval()
 

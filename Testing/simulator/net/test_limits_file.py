@@ -35,11 +35,8 @@ def test_limits_missing_from_the_file_keep_their_defaults(tmp_path):
     ("content", "sentence"),
     [
         ("{", "limits.json"),
-        ([], "must be a JSON object"),
         ({"robots": {}}, 'there is no "robots"; use clients, views, trials.'),
-        ({"views": {"color": 5}}, 'there is no "color"; use views, silentS, '),
         ({"clients": {"clients": 0}}, "clients.clients must be a whole number above 0"),
-        ({"clients": {"slowClientS": -1}}, "clients.slowClientS must be a number above 0"),
         ({"clients": {"slowClientS": 1e9}}, "slowClientS must be a number above 0, up to 864"),
         ('{"clients": {"slowClientS": NaN}}', "limits.json"),
     ],

@@ -1,7 +1,5 @@
 """Logs are lines of JSON, never grow too big, and never block."""
 
-import errno
-import io
 import json
 import logging
 import threading
@@ -82,18 +80,6 @@ def test_a_folder_that_cannot_be_written_to_is_reported_once_and_nothing_else_ch
     with keep_logs(tmp_path / "file" / "logs", "simulator"):
         OURS.info("to nobody")
     assert capsys.readouterr().err.count("There is no log") == 1
-
-
-class FullDisk(io.StringIO):
-    def write(self, _text):
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-
-def test_a_disk_that_fails_does_not_stop_the_program(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(log_files._LogFile, "_open", lambda _file: FullDisk())
-    with keep_logs(tmp_path, "simulator"):
-        OURS.info("lost")
-    assert "Traceback" not in capsys.readouterr().err
 
 
 def test_a_message_from_outside_can_create_neither_a_second_line_nor_a_huge_one(tmp_path):

@@ -9,10 +9,8 @@ import pytest
 from rastrainer.commands import CommandName
 from rastrainer.journal import entries
 from rastrainer.journal.journal_file import Integrity, read_journal
-from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import Phase
 from rastrainer.study.database.study import Study
-from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.replay.resimulation import replay
@@ -31,16 +29,15 @@ def jumping(monkeypatch):
     return jump
 
 
-@pytest.mark.parametrize("days", [-400, 400], ids=["back", "forward"])
-def test_a_clock_that_jumps_in_a_trial_changes_no_duration(
-    simulation, anywhere, tmp_path, jumping, days
+def test_a_clock_that_jumps_back_in_a_trial_changes_no_duration(
+    simulation, anywhere, tmp_path, jumping
 ):
     started = time.monotonic()
     with Server(simulation, tmp_path / "records") as server:
         server.start()
         while server.training.phase is Phase.RUNNING:
             assert server.do(CommandName.CAPTURE).ok
-            jumping.by += timedelta(days=days)
+            jumping.by -= timedelta(days=400)
         assert server.do(CommandName.REGISTER).ok
         (record,) = server.loop.archive.unacknowledged()
     reading = read_journal(server.path)
@@ -51,29 +48,23 @@ def test_a_clock_that_jumps_in_a_trial_changes_no_duration(
     assert times[-1] - times[0] <= time.monotonic() - started
     simulated = reading.entries[-1]["simTimeS"] - reading.header.before.sim_time_s
     assert 0.0 < record.completion_time_s <= simulated
-    years = {point.utc[:4] for point in record.points}
-    assert len(years) > 10
-    assert record_from_json(TrialRecord, record_to_json(record)) == record
+    assert len({point.utc[:4] for point in record.points}) > 10
     with Study.open(tmp_path / "study.db") as study:
         assert study.add_trial(record)
         assert study.history("P01")[0].record.completion_time_s == record.completion_time_s
 
 
-@pytest.mark.parametrize(("minutes", "restarts"), [(-5, False), (-600_000, True)])
 def test_the_most_recently_started_trial_is_resumed_even_if_the_clock_was_set_back(
-    simulation, tmp_path, jumping, minutes, restarts
+    simulation, tmp_path, jumping
 ):
     with Server(simulation, tmp_path) as server:
         server.start()
         assert server.do(CommandName.ABORT).ok
-        jumping.by += timedelta(minutes=minutes)
-        if restarts:
-            server.loop.stop()
-            server = Server(simulation, tmp_path).__enter__()
+    jumping.by -= timedelta(days=400)
+    with Server(simulation, tmp_path) as server:
         start = {"task": "task-1", "trainee": "P02"}
         last = server.do(CommandName.START_TASK, **start).data["trialId"]
         assert server.do(CommandName.CAPTURE).ok
-        server.loop.stop()
     names = sorted(tmp_path.glob(f"*{SUFFIX}"))
     assert last in names[0].name
     reading, interrupted = find_interrupted(tmp_path)

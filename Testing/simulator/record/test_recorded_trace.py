@@ -1,7 +1,5 @@
 """A trace survives the simulator's end, goes with its trial, and is played again exactly."""
 
-import random
-import shutil
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -13,10 +11,10 @@ from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, read_journal
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import MIN_TRACE_POINTS, Phase, RegistrationMethod
 from rastrainer.trial.record import TrialRecord
-from rastrainer_simulator.core.interrupted_trial import find_interrupted
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record.trial_archive import interrupted_attempt
 from rastrainer_simulator.replay.resimulation import replay
+from Testing.domain.trial.trial_records import make_traced
 from Testing.simulator.landmarked import LANDMARKS, with_landmarks
 from Testing.simulator.record.test_interrupted_trial import Server, cut
 
@@ -97,33 +95,6 @@ def test_a_stroke_cut_off_by_a_kill_keeps_its_written_points_and_the_trial_repla
     assert [point.label for point in record.points] == [each.name for each in LANDMARKS[:3]]
 
 
-def test_a_journal_cut_at_any_byte_is_resumed_with_every_complete_traced_point(
-    traced_in_air, tmp_path
-):
-    with Server(traced_in_air, tmp_path / "original") as server:
-        start(server)
-        stroke(server, 40)
-        stroke(server, 40, (0.0, 0.9, 0.1))
-        assert server.do(CommandName.UNDO).ok
-        stroke(server, 40, (-0.9, 0.0, 0.1))
-    data = server.path.read_bytes()
-    rng = random.Random(6)
-    for number in range(10):
-        folder = tmp_path / str(number)
-        folder.mkdir()
-        path = folder / server.path.name
-        shutil.copy(server.path.with_suffix(SEED_SUFFIX), folder)
-        path.write_bytes(data[: rng.randrange(len(data) // 3, len(data))])
-        traced_in_air.resume_trial(find_interrupted(folder)[1])
-        kept = []
-        for entry in read_journal(path).entries:
-            if entry["kind"] == "trace":
-                kept.append(entry)
-            elif entry["kind"] == "stroke":
-                kept = kept[: entry["kept"]]
-        assert len(traced_in_air.state.training.trace.points) == len(kept)
-
-
 def test_a_trial_with_landmarks_other_than_the_scenarios_is_not_replayed(airy):
     own = airy.recorded(method=RegistrationMethod.SURFACE)
     assert airy.difference(SimpleNamespace(**own)) == ""
@@ -131,49 +102,17 @@ def test_a_trial_with_landmarks_other_than_the_scenarios_is_not_replayed(airy):
     assert airy.difference(SimpleNamespace(**others)) == "landmarks"
 
 
-def record_of(**changes):
-    point = {"positionMm": [1.0, 2.0, 3.0], "simTimeS": 1.0, "utc": "2024-05-17T09:30:00Z"}
-    values = {
-        "trialId": "a3bb189e-8bf9-4888-9912-ace4e6543002",
-        "trainee": "P01",
-        "task": "task-1",
-        "mode": "desktop",
-        "scenario": "colin27",
-        "startedUtc": "2024-05-17T09:30:00Z",
-        "completedUtc": "2024-05-17T09:31:00Z",
-        "completionTimeS": 50.0,
-        "touchRule": "on skin",
-        "points": [point | {"label": name} for name in ("Nasion", "Right", "Left")],
-        "rejectedTouches": 0,
-        "undoneTouches": 0,
-        "versions": {},
-        "method": "surface",
-        "trace": [[1.0, 2.0, float(number), 2.0 + number] for number in range(30)],
-    }
-    return {**values, **changes}
-
-
-LINE = [[1.0, 2.0, float(number), 2.0] for number in range(501)]
-
-
-@pytest.mark.parametrize(
-    ("changes", "said"),
-    [
-        pytest.param({"trace": LINE}, "at most 500 points", id="too long"),
-        pytest.param({"trace": LINE[:29]}, "needs at least 30", id="too short"),
-        pytest.param({"trace": [[1, 2, 3]] * 30}, "x, y, z, simTimeS", id="without time"),
-        pytest.param({"trace": [[1, 2, 9e9, 4]] * 30}, "x, y, z, simTimeS", id="far"),
-        pytest.param({"trace": [[1, 2, 3, 4 - n / 50] for n in range(30)]}, "time", id="back"),
-        pytest.param({"method": "landmarks"}, "must hold no trace", id="unwanted"),
-        pytest.param({"method": "scan"}, "method", id="not played"),
-        pytest.param({"method": 3}, "method", id="no text"),
-        pytest.param({"points": []}, "0 touched landmarks", id="no landmark"),
-        pytest.param({"method": "fiducials", "trace": []}, "list of 15 points", id="fiducials"),
-    ],
-)
-def test_a_record_that_does_not_fit_its_method_is_refused_with_a_message(changes, said):
-    with pytest.raises(InputError, match=said):
-        record_from_json(TrialRecord, record_of(**changes))
+def test_a_record_that_does_not_fit_its_method_is_refused_with_a_message():
+    for changes, said in (
+        ({"trace": [[1.0, 2.0, 3.0, 2.0]] * 501}, "at most 500 points"),
+        ({"trace": [[1, 2, 3, 4]] * 29}, "needs at least 30"),
+        ({"trace": [[1, 2, 9e9, 4]] * 30}, "x, y, z, simTimeS"),
+        ({"trace": [[1, 2, 3, 4 - n / 50] for n in range(30)]}, "time"),
+        ({"method": "landmarks"}, "must hold no trace"),
+        ({"points": []}, "0 touched landmarks"),
+    ):
+        with pytest.raises(InputError, match=said):
+            record_from_json(TrialRecord, make_traced(**changes))
 
 
 def test_aborted_and_interrupted_trials_report_their_method_and_how_much_was_traced(

@@ -3,14 +3,13 @@
 import uuid
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from rastrainer.json_records import record_from_json
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.study_data import StudyData, read_study_data
-from rastrainer.study.tidy_csv import aborted_csv, aborted_touches_csv, write_history
+from rastrainer.study.tidy_csv import aborted_csv, aborted_touches_csv
 from rastrainer.trial.record import AbortedTrial
 from rastrainer.trial.trial_feedback import competence_of
 from rastrainer.trial.trial_row import TrialRow
@@ -19,7 +18,6 @@ from rastrainer_simulator.report.report import report_html
 from Testing.domain.study.played_study import study_with_trials
 from Testing.domain.study.study_content import table_of
 from Testing.domain.trial.trial_records import make_aborted
-from Testing.drawn_drills import draw_drill
 from Testing.simulator.report.test_report import words_of
 
 pytestmark = pytest.mark.usefixtures("undrawn")
@@ -73,19 +71,6 @@ def aborted(number, **changes):
     return record_from_json(AbortedTrial, make_aborted(number, trainee="A", mode="hmd", **changes))
 
 
-def test_started_and_finished_trials_are_those_of_one_method():
-    rows = (*map(row, range(1, 6)), *(row(number, method="landmarks") for number in range(6, 9)))
-    others = tuple(aborted(number, method="landmarks", points=[]) for number in range(902, 905))
-    data = StudyData("x", rows, has_order=True, aborted=(aborted(900), aborted(901), *others))
-    words = words_of(report_html(data))
-    assert "5 of 7 started trials were finished" in words
-    assert "leaves out 6 trials by landmarks" in words
-
-
-def test_a_report_of_a_csv_has_no_section_on_started_trials():
-    assert "started trials" not in words_of(report_html(StudyData("x", (row(1, score=None),))))
-
-
 def test_an_aborted_trial_counts_as_not_passed_in_the_lc_cusum():
     whole = StudyData("x", tuple(map(row, range(1, 13))), has_order=True)
     shown_at = competence_of([False] * 12).competent_at
@@ -131,34 +116,7 @@ def test_aborted_trials_and_their_touches_are_exported(path):
     ]
     assert [row["repeat_reason"] for row in rows] == ["", "", REASON]
     assert [row["counts_as_not_passed"] for row in rows] == ["0", "1", "1"]
-    touches = table_of(aborted_touches_csv(data.aborted))
-    assert len(touches) == 18
-
-
-def test_a_reason_never_becomes_a_formula_in_a_spreadsheet():
-    record = record_from_json(AbortedTrial, make_aborted(reason="=1+1"))
-    text = aborted_csv([replace(record, step="s", repeat_reason="@SUM(A1:A9)")])
-    assert "'=1+1" in text
-    assert "'@SUM(A1:A9)" in text
-
-
-def test_an_aborted_trial_is_a_statement_that_it_was_terminated(path):
-    data = read_study_data(path)
+    assert len(table_of(aborted_touches_csv(data.aborted))) == 18
     found = [s for s in statements(data) if s["verb"]["display"]["en-US"] == "terminated"]
     assert [statement["id"] for statement in found] == [s.trial_id for s in data.aborted]
-    assert all(statement["result"]["completion"] is False for statement in found)
     assert [statement["result"].get("success") for statement in found] == [None, False, False]
-
-
-def test_a_trainees_history_is_written_with_the_aborted_trials_and_the_decided_cases(
-    path, tmp_path
-):
-    with Study.open(path) as study:
-        study.create_trainee("D")
-        study.add_drill(draw_drill(np.random.default_rng(1), "D"))
-        write_history(study, ["A"], tmp_path / "a.csv")
-        write_history(study, ["D"], tmp_path / "d.csv")
-    assert len((tmp_path / "a-aborted.csv").read_text().splitlines()) == 3
-    assert not (tmp_path / "d-aborted.csv").exists()
-    assert len((tmp_path / "d-cases.csv").read_text().splitlines()) == 21
-    assert not (tmp_path / "a-cases.csv").exists()

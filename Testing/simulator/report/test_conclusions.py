@@ -39,19 +39,10 @@ def test_the_limits_of_few_subjects_are_stated():
     assert "smallest possible p is .125" in words
     assert "did first is not in the data" in words
     assert "199, 34 or 15 subjects" in words
-    assert "at least 2.1 times" in words
     same = limits_of(TWENTY_FIVE, np.ones(25))
     assert "Wilcoxon" not in same
     assert "orders of the conditions do not allow the effect of the period" in same
     assert "One subject allows no comparison" in limits_of([1.0])
-
-
-def test_carry_over_is_reported_as_not_separable():
-    words = limits_of([1.0, 3.0, 2.0, 2.5], np.array([1.0, -1.0, 1.0, -1.0]))
-    assert "carry-over" in words
-    assert "t-test with the period" in words
-    assert "rank-sum test cannot reach the 5 % level with 4 subjects" in words
-    assert "smallest possible p is .333" in words
 
 
 def test_a_difference_that_is_not_shown_is_not_called_absent():

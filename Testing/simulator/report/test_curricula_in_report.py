@@ -1,7 +1,6 @@
 """The report says where trainees who agreed stand in their curricula."""
 
 import re
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -37,13 +36,3 @@ def test_each_trainee_has_a_row_and_each_goal_a_sentence(tmp_path):
         in words
     )
     assert "competent: Task 4, competence (LC-CUSUM), a trial passes at 70 or more; after" in words
-
-
-def test_a_trial_that_counts_for_two_assignments_is_one_trial(tmp_path):
-    path = tmp_path / "study.db"
-    study_with_trials(path, consent=False)
-    first = Curriculum.read(SHIPPED).assignments[0]
-    twice = (first, replace(first, name="again", mark=50.0))
-    with Study.open(path) as study:
-        CurriculumStore(study).choose(Curriculum("c", "C", twice))
-    assert " B 1 0 of 2 " in words_of(curricula(read_study_data(path)))

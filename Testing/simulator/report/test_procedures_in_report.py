@@ -1,7 +1,6 @@
 """The report tells what of the target point error the registration and the hands caused."""
 
 import re
-from dataclasses import replace
 
 import pytest
 
@@ -31,11 +30,6 @@ def test_the_split_is_reported_over_all_kinds_and_for_each(words):
         assert kind in words
 
 
-def test_whether_registration_or_hands_caused_more_is_stated_with_its_interval(words):
-    assert re.search(r"registration minus hands, as RMS of each trainee, was −?\d\.\d\d mm", words)
-    assert re.search(r"\[95 %: −?\d\.\d\d, −?\d\.\d\d\]", words)
-
-
 def test_what_the_robot_aligned_is_not_counted_as_done_by_hand(words):
     mixed = words_with(by_robot=True)
     assert f"24 lines were aligned by hand: there the hands caused {TOO_DEEP_MM:.2f} mm." in mixed
@@ -49,34 +43,9 @@ def comparison(words):
     return re.search(r"registration minus hands, .*?\]", words)[0]
 
 
-def test_a_study_that_only_the_robot_aligned_says_nothing_about_hands():
-    data = with_procedures(cohort(4))
-    trials = []
-    for trial in data.trials:
-        analysis = trial.procedure.analysis
-        lines = tuple(replace(line, self_aligned=True) for line in analysis.trajectories)
-        by_robot = replace(trial.procedure, analysis=replace(analysis, trajectories=lines))
-        trials.append(replace(trial, procedure=by_robot))
-    data = replace(data, trials=tuple(trials))
-    html = procedures(data)
-    assert "48 lines were aligned by the robot" in html.replace("\N{NO-BREAK SPACE}", " ")
-    assert "registration minus hands" not in html
-    assert "by the hand (mm)" not in html
-
-
 def test_the_error_over_trainees_has_an_interval_and_the_limits_are_stated(words):
     found = re.search(r"own RMS was (\d\.\d\d) mm on average \[95 %: (\S+), (\S+)\]", words)
     value, low, high = (float(number) for number in found.groups())
     assert low < value < high
-    assert "no entry is off by more than 3 mm, no target by more than 3 mm" in words
-    assert "least distance kept (mm)" in words
-
-
-def test_published_figures_are_for_orientation_with_their_sources(words):
-    assert "phantoms: RONNA G3, ROSA, Leksell 0.43, 0.53, 0.72 doi:10.3389/fnbot.2022" in words
-    assert "patients, DBS 1.91 doi:10.1093/neuros/nyaa428" in words
-    assert "They are no pass marks" in words
-
-
-def test_a_study_with_touches_only_has_no_such_section():
+    assert re.search(r"registration minus hands, as RMS of each trainee, was −?\d\.\d\d mm", words)
     assert procedures(cohort(2)) == ""

@@ -86,13 +86,6 @@ def test_a_single_rater_or_two_replays_are_reported_as_too_few_for_agreement():
     assert "cannot be seen from 2 scored replays" in words
 
 
-def test_three_raters_have_one_icc_and_a_kappa_for_each_pair():
-    words = words_of(raters(rated(names=("R1", "R2", "R3"))))
-    assert "GEARS 24 R1, R2, R3" in words
-    for pair in ("R1, R2", "R1, R3", "R2, R3"):
-        assert f"Efficiency 24 {pair}" in words
-
-
 def test_a_study_without_ratings_has_no_such_section(data):
     assert raters(cohort(2)) == ""
     assert "<h2>Raters</h2>" in report_html(data, "today")

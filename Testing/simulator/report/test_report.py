@@ -9,7 +9,6 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
-from scipy.stats import ttest_rel
 
 from rastrainer.errors import InputError
 from rastrainer.study.database.study import Study
@@ -20,14 +19,13 @@ from rastrainer.trial.scoring import LONG_PAUSE_S
 from rastrainer.trial.trial_feedback import competence_of
 from rastrainer.trial.trial_row import TrialRow
 from rastrainer_simulator.cli.main import main
-from rastrainer_simulator.report import charts
 from rastrainer_simulator.report.comparisons import compare_modes, mode_delays, paired_means
-from rastrainer_simulator.report.published_tables import performance_color, with_ctps
+from rastrainer_simulator.report.published_tables import with_ctps
 from rastrainer_simulator.report.report import report_html
 from rastrainer_simulator.virtual.outcome_model import OutcomeModel
 from Testing.domain.study.played_study import STUDIES, study_with_trials
+from Testing.drawn_drills import draw_drill
 from Testing.drawn_study import draw_study
-from Testing.simulator.report.without_charts import without_charts
 
 PUBLISHED = STUDIES / "published.csv"
 VOID = {"meta", "br", "img", "hr", "link", "input"}
@@ -100,20 +98,13 @@ def test_both_tables_are_the_papers_to_the_printed_digit(page):
         "User Perf. 81.72 58.83 68.37 60.22 67.29",
     ):
         assert row in words
-    assert performance_color(37.1, [37.1, 56.6, 79.7]) == "#f4a59e"
-    assert performance_color(5.0, [5.0, 5.0]) == "#fceaaa"
     assert "67.29 ± 25.96" in words
-    assert "25.47 divided by n" in words
     assert "r = 0.963, r² = 0.928" in words
-
-
-def test_the_report_says_what_four_subjects_cannot_show(page):
-    words = words_of(page)
+    # What four subjects cannot show is said, too.
     assert "0.147 mm higher with the headset than with the desktop screen" in words
     assert "95 % interval from +0.085 to +0.208 mm" in words
     assert "compatible with anything from −20.46 to +13.94 s" in words
     assert "its smallest possible p is .125" in words
-    assert "not evidence that there is none" in words
     assert "None are reported. Groups of trainees are not reported for fewer than 12" in words
 
 
@@ -126,31 +117,14 @@ def test_the_papers_inconsistencies_are_reported_with_its_numbers(page):
     assert "CTPS r = −0.75 [−0.982, 0.396], p = .146" in words
 
 
-def test_the_page_is_self_contained_and_has_no_scripts(page):
+def test_the_page_is_self_contained_accessible_and_has_no_scripts(page):
     assert "<script" not in page
     assert not re.findall(r'(?:src|href)="(?!#)', page)
     links = set(re.findall(r"https?://[^\s\"'<]+", page))
     assert links == {"http://www.w3.org/2000/svg"}
-    assert "@page { size: A4;" in page
-
-
-def test_every_table_header_has_a_scope(page):
     heads = re.findall(r"<th[ >][^>]*>?", page)
     assert len(heads) > 70
     assert all(re.search(' scope="(col|colgroup|row)"', head) for head in heads)
-    for body in re.findall("<tbody>(.*?)</tbody>", page, re.DOTALL):
-        for row in re.findall("<tr>(.*?)</tr>", body, re.DOTALL):
-            assert row.startswith("<th")
-            assert row.count('scope="row"') == row.count("<th") == 1
-    assert "<th></th>" not in page
-    assert 'colspan="2" class="group" scope="colgroup"' in page
-
-
-def test_negative_numbers_have_a_minus_sign_not_a_hyphen(page):
-    words = words_of(re.sub("<style>.*</style>", "", page, flags=re.DOTALL))
-    assert "−3.26 [−20.46, 13.94]" in words
-    assert not re.search(r"(?<![\w.–-])-\d", words)
-    assert "−0.00" not in words
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -165,19 +139,10 @@ def test_a_balanced_order_of_modes_separates_the_period_and_is_tabulated():
     words = words_of(report_html(study, "today"))
     assert "What the order of the modes did" in words
     assert "Completion time, s 6 6 −" in words
-    assert "carry-over would be in the difference of the modes, too" in words
     fixed_order = draw_study(model, 12, modes, np.random.default_rng(1))
     words = words_of(report_html(fixed_order, "today"))
     assert "What the order of the modes did" not in words
     assert "does not allow the effect of the period" in words.split("Performance")[0]
-
-
-def test_alternating_modes_are_counted_as_periods():
-    modes = ("desktop", "hmd", "desktop", "hmd")
-    rows = [TrialRow("a", mode, "1", 1, {"completion_time_s": 10.0}) for mode in modes]
-    assert mode_delays(StudyData("x", tuple(rows)), "desktop", "hmd") == {"a": 1.0}
-    rows = [*rows[:2], rows[1], rows[0]]
-    assert mode_delays(StudyData("x", tuple(rows)), "desktop", "hmd") == {"a": 0.0}
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -214,39 +179,19 @@ def test_every_chart_is_well_formed_and_has_a_description(page):
                     assert -1 <= float(element.get(name)) <= limit + 1
 
 
-def test_the_same_study_gives_the_same_page_and_the_same_charts(published):
-    lanes = [("Desktop", "#0b6fa4", [110.0, 95.0, 120.0])]
-    assert len({charts.distribution("Time, s", lanes) for _ in range(2)}) == 1
-    with without_charts():
-        assert len({report_html(published, "today") for _ in range(2)}) == 1
-
-
 @pytest.mark.usefixtures("undrawn")
 def test_the_command_writes_the_page_and_the_numbers(tmp_path, capsys):
     assert main(["report", str(PUBLISHED), "-o", str(tmp_path / "new" / "folder")]) == 0
     folder = tmp_path / "new" / "folder"
     assert "40 trials" in capsys.readouterr().out
     assert (folder / "report.html").read_text().startswith("<!DOCTYPE html>")
-    lines = (folder / "trials.csv").read_text().splitlines()
-    assert lines[0].startswith("trainee,mode,task,number,trial_id,started_utc,")
-    assert lines[0].endswith(",completion_time_s,rmse_mm")
-    assert len(lines) == 41
-
-
-@pytest.mark.usefixtures("undrawn")
-@pytest.mark.parametrize(
-    ("words", "sentence"),
-    [
-        (["missing.db"], "There is no file missing.db"),
+    assert len((folder / "trials.csv").read_text().splitlines()) == 41
+    for words, sentence in (
         ([str(PUBLISHED), "--mean-ct", "vr=1"], "names the mode 'vr'"),
         ([str(STUDIES / "README.md")], "is not a study database"),
-    ],
-)
-def test_an_unreadable_study_raises_a_one_sentence_error(words, sentence, tmp_path, capsys):
-    assert main(["report", *words, "-o", str(tmp_path)]) == 2
-    printed = capsys.readouterr().err
-    assert sentence in printed
-    assert printed.count("\n") == 1
+    ):
+        assert main(["report", *words, "-o", str(tmp_path)]) == 2
+        assert sentence in capsys.readouterr().err
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -257,17 +202,7 @@ def test_a_large_cohort_gets_tables_curves_and_a_methods_paragraph():
     assert "the means follow a·n^−b + c" in words
     assert "Completion time, s Desktop 12 8 139.8 93.0 −45.8 [" in words
     assert "< .001 < .001 12 / 0 / 0" in words
-    assert "Motion metrics" in words
-    assert "Smoothness, SPARC" in words
     assert "12 trainees did 192 trials" in words
-
-
-@pytest.mark.usefixtures("undrawn")
-def test_a_single_mode_is_described_and_not_tested():
-    one = StudyData("One", tuple(t for t in cohort(3).trials if t.mode == "hmd"))
-    words = words_of(report_html(one))
-    assert "nothing is tested" in words
-    assert "No trainee did two modes" in words
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -346,24 +281,18 @@ def test_a_report_of_a_database_has_scores_motion_questionnaires_and_skipped_ste
         read_study_data(tmp_path / "study.db")
 
 
-@pytest.mark.usefixtures("undrawn")
-def test_no_line_ends_between_a_number_and_its_unit():
-    rows = tuple(scored("A", number, 80.0) for number in range(1, 3))
-    page = report_html(StudyData("At most 8 s and 160 mm", rows), "today")
-    assert "<h1>At most 8\xa0s and 160\xa0mm</h1>" in page
-    assert "equivalent within" not in page
-    assert "of at most 8\xa0s and 160\xa0mm, and a" in page
-    assert not re.search(r"\d (mm|%)", page)
-
-
 def test_names_are_texts_whatever_they_contain(recwarn):
     odd = "任务 $\\frac{1}$ & <script>alert(1)</script>"
     rows = [
-        TrialRow(odd, mode, odd, number, {"completion_time_s": 10.0 + number, "rmse_mm": 1.0})
-        for mode in (odd,)
+        TrialRow(
+            *(odd, odd, odd, number),
+            {"completion_time_s": 10.0 + number, "rmse_mm": 1.0},
+            started_utc="2026-05-01T09:00:00Z",
+        )
         for number in range(1, 4)
     ]
-    page = report_html(StudyData(odd, tuple(rows), has_order=True), "today")
+    drills = tuple(draw_drill(np.random.default_rng(2), odd, day) for day in (1, 2))
+    page = report_html(StudyData(odd, tuple(rows), has_order=True, drills=drills), "today")
     shown = [
         "".join(text.itertext())
         for chart in re.findall(r"<svg.*?</svg>", page, re.DOTALL)
@@ -376,10 +305,7 @@ def test_names_are_texts_whatever_they_contain(recwarn):
 
 
 def test_ctps_is_not_tested_because_it_differs_between_equal_modes_far_too_often():
-    random, modes, rejected = np.random.default_rng(16), ("desktop", "hmd"), []
-    for _ in range(20):
-        drawn = draw_study(OutcomeModel([120.0] * 3, [1.5] * 3), 12, modes, random)
-        (found,) = (c for c in compare_modes(with_ctps(drawn), MAIN_OUTCOMES, *modes) if c.reason)
-        assert (found.outcome.name, found.result) == ("ctps", None)
-        rejected.append(ttest_rel(found.second_means, found.first_means).pvalue < 0.05)
-    assert np.mean(rejected) > 0.2
+    modes = ("desktop", "hmd")
+    drawn = draw_study(OutcomeModel([120.0] * 3, [1.5] * 3), 12, modes, np.random.default_rng(16))
+    (found,) = (c for c in compare_modes(with_ctps(drawn), MAIN_OUTCOMES, *modes) if c.reason)
+    assert (found.outcome.name, found.result) == ("ctps", None)

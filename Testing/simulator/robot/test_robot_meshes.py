@@ -7,7 +7,6 @@ import numpy as np
 import pinocchio
 import pytest
 import trimesh
-import yourdfpy
 
 from rastrainer.errors import InputError
 from rastrainer.transforms import MM_PER_M
@@ -42,14 +41,6 @@ def outstretched(visuals, link: str) -> trimesh.Trimesh:
     return whole(visuals[link]).apply_translation(LINK_ORIGINS_M[link])
 
 
-def test_every_mesh_is_a_closed_solid():
-    for path in FILES:
-        mesh = trimesh.load_mesh(path)
-        assert mesh.is_watertight, path
-        assert mesh.is_winding_consistent, path
-        assert mesh.volume > 0, path
-
-
 @pytest.mark.soak
 def test_generating_the_robot_again_gives_the_same_bytes(tmp_path):
     script = ROBOT.parent / "make_iiwa7.py"
@@ -63,16 +54,6 @@ def _digests(folder: Path) -> dict[str, str]:
         for path in folder.rglob("*")
         if path.is_file()
     }
-
-
-def test_yourdfpy_and_pinocchio_load_the_robot_with_its_meshes():
-    urdf = ROBOT / "iiwa7.urdf"
-    robot = yourdfpy.URDF.load(str(urdf), load_collision_meshes=True)
-    assert robot.validate()
-    visual_count = sum(len(link.visuals) for link in robot.robot.links)
-    assert len(robot.scene.geometry) == visual_count
-    model, collision, visual = pinocchio.buildModelsFromUrdf(str(urdf), package_dirs=[str(ROBOT)])
-    assert (model.nq, collision.ngeoms, visual.ngeoms) == (7, 9, visual_count)
 
 
 def test_the_arm_has_the_published_width_height_and_reach(visuals):
@@ -107,9 +88,7 @@ def test_masses_are_the_published_ones_and_inertias_are_physically_possible():
         assert largest < smallest + middle
 
 
-@pytest.mark.parametrize(
-    ("layout", "frame"), [("", "link"), ("visual", "base"), ("collision", "link")]
-)
+@pytest.mark.parametrize(("layout", "frame"), [("", "link"), ("visual", "base")])
 def test_a_mesh_folder_may_hold_its_meshes_in_either_frame(tmp_path, visuals, layout, frame):
     folder = tmp_path / layout
     folder.mkdir(exist_ok=True)
@@ -126,34 +105,9 @@ def test_a_mesh_folder_may_hold_its_meshes_in_either_frame(tmp_path, visuals, la
     assert len(loaded["iiwa_link_tool"]) == len(visuals["iiwa_link_tool"]), "the tool stays ours"
 
 
-@pytest.mark.parametrize(
-    "data",
-    [
-        b"",
-        b"solid nothing\nendsolid nothing\n",
-        bytes(80) + b"\xff\xff\xff\xff",
-        b"not a mesh at all",
-    ],
-    ids=["empty", "no facets", "false count", "text"],
-)
-def test_a_file_without_a_surface_is_refused_in_one_sentence(tmp_path, data):
-    (tmp_path / "link_2.stl").write_bytes(data)
-    words = r"cannot be read as a STL mesh|holds no triangles|is empty"
-    with pytest.raises(InputError, match=words):
-        load_meshes(load_robot(mesh_folder=tmp_path))
-
-
-def test_a_huge_mesh_file_is_refused_unread(tmp_path):
-    with (tmp_path / "link_2.stl").open("wb") as file:
-        file.truncate(1_000_000_000)
-    with pytest.raises(InputError, match="larger than 50 MiB"):
-        load_meshes(load_robot(mesh_folder=tmp_path))
-
-
-@pytest.mark.parametrize("scale", [1000.0, np.nan])
-def test_a_mesh_in_millimeters_or_without_numbers_is_refused(tmp_path, visuals, scale):
+def test_a_mesh_in_millimeters_is_refused(tmp_path, visuals):
     mesh = whole(visuals["iiwa_link_3"])
-    mesh.vertices *= scale
+    mesh.vertices *= 1000.0
     mesh.export(tmp_path / "link_3.stl")
     with pytest.raises(InputError, match="in meters"):
         load_meshes(load_robot(mesh_folder=tmp_path))

@@ -1,5 +1,4 @@
 import asyncio
-import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,9 +7,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer_simulator.scene import scene_files as scene_files_module
 from rastrainer_simulator.scene.scene_files import (
-    KEPT_FILES,
     SceneFiles,
-    forget_oldest,
     gzipped_scene,
     scene_key,
     scenes_folder,
@@ -80,19 +77,6 @@ def test_the_key_changes_with_task_scenario_and_robot(setup):
     keys |= {scene_key(setup_digest(other), "") for other in others}
     assert len(keys) == 6
     assert setup_digest(setup) == digest
-
-
-def test_the_oldest_scenes_are_deleted(tmp_path):
-    for index in range(KEPT_FILES + 5):
-        path = tmp_path / f"{index:03d}.glb"
-        path.touch()
-        _set_time(path, index)
-    forget_oldest(tmp_path)
-    assert sorted(path.stem for path in tmp_path.iterdir())[0] == "005"
-
-
-def _set_time(path: Path, seconds: int) -> None:
-    os.utime(path, (seconds, seconds))
 
 
 def test_an_unwritable_cache_is_temporarily_replaced(tmp_path, monkeypatch):

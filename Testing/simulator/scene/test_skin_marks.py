@@ -2,10 +2,9 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, read_head_mesh
+from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer_simulator.authoring.task_proposal import smooth_places
-from rastrainer_simulator.scene.nodes import ARROW
-from rastrainer_simulator.scene.skin_marks import LIFTS, NUMBER_HEIGHT, RIM_RADIUS, skin_marks
+from rastrainer_simulator.scene.skin_marks import NUMBER_HEIGHT, RIM_RADIUS, skin_marks
 from Testing.domain.head.spheres import RADIUS_MM, sphere_mesh
 
 FRONT = RADIUS_MM * np.array([[0.0, 1.0, 0.0], [0.5, 0.75**0.5, 0.0], [-0.5, 0.75**0.5, 0.0]])
@@ -26,13 +25,6 @@ def test_a_number_is_readable_from_outside_with_the_patients_superior_up(ball):
     foot = points[points[:, 2] < points[:, 2].min() + 0.15 * NUMBER_HEIGHT]
     assert foot[:, 0].min() < points[:, 0].mean(), "the foot of the L reaches to the viewer's right"
     assert np.median(foot[:, 0]) < np.median(points[:, 0])
-
-
-def test_overlapping_fiducials_get_no_arrow_between_them(ball):
-    turn = 2 * RIM_RADIUS / RADIUS_MM
-    close = RADIUS_MM * np.array([[0.0, 1.0, 0.0], [np.sin(turn), np.cos(turn), 0.0]])
-    marks = skin_marks(ball, close, ("1", "2"))
-    assert not any("arrow" in mark for mark in marks)
 
 
 @pytest.fixture(scope="module")
@@ -107,9 +99,3 @@ def test_every_arrow_starts_at_its_fiducial_and_points_to_the_next(marks, points
         assert np.linalg.norm(goal - ribbon[-1]) < np.linalg.norm(goal - ribbon[0])
         tip_width = np.linalg.norm(places[-1] - places[-5])
         assert tip_width < 0.1, "it comes to a point"
-
-
-def test_arrows_lie_on_the_skin(marks, head):
-    for mark in marks[:-1:3]:
-        for place in 1000.0 * mark["arrow"].vertices[::12]:
-            assert nearest_on_mesh(head, place).distance < LIFTS[ARROW] + 0.5

@@ -25,20 +25,6 @@ def study(request):
     return first, first + 6 + 10 * order + rng.normal(0, 6, len(order)), order
 
 
-def test_the_test_of_the_conditions_is_the_two_sample_t_test_of_later_minus_earlier(study):
-    """Hills and Armitage 1979: half the difference of the sequences' mean period differences."""
-    first, second, order = study
-    found = paired.compare_paired(first, second, order)
-    later_minus_earlier = (second - first) * order
-    groups = later_minus_earlier[order > 0], later_minus_earlier[order < 0]
-    expected = scipy.stats.ttest_ind(*groups)
-    assert found.t == pytest.approx(expected.statistic, rel=1e-9)
-    assert found.p == pytest.approx(expected.pvalue, rel=1e-9)
-    assert found.dof == len(order) - 2
-    limits = np.array(expected.confidence_interval(0.95)) / 2
-    np.testing.assert_allclose(found.difference.interval, limits, rtol=1e-9)
-
-
 def test_difference_and_period_are_statsmodels_model_of_subject_mode_and_period():
     """Numbers of statsmodels 0.15.0, `smf.ols("y ~ C(subject) + mode + period", rows).fit()`.
 
@@ -56,33 +42,6 @@ def test_difference_and_period_are_statsmodels_model_of_subject_mode_and_period(
     assert found.sequences.later.value == pytest.approx(-9.420833333333334, rel=1e-9)
     limits = -11.924123234509281, -6.917543432157388
     np.testing.assert_allclose(found.sequences.later.interval, limits, rtol=1e-9)
-
-
-def test_orders_in_which_modes_alternate_are_regressed_the_same_way():
-    order = np.array([1.0, -1.0, 0.0, 2.0, -2.0, 1.0, 0.0])
-    differences = rng.normal(3, 1, (5, 7))
-    found = paired.fit_differences(differences, order)
-    for row, mean, error in zip(differences, found.mean, found.standard_error, strict=True):
-        expected = scipy.stats.linregress(order, row)
-        assert (mean, error) == (
-            pytest.approx(expected.intercept, rel=1e-9),
-            pytest.approx(expected.intercept_stderr, rel=1e-9),
-        )
-    assert paired.compare_paired(np.zeros(7), differences[0], order).ranks is None
-
-
-def test_sequences_are_compared_by_their_means_over_both_conditions():
-    order = ORDERS["unbalanced"]
-    first, second = rng.normal(100, 10, (2, 11))
-    found = paired.compare_paired(first, second, order).sequences
-    means = (first + second) / 2
-    expected = scipy.stats.ttest_ind(means[order < 0], means[order > 0])
-    assert (found.first_first, found.second_first) == (7, 4)
-    assert found.between.value == pytest.approx(means[order < 0].mean() - means[order > 0].mean())
-    limits = expected.confidence_interval(0.95)
-    np.testing.assert_allclose(found.between.interval, (limits.low, limits.high), rtol=1e-9)
-    alone = paired.compare_paired(first[:5], second[:5], ORDERS["one alone"]).sequences
-    assert alone.between is None
 
 
 @pytest.mark.parametrize(

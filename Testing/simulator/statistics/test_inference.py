@@ -50,27 +50,12 @@ def test_hedges_factor_is_the_tabulated_one():
         assert intervals.small_sample_factor(dof) == pytest.approx(expected, abs=6e-5)
 
 
-def test_the_interval_of_the_effect_size_is_the_populations_and_contains_the_estimate():
-    comparison = paired.compare_paired(np.zeros(8), SAMPLES[3])
-    low, high = intervals.noncentrality_interval(comparison.t, 7)
-    np.testing.assert_allclose(comparison.effect.interval, np.array([low, high]) / np.sqrt(8))
-    assert comparison.effect.interval[0] < comparison.effect.value < comparison.effect.interval[1]
-
-
 def test_at_the_margin_of_equivalence_the_larger_of_two_one_sided_tests_has_5_percent():
     values = SAMPLES[5]
     margin = paired.equivalence_margin(paired.compare_paired(np.zeros(25), values))
     above = scipy.stats.ttest_1samp(values, -margin, alternative="greater").pvalue
     below = scipy.stats.ttest_1samp(values, margin, alternative="less").pvalue
     assert max(above, below) == pytest.approx(0.05, rel=1e-9)
-
-
-def test_holms_correction_is_that_of_his_example_by_hand():
-    assert paired.holm([0.01, 0.04, 0.03]) == pytest.approx([0.03, 0.06, 0.06])
-    assert paired.holm([0.5, 0.9]) == pytest.approx([1.0, 1.0])
-    assert paired.holm([]).tolist() == []
-    both = paired.holm([[0.01, 0.04, 0.03], [0.5, 0.9, 1.0]])
-    np.testing.assert_allclose(both, [[0.03, 0.06, 0.06], [1.0, 1.0, 1.0]])
 
 
 def test_power_is_that_of_the_tables():
@@ -110,10 +95,6 @@ def test_a_correlation_has_scipys_p_and_fishers_interval():
     assert intervals.correlation([1, 2, 3], [1, 2, 4]).interval is None
 
 
-@pytest.mark.parametrize(
-    ("first", "second", "words"),
-    [([1.0], [2.0], "at least two subjects"), ([1.0, 2.0], [2.0, 3.0], "by the same amount")],
-)
-def test_incomparable_values_are_refused(first, second, words):
-    with pytest.raises(InputError, match=words):
-        paired.compare_paired(np.array(first), np.array(second))
+def test_incomparable_values_are_refused():
+    with pytest.raises(InputError, match="by the same amount"):
+        paired.compare_paired(np.array([1.0, 2.0]), np.array([2.0, 3.0]))

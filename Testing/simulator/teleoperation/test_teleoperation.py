@@ -1,13 +1,10 @@
 """The sticks and commanded motions as the trainee feels them."""
 
-import math
-
 import pytest
 
 from rastrainer_simulator.state import NEUTRAL_STICKS, Motion, OperatorInput
 from rastrainer_simulator.teleoperation.commanded_motion import (
     ARRIVED,
-    Jogging,
     MotionOutcome,
     Moving,
 )
@@ -40,20 +37,18 @@ class Hand:
         self.axes = axes
         self.surface = surface
         self.tip = Tip((0.5, 0.0, 0.5), DOWN, RIGHT)
-        self.blocked = False
 
     def step(self, operator_input=NEUTRAL_STICKS):
         motion_request = self.teleoperation.step(
             DT, operator_input, self.tip, self.axes, self.surface
         )
-        if not self.blocked:
-            position = add(self.tip.position, motion_request.displacement)
-            direction = motion_request.direction or self.tip.direction
-            self.tip = Tip(position, direction, motion_request.across or self.tip.across)
+        position = add(self.tip.position, motion_request.displacement)
+        direction = motion_request.direction or self.tip.direction
+        self.tip = Tip(position, direction, motion_request.across or self.tip.across)
         return motion_request
 
-    def run_until_end(self, most_ticks=5000):
-        for _ in range(most_ticks):
+    def run_until_end(self):
+        for _ in range(5000):
             motion_request = self.step()
             if motion_request.ended:
                 return motion_request.ended
@@ -89,11 +84,6 @@ def test_the_response_curve_starts_at_zero_rises_and_ends_at_full_speed():
     assert shares[-1] == 1.0
 
 
-@pytest.mark.parametrize("broken", [math.nan, math.inf, -math.inf])
-def test_a_stick_that_reports_nan_counts_as_released(broken):
-    assert StickResponse()((broken, 0.0, 0.0)) == ZERO
-
-
 def test_full_deflection_reaches_the_coarse_and_with_the_trigger_the_fine_speed():
     assert speed_after(Hand(), push(1.0, 0.0, 0.0)) == pytest.approx(SETTINGS.coarse_speed)
     assert speed_after(Hand(), push(1.0, 0.0, 0.0, fine=True)) == pytest.approx(SETTINGS.fine_speed)
@@ -103,10 +93,9 @@ def at_clearance(clearance):
     return Hand(surface=NearestSurface(clearance, (0.0, 0.0, 1.0), 0.05, (0.0, 0.0, 1.0)))
 
 
-@pytest.mark.parametrize("pushed", [0.7, 1.0])
 @pytest.mark.parametrize(("upward", "at_skin"), [(-1.0, 0.001), (1.0, 0.003)])
-def test_slow_motion_is_slow_near_the_skin_however_far_a_stick_is_pushed(pushed, upward, at_skin):
-    fine = push(0.0, 0.0, upward * pushed, fine=True)
+def test_slow_motion_is_slow_near_the_skin_however_far_a_stick_is_pushed(upward, at_skin):
+    fine = push(0.0, 0.0, 0.7 * upward, fine=True)
     speeds = [speed_after(at_clearance(mm / 1000.0), fine) for mm in (-0.1, 0.0, 2.0, 6.0, 10.0)]
     assert speeds == sorted(speeds)
     assert speeds[0] == speeds[1] == pytest.approx(at_skin)
@@ -122,12 +111,6 @@ def test_slow_motion_along_the_skin_keeps_its_direction_and_is_slowed_by_its_way
     assert speed_after(hand, push(1.0, 0.0, -1.0, fine=True)) == pytest.approx(0.001 * 2**0.5)
 
 
-def test_a_tip_in_slow_motion_is_not_deep_in_the_skin_half_a_second_after_it_got_there():
-    hand = at_clearance(0.0)
-    depth = sum(-hand.step(push(0.0, 0.0, -1.0, fine=True)).displacement[2] for _ in range(125))
-    assert 0.0 < depth <= 0.0005 * (1 + 1e-9)
-
-
 def test_speed_never_changes_faster_than_the_acceleration_limit_while_the_stick_is_held():
     hand = Hand()
     last = ZERO
@@ -135,44 +118,6 @@ def test_speed_never_changes_faster_than_the_acceleration_limit_while_the_stick_
         velocity = tuple(d / DT for d in hand.step(push(*stick)).displacement)
         assert distance(velocity, last) <= SETTINGS.acceleration * DT * (1 + 1e-9)
         last = velocity
-
-
-def test_the_arm_stops_in_the_tick_in_which_the_stick_is_released():
-    hand = Hand()
-    speed_after(hand, push(0.0, 1.0, 0.0))
-    motion_request = hand.step()
-    assert motion_request.motion is Motion.NONE
-    assert motion_request.displacement == ZERO
-
-
-def test_right_forward_and_up_are_those_of_the_camera_in_front_of_the_face():
-    for stick in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)):
-        assert unit(Hand().step(push(*stick)).displacement) == pytest.approx(stick)
-
-
-def test_with_a_camera_looking_down_forward_stays_horizontal_and_up_stays_vertical():
-    tilted = camera_axes((0.0, 0.8, -0.6), (0.0, 0.6, 0.8))
-    overhead = camera_axes((0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
-    assert tilted == overhead == FRONT_CAMERA
-
-
-def test_a_jog_moves_for_its_duration_and_then_stops():
-    hand = Hand(TeleoperationSettings(acceleration=1e6))
-    hand.teleoperation.start(Jogging(velocity=(0.0, 0.1, 0.0), duration=0.1))
-    start = hand.tip.position
-    assert hand.run_until_end() is MotionOutcome.REACHED
-    assert hand.tip.position == pytest.approx(add(start, (0.0, 0.01, 0.0)), abs=1e-9)
-    assert hand.step().motion is Motion.NONE
-
-
-def test_a_jog_replaced_by_another_continues_without_a_stop():
-    hand = Hand()
-    for _ in range(20):
-        hand.teleoperation.start(Jogging(velocity=(0.1, 0.0, 0.0), duration=0.1))
-        for _ in range(12):
-            motion_request = hand.step()
-    assert motion_request.motion is Motion.JOG
-    assert length(motion_request.displacement) == pytest.approx(0.1 * DT)
 
 
 def test_a_move_ends_on_its_target_and_never_exceeds_its_speed():
@@ -195,13 +140,6 @@ def test_a_move_turns_the_tool_as_commanded_even_if_its_direction_is_free():
     assert angle(hand.tip.direction, goal) < 1e-9
 
 
-def test_a_move_that_gets_no_closer_gives_up_and_reports_that_it_was_blocked():
-    hand = Hand()
-    hand.blocked = True
-    hand.teleoperation.start(Moving((0.5, 0.0, 0.3), speed=0.1))
-    assert hand.run_until_end(most_ticks=200) is MotionOutcome.BLOCKED
-
-
 def test_a_stick_overrides_a_commanded_motion():
     hand = Hand()
     hand.teleoperation.start(Moving((0.5, 0.0, 0.3), speed=0.1))
@@ -212,9 +150,8 @@ def test_a_stick_overrides_a_commanded_motion():
     assert hand.step().motion is Motion.NONE
 
 
-@pytest.mark.parametrize("choice", [ToolDirection.FREE, ToolDirection.CLEAR])
-def test_in_position_mode_the_tool_direction_is_free_and_the_second_stick_does_nothing(choice):
-    hand = Hand(steered(choice))
+def test_in_position_mode_the_tool_direction_is_free_and_the_second_stick_does_nothing():
+    hand = Hand(steered(ToolDirection.FREE))
     assert hand.step(push(1.0, 0.0, 0.0)).direction is None
     assert hand.step(OperatorInput(rotation=(1.0, 0.0))).motion is Motion.NONE
 
@@ -230,12 +167,6 @@ def test_a_held_direction_stays_until_the_second_stick_turns_it():
     assert turned[0] > 0.1
     assert turned[1] == pytest.approx(0.0)
     assert angle(turned, DOWN) == pytest.approx(50 * DT * SteeringSettings().coarse_turn)
-
-
-@pytest.mark.parametrize("choice", [choice for choice in ToolDirection if choice != "pose"])
-def test_the_tool_may_roll_in_every_mode_except_full_pose(choice):
-    hand = Hand(steered(choice), surface=near_the_head(0.005, (0.0, -1.0, 0.5)))
-    assert hand.step(push(1.0, 0.0, 0.0)).across is None
 
 
 def test_in_pose_mode_the_tool_does_not_roll_while_it_is_moved_and_turned():
@@ -286,10 +217,3 @@ def test_the_tool_approaches_from_above_even_where_the_skin_faces_down():
     for _ in range(600):
         hand.step(push(0.2, 0.0, 0.0))
     assert hand.tip.direction[2] < -0.2
-
-
-def test_a_shaft_that_almost_touches_turns_away_from_what_is_near_it():
-    ear = near_the_head(0.002, (0.0, 0.0, 1.0), 0.0002, (0.0, -1.0, 0.0))
-    hand = Hand(steered(ToolDirection.CLEAR), surface=ear)
-    hand.step(push(0.2, 0.0, 0.0))
-    assert hand.tip.direction[1] > 0.0

@@ -21,14 +21,11 @@ CONTACT = Proximity.CONTACT
     [
         (Proximity.FREE, 0.05, 0.0, "", RUNNING, HERE, TouchStage.FAR),
         (Proximity.PROXIMITY, 0.015, 0.0, "", RUNNING, HERE, TouchStage.NEAR),
-        (CONTACT, 0.0, 0.0, "", RUNNING, HERE, TouchStage.ON_SKIN),
         (CONTACT, 0.0, 0.0004, "", RUNNING, HERE, TouchStage.ON_SKIN),
-        (CONTACT, 0.0, 0.0006, "", RUNNING, HERE, TouchStage.PRESSED),
         (CONTACT, 0.0, 0.0014, "", RUNNING, HERE, TouchStage.PRESSED),
         (CONTACT, 0.0, 0.0016, "", RUNNING, HERE, TouchStage.TOO_DEEP),
         (CONTACT, 0.0, 0.0006, "", RUNNING, BESIDE, TouchStage.ELSEWHERE),
         (CONTACT, 0.0, 0.0006, "", TRACING, None, TouchStage.PRESSED),
-        (CONTACT, 0.0, 0.0, "", RUNNING, BESIDE, TouchStage.ELSEWHERE),
         (CONTACT, 0.004, 0.0, "", RUNNING, HERE, TouchStage.SHAFT),
         (CONTACT, 0.0, 0.0, "links", RUNNING, HERE, TouchStage.ARM),
         (Proximity.FREE, 0.05, 0.0, "table", RUNNING, HERE, TouchStage.ARM),
@@ -41,10 +38,3 @@ def test_each_touch_stage_is_recognized(
 ):
     now = TouchMoment(1.0, HERE, clearance, depth)
     assert touch_stage(now, proximity, obstacle, training, goal, TrainingSettings()) is stage
-
-
-def test_a_tip_resting_where_it_has_just_touched_is_not_an_error():
-    last = TouchState("1", (0.001, 0.0, 0.0), 1.0, 1.0)
-    training = TrainingState(phase=Phase.RUNNING, next_point="2", touches=(last,))
-    now = TouchMoment(2.0, HERE, 0.0)
-    assert touch_stage(now, CONTACT, "", training, BESIDE, TrainingSettings()) is TouchStage.NEAR

@@ -5,8 +5,7 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.commands import CommandName
-from rastrainer.journal.entries import Stroke
-from rastrainer.protocol import MAX_TRACE_POINTS, MIN_TRACE_POINTS, Phase, RegistrationMethod
+from rastrainer.protocol import MAX_TRACE_POINTS, Phase, RegistrationMethod
 from Testing.simulator.landmarked import LANDMARKS, with_landmarks
 from Testing.simulator.training.hand_driven import Trial
 
@@ -86,40 +85,6 @@ def test_the_tip_leaves_a_point_every_millimeter_and_only_on_the_skin(landmarked
     assert len(trial.state.trace.points) == 6
 
 
-def test_a_traced_point_does_not_raise_the_revision_but_a_stroke_does(landmarked):
-    trial = begun(landmarked)
-    trial.touch(3)
-    before = trial.state.revision
-    (event,) = trial.must(CommandName.TRACE, on=True).events
-    assert event.entry == Stroke(True, 0, 1)
-    drag(trial, 5)
-    assert trial.state.revision == before + 1
-    assert trial.must(CommandName.TRACE, on=True).events == ()
-    (event,) = trial.must(CommandName.TRACE, on=False).events
-    assert event.entry == Stroke(False, 5, 1)
-    assert trial.state.revision == before + 2
-
-
-def test_a_trial_can_be_registered_from_thirty_points_on(landmarked):
-    trial = traced(landmarked, MIN_TRACE_POINTS - 1)
-    assert trial.state.phase is Phase.RUNNING
-    assert not trial.do(CommandName.REGISTER).ok
-    trial.must(CommandName.TRACE, on=True)
-    drag(trial, 1, first=500)
-    assert "end it before registering" in trial.do(CommandName.REGISTER).message
-    trial.must(CommandName.TRACE, on=False)
-    assert trial.state.phase is Phase.COMPLETE
-    assert "30 points are traced. Register them, or keep tracing." in trial.state.instruction
-    trial_data = trial.must(CommandName.GET_TRIAL).data
-    assert len(trial_data["trace"]) == MIN_TRACE_POINTS
-    last = trial.state.trace.points[-1]
-    assert trial_data["trace"][-1] == [*(1000.0 * x for x in last.position), last.sim_time]
-    trial.now += 100.0
-    reply = trial.must(CommandName.REGISTER)
-    assert reply.data["completionTimeS"] == last.elapsed == trial.training.elapsed(trial.now)
-    assert trial.state.phase is Phase.REGISTERED
-
-
 def test_the_five_hundredth_point_ends_the_stroke_and_no_more_are_accepted(landmarked):
     trial = traced(landmarked, MAX_TRACE_POINTS + 5)
     assert len(trial.state.trace.points) == MAX_TRACE_POINTS
@@ -146,31 +111,9 @@ def test_undo_removes_the_last_stroke_and_then_the_last_landmark(landmarked):
     assert trial.state.next_point == NAMES[2]
 
 
-def test_a_pause_ends_the_stroke_and_keeps_its_points(landmarked):
-    trial = begun(landmarked)
-    trial.touch(3)
-    trial.must(CommandName.TRACE, on=True)
-    drag(trial, 31)
-    trial.must(CommandName.PAUSE)
-    assert drag(trial, 5, first=100) == []
-    trial.must(CommandName.RESUME)
-    assert trial.state.phase is Phase.COMPLETE
-    assert len(trial.state.trace.points) == 31
-
-
-def test_landmarks_and_trace_are_repeated_if_the_registration_is_rejected(landmarked):
-    trial = traced(landmarked, 30, procedure="dbs")
-    trial.must(CommandName.REGISTER)
-    trial.must(CommandName.USE_REGISTRATION, **trial.exact_registration())
-    trial.must(CommandName.REGISTER_AGAIN)
-    assert trial.state.next_point == "Nasion"
-    assert trial.state.trace.points == ()
-
-
 @pytest.mark.parametrize(
     ("method", "said"),
     [
-        ("scan", "methods are fiducials, landmarks, surface, landmarks-surface"),
         ("laser", "methods are fiducials, landmarks, surface, landmarks-surface"),
         ("surface", "has 0 landmarks"),
     ],

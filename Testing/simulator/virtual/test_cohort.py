@@ -1,7 +1,5 @@
 """A simulated cohort is a study like any other, repeatable, and its truth can be recovered."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -17,32 +15,25 @@ from Testing.simulator.report.without_charts import without_charts
 from Testing.simulator.virtual.conftest import AIM_FACTOR, BRISK
 
 
-def numbers(trial):
-    return trial.job, trial.record.positions_mm.tolist(), trial.analysis.score.score
-
-
 @pytest.fixture(scope="module")
 def data(played):
     return read_study_data(played / DATABASE)
 
 
-def test_the_cohort_is_stored_like_a_real_study_and_reported(data):
+def test_the_cohort_is_stored_like_a_real_study_and_reported(data, played):
     assert (data.trainees, data.modes) == (("V0001", "V0002"), ("desktop", "hmd"))
     values = data.trials[0].values
     for name in ("score", "expected_tre_mm", "true_tre_mm", "sparc", "path_efficiency"):
         assert np.isfinite(values[name])
     assert 0.2 < values["path_efficiency"] < 1.0
+    with Study.open(played / DATABASE) as study:
+        modes = [[t.record.mode for t in study.history(f"V000{i}")] for i in (1, 2)]
+    assert modes == [["desktop", "hmd"], ["hmd", "desktop"]]
     with without_charts():
         page = report_html(data)
     assert "2 trainees did 4 trials" in page
     assert "without a trial run" in page
     assert "(virtual trainees)" in page
-
-
-def test_orders_are_balanced_and_dates_follow_the_order(played):
-    with Study.open(played / DATABASE) as study:
-        modes = [[t.record.mode for t in study.history(f"V000{i}")] for i in (1, 2)]
-    assert modes == [["desktop", "hmd"], ["hmd", "desktop"]]
 
 
 def test_the_scatter_of_the_aim_is_recovered_from_the_registrations(data):
@@ -63,35 +54,22 @@ def test_a_folder_that_is_not_empty_is_left_alone(protocol, population, tmp_path
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
 
 
-def test_trials_not_registered_by_fiducials_are_not_played(protocol, population, tmp_path):
-    by_trace = replace(protocol, methods={"task-1": "surface"})
-    with pytest.raises(InputError, match="Virtual trainees touch fiducials: leave the protocol's"):
-        simulate_cohort(by_trace, population, 2, 0, tmp_path / "study", PlaySettings(), workers=1)
-    assert not (tmp_path / "study").exists()
-
-
 def test_the_command_reports_power_without_playing(capsys):
     words = ["simulate-cohort", "--trainees", "12", "--power", "50", "--hmd-aim", "1.3"]
     assert main(words) == 0
     text = capsys.readouterr().out
     assert "50 studies of 12 trainees" in text
     assert "not played" in text
-    assert "order of the modes balanced: the effect of the period is separated" in text
-    assert [line.split()[0] for line in text.splitlines()[4:]] == [
-        "completion_time_s",
-        "rmse_mm",
-        "score",
-    ]
-    assert "p (Holm) < .05" in text
+    lines = [line.split()[0] for line in text.splitlines()[4:]]
+    assert lines == ["completion_time_s", "rmse_mm", "score"]
 
 
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
         (["--trainees", "1"], "--trainees: must be a whole number from 2 to 100000"),
-        ([], "with -o"),
+        (["--trainees", "5"], "Name the folder of the study with -o."),
         (["-o", "x", "--aim", "50"], "--aim: must be a number from 0.0 to 3.0"),
-        (["-o", "x", "--hmd-bias", "0", "0", "9"], "at most 5 mm"),
         (["--power", "20", "--hmd-aim", "0"], "factors from 0.1 to 10"),
         (["-o", "x", "--protocol", "missing.json"], "missing.json"),
     ],

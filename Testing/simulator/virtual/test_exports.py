@@ -1,6 +1,5 @@
 """Exports of a study are as other programs expect them, and reveal no names."""
 
-import csv
 import json
 import re
 import subprocess
@@ -14,9 +13,9 @@ import vtk
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
+from rastrainer.journal.folder import journals_of
 from rastrainer.journal.recording import read_trajectory
 from rastrainer.motion.trial_motion import trial_motion
-from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
 from rastrainer_headless.scene import HeadlessScene
@@ -45,7 +44,7 @@ def test_the_bids_validator_finds_no_error(exported):
     assert len(list(exported.glob("bids/sub-*/motion/*_motion.tsv"))) == 4
 
 
-def test_the_bids_samples_match_those_of_the_journal(played, exported):
+def test_the_bids_samples_match_those_of_the_journal(played, exported, capsys):
     (path,) = exported.glob("bids/sub-V0001/motion/*acq-hmd*_motion.tsv")
     values = np.loadtxt(path, delimiter="\t")
     trial = next(
@@ -56,21 +55,13 @@ def test_the_bids_samples_match_those_of_the_journal(played, exported):
     for column in range(3):
         expected = np.interp(at, trajectory.times_s, trajectory.tip_mm[:, column])
         np.testing.assert_allclose(values[:, column], expected, atol=1e-4)
-    assert trial_motion(trajectory)["sparc"] == trial.values["sparc"]
-
-
-def test_every_touch_is_a_row_with_its_residual(played, exported):
-    rows = list(csv.DictReader((exported / "csv" / "touches.csv").open()))
-    assert len(rows) == 4 * FIDUCIAL_COUNT
-    for trial in read_study_data(played / DATABASE).trials:
-        own = [row for row in rows if row["trial_id"] == trial.trial_id]
-        assert [row["label"] for row in own] == [str(i + 1) for i in range(FIDUCIAL_COUNT)]
-        residuals = np.array([float(row["residual_mm"]) for row in own])
-        assert np.sqrt(np.mean(residuals**2)) == pytest.approx(trial.values["rmse_mm"])
-        assert np.all(np.diff([float(row["sim_time_s"]) for row in own]) > 0)
-        journal = read_trajectory(played / RECORDS, trial.trial_id)
-        tip = [[float(row[axis]) for axis in ("x_mm", "y_mm", "z_mm")] for row in own]
-        np.testing.assert_array_equal(tip, [touch.position_mm for touch in journal.touches])
+    (journal,) = journals_of(played / RECORDS, trial.trial_id)
+    assert main(["measure", str(journal), "--json"]) == 0
+    measured = json.loads(capsys.readouterr().out)
+    assert measured == trial_motion(trajectory)
+    assert measured.items() <= trial.values.items()
+    assert main(["measure", str(journal), "--explain"]) == 0
+    assert "Balasubramanian" in capsys.readouterr().out
 
 
 def test_xapi_statements_have_what_the_specification_requires(exported):

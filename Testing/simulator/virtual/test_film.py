@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import sys
-
 import cv2
 import numpy as np
 import pytest
 
-from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals
 from rastrainer.journal.recording import read_track
 from rastrainer_simulator.cli.main import main
@@ -58,9 +55,3 @@ def test_a_film_shows_the_trial_at_the_chosen_speed(monkeypatch, tmp_path, journ
 def test_a_film_of_another_format_is_refused(tmp_path, journal, capsys):
     assert main(["replay", str(journal), "--film", str(tmp_path / "trial.avi")]) == 2
     assert "must be named *.webm" in capsys.readouterr().err
-
-
-def test_without_opencv_a_sentence_says_what_to_install(monkeypatch, tmp_path):
-    monkeypatch.setitem(sys.modules, "cv2", None)
-    with pytest.raises(InputError, match=r"rastrainer\[film\]"):
-        film.write_film(tmp_path / "trial.webm", None, None)

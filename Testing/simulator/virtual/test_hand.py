@@ -41,25 +41,6 @@ def test_tremor_has_its_size_along_each_axis_and_lies_between_6_and_12_hz():
     assert 7.0 < np.average(frequencies, weights=power) < 9.5
 
 
-def test_the_integral_of_the_tremor_is_that_of_its_position():
-    tremor = Tremor(0.12, seed=3)
-    for time in (0.0, 1.3, 700.0):
-        slope = (tremor.integral_mm_s(time + 1e-5) - tremor.integral_mm_s(time - 1e-5)) / 2e-5
-        assert slope == pytest.approx(tremor.position_mm(time), abs=1e-6)
-
-
-def test_the_same_seed_gives_the_same_tremor_and_another_one_another():
-    one, same, other = (Tremor(0.12, seed).position_mm(5.0) for seed in (3, 3, 4))
-    assert (one == same).all()
-    assert (one != other).all()
-
-
-@pytest.mark.parametrize("skill", [JOYSTICK, MOUSE], ids=DEVICES)
-def test_a_coarse_step_of_the_simulation_samples_the_tremor_of_a_fine_one(skill):
-    fine, coarse = (shaken_mm(skill, 60.0, step_s) for step_s in (0.01, 0.05))
-    assert coarse == pytest.approx(fine[4::5], abs=1e-3)
-
-
 def test_a_stick_leaves_little_of_the_tremor_and_less_at_low_speed():
     joystick, slow, mouse = (
         shaken_mm(skill, speed).std(axis=0).mean()
@@ -68,11 +49,3 @@ def test_a_stick_leaves_little_of_the_tremor_and_less_at_low_speed():
     assert mouse == pytest.approx(Skill().tremor_mm, rel=0.1)
     assert joystick < 0.7 * mouse
     assert slow == pytest.approx(joystick * 16.0 / 120.0, rel=0.01)
-
-
-def test_hands_that_let_go_of_the_stick_do_not_move_the_tip():
-    hand = Hand(Skill(), np.random.default_rng(1), seed=1)
-    hand.correct(AHEAD, 120.0)
-    hand.velocity(0.0, 0.1)
-    hand.release()
-    assert hand.velocity(0.1, 0.2) == pytest.approx(np.zeros(3))

@@ -13,10 +13,8 @@ from pathlib import Path
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.study.database.cohort_store import CohortStore
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import StudyProtocol, protocol_text
-from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.virtual.cohort import (
     ATTEMPTS,
@@ -116,16 +114,6 @@ def test_a_resumed_cohort_equals_an_uninterrupted_one_to_the_last_bit(
     assert journals(copied) == journals(played)
 
 
-def test_trials_of_a_deleted_trainee_are_not_played_again(copied, protocol, population):
-    with Study.open(copied / DATABASE) as study:
-        study.delete_trainee("V0001")
-        assert CohortStore(study).gap() == ""
-    words = (protocol, population, 2, 7, copied, PlaySettings(), True)
-    run = simulate_cohort(*words, workers=1)
-    assert (run.found, run.played) == (4, 0)
-    assert read_study_data(copied / DATABASE).trainees == ("V0002",)
-
-
 def test_a_cohort_is_resumed_only_with_its_own_options(copied, protocol, population):
     settings = PlaySettings(step_s=0.04)
     with pytest.raises(ValueError, match=r"with other options \(different: seed, step\)"):
@@ -141,36 +129,19 @@ def test_a_study_of_people_is_never_resumed_as_a_cohort(tmp_path, protocol, popu
         assert [trainee.pseudonym for trainee in study.trainees()] == ["A-1"]
 
 
-def test_an_incomplete_cohort_is_neither_reported_nor_exported(copied, tmp_path, capsys):
+def test_an_incomplete_cohort_is_reported_and_exported_only_on_request(copied, tmp_path, capsys):
     without_last_trials(copied, 1)
     for command in ("report", "export"):
         words = [command, str(copied / DATABASE), "-o", str(tmp_path / command)]
         assert main(words) == 2
         errors = capsys.readouterr().err
         assert "is incomplete: 3 of 4 trials are stored." in errors
-        assert "into the same folder with the same options" in errors
-        assert "--incomplete takes it as it is" in errors
         assert not (tmp_path / command).exists()
-
-
-def test_an_incomplete_cohort_is_reported_on_request_and_the_page_says_so(copied, tmp_path):
-    without_last_trials(copied, 1)
     words = ["report", str(copied / DATABASE), "-o", str(tmp_path / "page"), "--incomplete"]
     with without_charts():
         assert main(words) == 0
     page = (tmp_path / "page" / "report.html").read_text()
     assert "3 of 4 trials are stored. What follows is about these trials alone." in page
-
-
-def test_trials_that_got_stuck_are_reported_and_not_played_again(tmp_path):
-    with Study.open(tmp_path / DATABASE) as study:
-        store = CohortStore(study)
-        store.start({"seed": 1}, 40)
-        store.add_stuck("00000000-0000-0000-0000-000000000001")
-        assert store.has_played("00000000-0000-0000-0000-000000000001")
-        assert "0 of 40 trials are stored, and 1 got stuck" in store.gap()
-        store.finish()
-        assert store.gap() == ""
 
 
 @pytest.fixture(scope="module")

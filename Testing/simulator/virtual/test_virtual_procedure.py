@@ -16,7 +16,6 @@ from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.report.procedures import procedures
 from rastrainer_simulator.virtual.cohort import simulate_cohort
-from rastrainer_simulator.virtual.hand import Skill
 from rastrainer_simulator.virtual.play import PlaySettings
 from rastrainer_simulator.virtual.virtual_procedure import ProcedureHands, VirtualProcedure
 
@@ -52,16 +51,6 @@ def test_steady_hands_leave_only_the_registration_error(meshes):
         assert errors.plunge_mm == pytest.approx(0.0, abs=1e-6)
     (attempt,) = done.attempts
     assert [check.error_mm for check in attempt.checkpoints] == pytest.approx([1.0] * 3, abs=1e-6)
-
-
-def test_the_scatter_of_hands_follows_from_their_skill(meshes):
-    hands = ProcedureHands.of(replace(Skill(), aim_sd_mm=2.0 * Skill().aim_sd_mm))
-    assert hands.depth_sd_mm == pytest.approx(2.0 * ProcedureHands().depth_sd_mm)
-    found = [analyzed(meshes, hands, seed)[1] for seed in range(12)]
-    by_hand = [each.depth_error_by_hand_mm for one in found for each in one.trajectories]
-    assert np.std(by_hand) == pytest.approx(hands.depth_sd_mm, rel=0.25)
-    plunges = [each.plunge_mm for one in found for each in one.trajectories]
-    assert np.mean(plunges) == pytest.approx(hands.plunge_mm, rel=0.35)
 
 
 def test_a_cohort_whose_protocol_has_a_procedure_is_reported_with_the_split(

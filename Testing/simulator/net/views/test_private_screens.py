@@ -71,12 +71,7 @@ def seat(served, connect):
 
 
 @pytest.mark.parametrize(
-    ("holder", "readers"),
-    [
-        ("page", {"page"}),
-        ("window", {"window", "other window"}),
-        ("gamepad", {"window", "other window"}),
-    ],
+    ("holder", "readers"), [("page", {"page"}), ("gamepad", {"window", "other window"})]
 )
 def test_only_the_operators_views_are_sent_items_focus_and_clicks(served, seat, holder, readers):
     number = seat[holder][1] if holder in seat else None

@@ -1,13 +1,8 @@
 """The view server as a user starts it: in the simulator's process, by the command."""
 
-import socket
-import time
 from concurrent.futures import ThreadPoolExecutor
 
-import pytest
-
-from Testing.end_to_end.simulator_process import SimulatorProcess, ViewedSimulator
-from Testing.simulator.net.igtl.servers import HOST
+from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.simulator.net.views.served import ViewClient, request
 
 
@@ -37,31 +32,3 @@ def test_a_view_pairs_by_the_printed_code_and_does_not_keep_the_simulator_from_e
         assert status == 0
         assert key not in errors
         assert simulator.code not in errors
-
-
-def test_a_requested_port_in_use_is_reported_and_the_default_one_replaced(tmp_path):
-    with socket.create_server((HOST, 0)) as other:
-        taken = other.getsockname()[1]
-        with pytest.raises(AssertionError, match=f"Cannot listen on 127.0.0.1:{taken}"):
-            _opened(tmp_path, "--view-port", str(taken))
-    with _usual_port_taken(), ViewedSimulator(tmp_path / "others") as simulator:
-        assert simulator.view_port != 18945
-
-
-def _opened(tmp_path, *arguments):
-    """Start a simulator that should say on stderr why it cannot serve views."""
-    process = SimulatorProcess(tmp_path / "records", "--no-gamepad", *arguments)
-    status, errors = process.wait()
-    assert status == 2
-    raise AssertionError(errors)
-
-
-def _usual_port_taken():
-    """Return a socket at the usual port, once any other user of the port is gone."""
-    give_up = time.monotonic() + 600.0
-    while True:
-        try:
-            return socket.create_server((HOST, 18945))
-        except OSError:
-            assert time.monotonic() < give_up, "another program keeps port 18945"
-            time.sleep(0.05)

@@ -1,13 +1,11 @@
 import asyncio
 import hashlib
 
-import aiohttp
 import numpy as np
 import pytest
 from trimesh.transformations import quaternion_matrix
 
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.net.views.outgoing import quaternion
 from rastrainer_simulator.presentation.messages import Feedback, Hello
 from rastrainer_simulator.presentation.presenter import Control
 from rastrainer_simulator.presentation.screen import (
@@ -62,16 +60,6 @@ def test_poses_match_those_of_the_simulation(served, connect, control_loop):
     assert state["clearanceMm"] == pytest.approx(1000 * now.clearance, abs=1e-3)
     assert (state["phase"], state["next"], state["touched"]) == ("idle", None, [])
     assert state["camera"] == "close-up"
-
-
-def test_quaternions_agree_with_another_library_for_any_rotation():
-    rng = np.random.default_rng(7)
-    halves = np.eye(4)[[1, 2, 3]]
-    for wanted in [*rng.normal(size=(500, 4)), *halves, *(halves + 1e-9), [1, 0, 0, 0]]:
-        rotation = quaternion_matrix(wanted)
-        x, y, z, w = quaternion(rotation.tolist())
-        assert quaternion_matrix([w, x, y, z]) == pytest.approx(rotation, abs=1e-12)
-        assert np.hypot(np.hypot(x, y), np.hypot(z, w)) == pytest.approx(1.0)
 
 
 def test_the_scene_is_named_after_its_content_and_fits_the_scenario(served, connect, scenario):
@@ -129,12 +117,14 @@ def test_a_view_that_falls_behind_gets_the_latest_screen_and_not_all_before_it(s
     view = connect(served)
     view.join()
     view.next("state")
-    text = "x" * 20_000
-    count = 400
+    text, count = "x" * 20_000, 400
     for number in range(count):
         served.tell(Screen(instruction=ScreenMessage(f"{number} {text}")))
-    last = f"{count - 1} {text}"
-    messages = view.all_until(lambda m: m["type"] == "screen" and text in str(m) and _is(m, last))
+
+    def is_last(message):
+        return str(message.get("screen")).find(f"{count - 1} {text}") >= 0
+
+    messages = view.all_until(is_last)
     screens = [message for message in messages if message["type"] == "screen"]
     assert len(screens) < count / 2, "what no client read was replaced, not queued"
 
@@ -157,10 +147,6 @@ def test_a_view_that_no_longer_reads_does_not_hold_up_the_shutdown(serve, connec
     served.close()
 
 
-def _is(message: dict, text: str) -> bool:
-    return message["screen"]["instruction"]["text"] == text
-
-
 def test_a_view_that_lets_too_many_events_wait_is_dropped_and_may_come_back(served, connect):
     view, other = connect(served), connect(served)
     for one in (view, other):
@@ -173,30 +159,6 @@ def test_a_view_that_lets_too_many_events_wait_is_dropped_and_may_come_back(serv
     again.join()
     served.tell(feedback(300))
     assert again.next("event")["number"] == 300
-
-
-def test_each_view_is_told_whether_it_has_control(served, connect):
-    views = [connect(served), connect(served)]
-    numbers = [view.join()["view"] for view in views]
-    for view in views:
-        view.next("control")
-    served.tell(Control("keyboard", numbers[1]))
-    found = [view.next("control") for view in views]
-    assert found == [
-        {"type": "control", "holder": "keyboard", "isYou": False},
-        {"type": "control", "holder": "keyboard", "isYou": True},
-    ]
-
-
-def test_no_more_views_than_allowed_can_join_until_one_leaves(serve, connect):
-    served = serve(views=1)
-    first = connect(served)
-    number = first.join()["view"]
-    with pytest.raises(aiohttp.WSServerHandshakeError, match="503"):
-        connect(served)
-    first.leave()
-    served.wait_for_call("view_left", number)
-    assert connect(served).join()["view"] == number + 1
 
 
 def test_a_scenarios_picture_is_served_to_views_by_name_and_nothing_else_is(served, tmp_path):
