@@ -1,15 +1,13 @@
 """`make bench`: run every benchmark, print one table, write build/bench.json.
 
 A benchmark is a file `bench_*.py` here with a function `rows(quick: bool) -> list[dict]`; each row
-has the keys of `COLUMNS`, with None if there is no peer. Measurements that take minutes are in a
-function `long_rows() -> list[dict]`, which `--long` adds. Before each stands how busy and how fast
+has the keys of `COLUMNS`, with None if there is no peer. Before each stands how busy and how fast
 the machine is.
 """
 
 import argparse
 import importlib
 import json
-from itertools import chain
 from pathlib import Path
 
 from Testing.benchmarks.row import host_row, load_row
@@ -22,7 +20,6 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="make bench", description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", help="benchmarks to run (default: all)")
     parser.add_argument("--quick", action="store_true", help="fewer repetitions, rougher numbers")
-    parser.add_argument("--long", action="store_true", help="also what takes minutes")
     parser.add_argument("--output", type=Path, default=Path("build/bench.json"))
     arguments = parser.parse_args()
     found = sorted(path.stem.removeprefix("bench_") for path in HERE.glob("bench_*.py"))
@@ -31,13 +28,8 @@ def main() -> None:
     print(_line(COLUMNS))
     for name in arguments.names or found:
         module = importlib.import_module(f"Testing.benchmarks.bench_{name}")
-        measures = [
-            lambda n=name: [load_row(n), host_row(n)],
-            lambda m=module: m.rows(arguments.quick),
-        ]
-        if arguments.long and hasattr(module, "long_rows"):
-            measures.append(module.long_rows)
-        for row in chain.from_iterable(measure() for measure in measures):
+        machine = [load_row(name), host_row(name)]
+        for row in (*machine, *module.rows(arguments.quick)):
             rows.append({column: row[column] for column in COLUMNS})
             print(_line(rows[-1].values()), flush=True)
         # A failure of the last benchmark should not lose half an hour's numbers.

@@ -1,5 +1,4 @@
-"""All clearances of a tick, compared with coal on the same shapes; and how deep a thousand rams
-get."""
+"""All clearances of a tick, compared with coal on the same shapes."""
 
 import gc
 import time
@@ -8,25 +7,20 @@ from itertools import islice
 
 import coal
 import numpy as np
-import trimesh
 
 from rastrainer import transforms
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.collision import APART, Collision
-from rastrainer_simulator.collision.contact import Contact
 from rastrainer_simulator.collision.robot_shape import ArmCapsules, PosedArm, load_shape
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.robot.fabrik import Fabrik
 from rastrainer_simulator.robot.kinematics import make_kinematics
-from Testing.benchmarks.row import row, row_of_figures
+from Testing.benchmarks.row import row_of_figures
 
 TICK = 0.004
 TOUR_SPEED = 0.15
-RAM_SPEED = 0.5
-RAM_TICKS = 40
-DEEPEST_MM = 0.1
 AGREEMENT = 5e-5
 _THIN = 1e-6
 
@@ -43,26 +37,37 @@ class Bench:
         self.to_world[:3, 3] /= MM_PER_M
         self.kinematics, self.fabrik = make_kinematics(self.robot), Fabrik(self.robot)
 
-    def collision(self, vertices: np.ndarray, triangles: np.ndarray) -> Collision:
-        found = Collision(load_shape(), vertices, triangles)
+    def collision(self) -> Collision:
+        found = Collision(load_shape(), self.vertices, self.triangles)
         found.set_head_pose(self.to_world)
         return found
 
 
 def rows(quick: bool) -> list[dict]:
-    """Return the rows `clearance.60k`, `clearance.200k` and `contact.depth`."""
+    """Return the row `clearance.60k`."""
     bench = Bench()
-    plain = bench.vertices, bench.triangles
-    fine = trimesh.remesh.subdivide(*plain)
-    collision = bench.collision(*plain)
+    collision, peer = bench.collision(), CoalArm(bench)
     tour = [
         bench.kinematics.links(q) for q in islice(_tour(bench, collision), 500 if quick else 3000)
     ]
-    runs = 1 if quick else 5
+    times = [_times(collision.check, tour) for _ in range(1 if quick else 5)]
+    peer_times = _times(peer.check, tour[::10])
+    agrees = []
+    for links in tour[::10]:
+        found, theirs = collision.check(links), peer.check(links)
+        shaft = collision.nearest_to_shaft(links, np.inf).distance_m
+        ours = (abs(found.tip_m), shaft, found.links_m, found.self_m)
+        agrees.append(all(abs(a - b) < AGREEMENT for a, b in zip(ours, theirs, strict=True)))
     return [
-        _clearance_row("clearance.60k", bench, plain, tour, runs),
-        _clearance_row("clearance.200k", bench, fine, tour, runs),
-        _depth_row(bench, collision, 50 if quick else 1000),
+        row_of_figures(
+            "clearance.60k",
+            np.median([np.percentile(run, [50, 99]) for run in times], axis=0),
+            "ms",
+            peer="coal, every pair",
+            peer_figures=tuple(np.percentile(peer_times, [50, 99])),
+            success=float(np.mean(agrees)),
+            n=len(tour),
+        )
     ]
 
 
@@ -82,29 +87,6 @@ def _tour(bench: Bench, collision: Collision) -> Iterator[np.ndarray]:
             ticks = max(1, int(length / (TOUR_SPEED * TICK)))
             yield from np.linspace(q, goal, ticks)
             q = np.array(goal)
-
-
-def _clearance_row(
-    name: str, bench: Bench, head: tuple[np.ndarray, np.ndarray], tour: list[dict], runs: int
-) -> dict:
-    collision, peer = bench.collision(*head), CoalArm(bench, *head)
-    times = [_times(collision.check, tour) for _ in range(runs)]
-    peer_times = _times(peer.check, tour[::10])
-    agrees = []
-    for links in tour[::10]:
-        found, theirs = collision.check(links), peer.check(links)
-        shaft = collision.nearest_to_shaft(links, np.inf).distance_m
-        ours = (abs(found.tip_m), shaft, found.links_m, found.self_m)
-        agrees.append(all(abs(a - b) < AGREEMENT for a, b in zip(ours, theirs, strict=True)))
-    return row_of_figures(
-        name,
-        np.median([np.percentile(run, [50, 99]) for run in times], axis=0),
-        "ms",
-        peer="coal, every pair",
-        peer_figures=tuple(np.percentile(peer_times, [50, 99])),
-        success=float(np.mean(agrees)),
-        n=len(tour),
-    )
 
 
 def _times(check: Callable[[dict], object], tour: list[dict]) -> np.ndarray:
@@ -128,7 +110,8 @@ class CoalArm:
     takes a hundred times longer.
     """
 
-    def __init__(self, bench: Bench, vertices: np.ndarray, triangles: np.ndarray) -> None:
+    def __init__(self, bench: Bench) -> None:
+        vertices, triangles = bench.vertices, bench.triangles
         self._arm = ArmCapsules(load_shape())
         self._head = coal.BVHModelOBBRSS()
         self._head.beginModel(len(triangles), len(vertices))
@@ -184,37 +167,3 @@ def _pose_of(start: np.ndarray, end: np.ndarray) -> coal.Transform3s:
     x = np.cross(np.eye(3)[np.abs(z).argmin()], z)
     x /= np.linalg.norm(x)
     return coal.Transform3s(np.column_stack([x, np.cross(z, x), z]), (start + end) / 2.0)
-
-
-def _depth_row(bench: Bench, collision: Collision, count: int) -> dict:
-    depths = np.array([MM_PER_M * depth for depth in islice(_ram_depths(bench, collision), count)])
-    return row("contact.depth", depths, "mm", success=float(np.mean(depths <= DEEPEST_MM)))
-
-
-def _ram_depths(bench: Bench, collision: Collision) -> Iterator[float]:
-    """Yield how deep, m, tip or shaft get, driven into the head at full speed from all sides."""
-    random = np.random.default_rng(3)
-    contact, fastest = Contact(collision, bench.kinematics), bench.robot.velocity * TICK
-    vertices = transforms.apply(bench.to_world, bench.vertices)
-    while True:
-        place = vertices[random.integers(len(vertices))]
-        normal = np.array(collision.nearest_to_point(tuple(place)).normal)
-        direction = -normal + 0.4 * random.normal(size=3)
-        direction /= np.linalg.norm(direction)
-        solution = bench.fabrik.solve(place - 0.03 * direction, direction, q_start=bench.robot.home)
-        moved = contact.at(solution.q)
-        found = moved.clearance
-        least = min(found.tool_m, found.links_m, found.self_m, found.table_m)
-        if not solution.converged or least < 0:
-            continue
-        depth, holds = 0.0, random.random() < 0.5
-        for _ in range(RAM_TICKS):
-            tip, q = moved.link_to_world[bench.robot.tip.name][:3, 3], np.array(moved.q)
-
-            def to_joints(displacement, tip=tip, q=q, aim=direction if holds else None):
-                change = bench.fabrik.solve(tip + displacement, aim, q_start=q).q - q
-                return q + change / max(1.0, (np.abs(change) / fastest).max())
-
-            moved = contact.move(moved.q, tuple(direction * RAM_SPEED * TICK), to_joints)
-            depth = max(depth, -moved.clearance.tool_m)
-        yield depth

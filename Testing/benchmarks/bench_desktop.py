@@ -2,14 +2,12 @@
 loop.
 
 The window is on a display in memory, so the processor draws: the worst case. It is opened as
-`rastrainer simulator --desktop` opens it. Pictures are counted, and the browser's processor time
-for each, while the arm moves, near and from afar, and while the view turns.
+`rastrainer simulator --desktop` opens it. Pictures are counted while the arm moves.
 """
 
 from __future__ import annotations
 
 import math
-import os
 import tempfile
 import time
 from pathlib import Path
@@ -24,10 +22,8 @@ from Testing.benchmarks.loop_health import WatchedLoop
 from Testing.benchmarks.row import row
 from Testing.end_to_end.lab import Lab
 from Testing.end_to_end.window_process import WindowProcess, wait_until
-from Testing.running_process import started_by
 
-LARGE, SMALL = (1920, 1080), (1280, 720)
-SETTLE_S = 3
+LARGE = (1920, 1080)
 SEED = 5
 PUSH = 0.8
 REST_S = (0.4, 0.6)
@@ -38,13 +34,6 @@ LOOK_S = 0.2
 TIMEOUT_S = 20.0
 SETTLED_PICTURES = 40
 """Everything that draws is compiled by then."""
-TICKS_A_S = os.sysconf("SC_CLK_TCK")
-# As a dragged mouse turns the view.
-TURN = """() => {
-  window.turning = setInterval(() => {
-    page.connection.send("orbit", { aroundDeg: 2, higherDeg: 0, zoom: 1 });
-  }, 33);
-}"""
 
 
 class Delay(NamedTuple):
@@ -52,13 +41,6 @@ class Delay(NamedTuple):
 
     streamed: float
     shown: float
-
-
-class Drawn(NamedTuple):
-    """How many pictures a second a window has drawn, 1/s, and what each costs, ms of CPU."""
-
-    rate: float
-    cost: float
 
 
 def rows(quick: bool) -> list[dict]:
@@ -71,23 +53,19 @@ def rows(quick: bool) -> list[dict]:
     ):
         _start_trial(lab, slicer)
         alone = _swing(lab, slicer, seconds)
-        found = []
-        for size in (LARGE, SMALL):
-            window = lab.open_window(f"window {size[0]}", size)
-            if size is SMALL:
-                _resume(lab, slicer)
-            _warm_up(lab, window)
-            if size is LARGE:
-                random = np.random.default_rng(SEED)
-                delays = [_delay(lab, window, random) for _ in range(pushes)]
-            beside, rows = _count(lab, slicer, window, size, seconds)
-            found += rows
-            window.kill()
+        window = lab.open_window("window", LARGE)
+        _warm_up(lab, window)
+        random = np.random.default_rng(SEED)
+        delays = [_delay(lab, window, random) for _ in range(pushes)]
+        known, begin = len(window.pictures()), time.monotonic()
+        beside = _swing(lab, slicer, seconds)
+        drawn = (len(window.pictures()) - known) / (time.monotonic() - begin)
+        assert lab.view.state["phase"] == Phase.RUNNING, "The arm did not move all the time."
     streamed, shown = 1e3 * np.array(delays).T
     return [
         row("desktop.stick to stream", streamed, "ms"),
         row("desktop.stick to picture", shown, "ms"),
-        *found,
+        row("desktop.pictures {}x{}".format(*LARGE), [drawn], "1/s"),
         beside.row("loop.on_time.window"),
         alone.row("loop.on_time.no window"),
     ]
@@ -101,57 +79,6 @@ def _warm_up(lab: Lab, window: WindowProcess) -> None:
     _push(lab, 0.0)
 
 
-def _count(
-    lab: Lab, slicer: Client, window: WindowProcess, size: tuple[int, int], seconds: int
-) -> tuple[WatchedLoop, list[dict]]:
-    """Count pictures and their cost from near, from afar, and while the view turns."""
-    rows = []
-    name = "desktop.pictures {}x{}".format(*size)
-    for camera in ("close-up", "far"):
-        slicer.send_command(CommandName.SET_CAMERA, {"camera": camera})
-        window.page.wait_for_timeout(1000 * SETTLE_S)
-        with _Drawing(window) as drawing:
-            swung = _swing(lab, slicer, seconds)
-        rows += _drawn_rows(f"{name} {camera}", drawing.drawn)
-    assert lab.view.state["phase"] == Phase.RUNNING, "The arm did not move all the time."
-    window.page.evaluate(TURN)
-    with _Drawing(window) as drawing:
-        window.page.wait_for_timeout(1000 * seconds)
-    window.page.evaluate("clearInterval(window.turning)")
-    return swung, [*rows, *_drawn_rows(f"{name} turning", drawing.drawn)]
-
-
-class _Drawing:
-    """Counts a window's pictures, and its processor time, while the `with` statement lasts."""
-
-    def __init__(self, window: WindowProcess) -> None:
-        self._window = window
-        self.drawn = Drawn(0.0, 0.0)
-
-    def __enter__(self) -> _Drawing:
-        self._before = self._now()
-        return self
-
-    def __exit__(self, *_exception: object) -> None:
-        pictures, used, seconds = np.subtract(self._now(), self._before)
-        self.drawn = Drawn(pictures / seconds, 1e3 * used / max(pictures, 1))
-
-    def _now(self) -> tuple[float, float, float]:
-        processes = [self._window.pid, *started_by(self._window.pid)]
-        used = sum(map(_processor_time, processes))
-        return len(self._window.pictures()), used, time.monotonic()
-
-
-def _processor_time(pid: int) -> float:
-    """Return the processor time of a process so far, s."""
-    fields = Path("/proc", str(pid), "stat").read_text().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / TICKS_A_S
-
-
-def _drawn_rows(name: str, drawn: Drawn) -> list[dict]:
-    return [row(name, [drawn.rate], "1/s"), row(f"{name}, CPU of each", [drawn.cost], "ms")]
-
-
 def _start_trial(lab: Lab, slicer: Client) -> None:
     hello = {"protocolVersion": PROTOCOL_VERSION, "client": "bench"}
     task = {"task": "task-1", "trainee": "bench", "seed": SEED}
@@ -160,14 +87,6 @@ def _start_trial(lab: Lab, slicer: Client) -> None:
         assert reply.ok, reply.error
     wait_until(lambda: lab.view.screen.menu is None, "the task")
     wait_until(lambda: lab.view.scene["fiducials"], "its scene")
-
-
-def _resume(lab: Lab, slicer: Client) -> None:
-    """Resume the trial, which is paused when the window that shows it is closed."""
-    wait_until(lambda: lab.view.state["phase"] == Phase.PAUSED, "the pause")
-    reply = slicer.send_command(CommandName.RESUME, {}, timeout=20)
-    assert reply.ok, reply.error
-    wait_until(lambda: lab.view.screen.menu is None, "the task")
 
 
 def _delay(lab: Lab, window: WindowProcess, random: np.random.Generator) -> Delay:

@@ -1,8 +1,8 @@
-"""FABRIK, pin-pink and a damped-least-squares loop on the same seeded targets.
+"""FABRIK and pin-pink on the same seeded targets.
 
 Cold starts go from the home pose to targets anywhere in reach; tracking follows a path of 1 mm
 steps around the head. A time is the median of the runs of one target; Pinocchio judges success:
-ours within 1 nm and inside the limits, the peers within 0.1 mm.
+ours within 1 nm and inside the limits, pin-pink within 0.1 mm.
 """
 
 import gc
@@ -13,10 +13,9 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import pinocchio as pin
 
-from rastrainer_simulator.core.arm import limit_step
 from rastrainer_simulator.robot.fabrik import Fabrik
 from rastrainer_simulator.robot.model import load_robot
-from Testing.benchmarks.ik_peers import LeastSquares, Pinocchio, PinPink
+from Testing.benchmarks.ik_peers import Pinocchio, PinPink
 from Testing.benchmarks.row import row
 
 MODES = ("position", "direction", "pose")
@@ -24,9 +23,7 @@ SEED = 2011
 EXACT_M = 1e-9
 EXACT_RAD = 1e-7
 CLINICAL_BOX = ([0.35, -0.15, 0.15], [0.65, 0.15, 0.5])
-WIDE_BOX = ([-0.9, -0.9, -0.1], [0.9, 0.9, 1.4])
 STEP_M = 0.001
-TICK_S = 0.004
 STEP_LIMIT = 0.15
 
 
@@ -70,45 +67,21 @@ class Ours:
 
 
 def rows(quick: bool = True) -> list[dict]:
-    """Return `ik.<mode>.cold` and `ik.<mode>.track` with each peer, and the joints' steps."""
+    """Return `ik.<mode>.cold` and `ik.<mode>.track`, and the joints' steps."""
     sizes = Sizes(3_000, 200, 3) if quick else Sizes(100_000, 2_000, 5)
     robot, ours = Pinocchio(), Ours()
-    peers = (PinPink(robot), LeastSquares(robot))
+    peer = PinPink(robot)
     gc.collect()
     gc.freeze()  # as the server does
     try:
-        cold = [row for mode in MODES for row in _cold(robot, ours, peers, mode, sizes)]
-        track = [row for mode in MODES for row in _track(robot, ours, peers, mode, sizes)]
+        cold = [_cold(robot, ours, peer, mode, sizes) for mode in MODES]
+        track = [row for mode in MODES for row in _track(robot, ours, peer, mode, sizes)]
     finally:
         gc.unfreeze()
-    return [*cold, *track, _wide(robot, ours, sizes)]
+    return [*cold, *track]
 
 
-def _wide(robot: Pinocchio, ours: Ours, sizes: Sizes) -> dict:
-    """Return how far the joints have to move by 1 mm anywhere, past singularities and edges.
-
-    `success` is the share of ticks in which they then move, the velocity limiter in between, by at
-    most 2 ° and no faster than their limits.
-    """
-    path = _path(30 * sizes.timed, *WIDE_BOX)
-    fastest = robot.velocity * TICK_S
-    q_next, q = np.array(ours.home), np.array(ours.home)
-    steps, kept = [], 0
-    for target in path:
-        question = ours.question(target, "position")
-        before, q_next = q_next, np.array(ours.solve(question, q_next))
-        steps.append(np.degrees(np.abs(q_next - before).max()))
-        limited = np.array(limit_step(q, ours.solve(question, q), robot.velocity, TICK_S)[0])
-        moved = np.abs(limited - q)
-        kept += bool(np.all(moved <= fastest * (1.0 + 1e-9)) and np.degrees(moved).max() <= 2.0)
-        q = limited
-    success = kept / len(path)
-    return row("ik.position.wide", steps, "°/mm", success=success)
-
-
-def _cold(
-    robot: Pinocchio, ours: Ours, peers: Sequence[Solver], mode: str, sizes: Sizes
-) -> list[dict]:
+def _cold(robot: Pinocchio, ours: Ours, peer: Solver, mode: str, sizes: Sizes) -> dict:
     random = np.random.default_rng(SEED)
     postures = random.uniform(*robot.limits, (sizes.verified, 7))
     targets = [robot.tip(q).copy() for q in postures]
@@ -119,24 +92,13 @@ def _cold(
     success = solved / len(targets)
     few = targets[: sizes.timed]
     times = _cold_times(ours, few, mode, ours.home, sizes.runs)
-    return [
-        row(
-            f"ik.{mode}.cold{_suffix(peer)}",
-            times,
-            "µs",
-            peer.name,
-            _cold_times(peer, few, mode, ours.home, sizes.runs),
-            success=success,
-            n=len(targets),
-        )
-        for peer in peers
-    ]
+    others = _cold_times(peer, few, mode, ours.home, sizes.runs)
+    name, n = f"ik.{mode}.cold", len(targets)
+    return row(name, times, "µs", peer.name, others, success=success, n=n)
 
 
-def _track(
-    robot: Pinocchio, ours: Ours, peers: Sequence[Solver], mode: str, sizes: Sizes
-) -> list[dict]:
-    targets = _path(sizes.timed, *CLINICAL_BOX)
+def _track(robot: Pinocchio, ours: Ours, peer: Solver, mode: str, sizes: Sizes) -> list[dict]:
+    targets = _path(sizes.timed)
     start = np.array(ours.solve(ours.question(targets[0], "direction"), ours.home))
     for target in targets:
         target.rotation = robot.tip(start).rotation
@@ -147,17 +109,8 @@ def _track(
             for q, target in zip(postures, targets, strict=True)
         ]
     )
-    found = [
-        row(
-            f"ik.{mode}.track{_suffix(peer)}",
-            times,
-            "µs",
-            peer.name,
-            _track_times(peer, targets, mode, start, sizes.runs)[0],
-            success=float(success),
-        )
-        for peer in peers
-    ]
+    others = _track_times(peer, targets, mode, start, sizes.runs)[0]
+    found = [row(f"ik.{mode}.track", times, "µs", peer.name, others, success=float(success))]
     if mode == "position":
         steps = np.degrees(np.abs(np.diff(postures, axis=0)).max(axis=1))
         found.append(
@@ -166,19 +119,16 @@ def _track(
     return found
 
 
-def _suffix(peer: Solver) -> str:
-    return "" if peer.name == "pin-pink" else f".{peer.name}"
-
-
 def _exact(robot: Pinocchio, q: np.ndarray, target: pin.SE3, mode: str) -> bool:
     off, turned = robot.errors(q, target, mode)
     inside = bool(np.all(np.clip(q, *robot.limits) == q))
     return inside and off <= EXACT_M and turned <= EXACT_RAD
 
 
-def _path(count: int, low: Sequence[float], high: Sequence[float]) -> list[pin.SE3]:
-    """Return a walk of 1 mm steps between random points of a box."""
+def _path(count: int) -> list[pin.SE3]:
+    """Return a walk of 1 mm steps between random points of a box around the head."""
     random = np.random.default_rng(SEED)
+    low, high = CLINICAL_BOX
     point, goal, path = random.uniform(low, high), random.uniform(low, high), []
     while len(path) < count:
         rest = goal - point

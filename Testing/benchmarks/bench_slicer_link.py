@@ -18,14 +18,12 @@ from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.slicer.link.link_status import LinkState
 from Testing.benchmarks.row import row
 from Testing.end_to_end.simulator_process import StartedSimulator
-from Testing.slicer.host.activity import ActivityWatch
 from Testing.slicer.host.host import Host
 
 STROKE_S = 2.0
 SPEED_MM_S = 20.0
 SETTLE_S = 2.0
 PIECE_S = 1.0
-BURST = 1000
 
 
 class Cost:
@@ -34,25 +32,18 @@ class Cost:
     Attributes:
         renders: renderings a second.
         cpu: share of a core, %; the host has a share in it, which looks for messages every 5 ms.
-        module: processor time of the module's Python, s a minute.
-        writes: assignments to widgets a second.
     """
 
     def __init__(self, host: Host, seconds: int, before: Callable[[], None] = lambda: None) -> None:
         self.renders: list[float] = []
         self.cpu: list[float] = []
-        self.module: list[float] = []
-        self.writes: list[float] = []
         for _ in range(seconds):
             before()
             renders, used, begin = host.renders, time.process_time(), time.perf_counter()
-            with ActivityWatch() as watch:
-                _idle_for(PIECE_S)
+            _idle_for(PIECE_S)
             passed = time.perf_counter() - begin
             self.renders.append((host.renders - renders) / passed)
             self.cpu.append(100.0 * (time.process_time() - used) / passed)
-            self.module.append(60.0 * watch.busy_s / passed)
-            self.writes.append(len(watch.writes) / passed)
 
 
 def rows(quick: bool) -> list[dict]:
@@ -76,7 +67,6 @@ def rows(quick: bool) -> list[dict]:
         _idle_for(SETTLE_S)
         idle = Cost(host, seconds)
         delays = [_command_delay(session.link) for _ in range(5 * seconds)]
-        bursts = [_time_to_send(session.link) for _ in range(2 if quick else 5)]
         host.check("robotCheckBox")
         host.finish_work()
         _start_trial(player)
@@ -87,11 +77,8 @@ def rows(quick: bool) -> list[dict]:
         row("slicer.renders moving", moving.renders, "1/s"),
         row("slicer.cpu open", apart.cpu, "%", "another module", away.cpu),
         row("slicer.cpu idle", idle.cpu, "%", "disconnected", apart.cpu),
-        row("slicer.module idle", idle.module, "s/min", "disconnected", apart.module),
-        row("slicer.writes idle", idle.writes, "1/s", "disconnected", apart.writes),
         row("slicer.cpu moving", moving.cpu, "%", "disconnected", apart.cpu),
         row("slicer.command", delays, "ms"),
-        row("slicer.send 1,000", bursts, "ms"),
     ]
 
 
@@ -108,22 +95,6 @@ def _command_delay(link) -> float:
     link.send(CommandName.LIST_TASKS, onReply=lambda _reply: loop.quit())
     loop.exec()
     return 1e3 * (time.perf_counter() - begin)
-
-
-def _time_to_send(link) -> float:
-    """Return how long a burst of commands keeps its sender, ms; their replies are waited for."""
-    loop, replies, begin = QtCore.QEventLoop(), [], time.perf_counter()
-
-    def count(reply) -> None:
-        replies.append(reply)
-        if len(replies) == BURST:
-            loop.quit()
-
-    for _ in range(BURST):
-        link.send(CommandName.LIST_TASKS, onReply=count)
-    spent = time.perf_counter() - begin
-    loop.exec()
-    return 1e3 * spent
 
 
 def _start_trial(player: Client) -> None:

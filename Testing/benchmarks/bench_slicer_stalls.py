@@ -1,17 +1,12 @@
 """How long the module keeps Slicer's window from answering: the longest stall of each step.
 
 The host plays Slicer, whose main thread keeps Python's lock while it waits for events. What
-Slicer's own views, trees and widgets then do for the module it cannot measure, so it counts what
-they are handed in one turn (`SceneLoad`): events of nodes, new nodes, surfaces and images, their
-cells, and moved slice views.
+Slicer's own views, trees and widgets then do for the module it cannot measure.
 """
 
-import subprocess
-import sys
 import tempfile
 import uuid
 from collections.abc import Callable
-from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -34,7 +29,6 @@ from Testing.slicer.head.phantoms import phantom
 from Testing.slicer.head.volume_file import write_volume
 from Testing.slicer.host.event_loop import StallWatch
 from Testing.slicer.host.host import Host
-from Testing.slicer.host.scene_load import SceneLoad
 from Testing.slicer.recorded_trial import write_recorded_trial
 from Testing.slicer.simulator_double import SimulatorDouble
 
@@ -43,36 +37,7 @@ TRIAL_S = 300.0
 EARLIER_TRIALS = 40
 OWN = "without waits for a CPU"
 """Priority of other programs, by which stalls can be compared on a busy machine."""
-IN_ALL = "in all turns"
-UNITS = {
-    "events": "events",
-    "nodes": "nodes",
-    "kibibytes": "KiB",
-    "cells": "cells",
-    "views": "views",
-}
-IMPORTS = """
-import sys, tempfile, time
-from pathlib import Path
-import Testing.slicer.host.host
-for name in [name for name in sys.modules if name.split(".")[0] == "rastrainer"]:
-    del sys.modules[name]
-from Testing.slicer.host.installation import Installation
-Installation(Path(tempfile.mkdtemp())).add_modules()
-from rastrainer.trial.analysis import RevealedTruth
-from rastrainer.slicer.turns import importInTurns
-ours = lambda: sum(name.split(".")[0] == "rastrainer" for name in sys.modules)
-turns, was, before = [], time.process_time(), ours()
-for _ in importInTurns("rastrainer.sections.panel_stack"):
-    turns.append((1e3 * (time.process_time() - was), ours() - before))
-    was, before = time.process_time(), ours()
-milliseconds, modules = zip(*turns)
-print(max(milliseconds), max(modules), sum(milliseconds), sum(modules))
-"""
 JOURNALS_DELETED = 10
-LARGER_STUDY = 40, 10
-"""Trainees, and trials of each."""
-PROTOCOL = asset_path("studies", "published-protocol.json")
 SECTIONS = (
     "trainees",
     "scenario",
@@ -86,48 +51,16 @@ SECTIONS = (
 
 
 def rows(quick: bool) -> list[dict]:
-    """Return the rows `stalls.*`, the longest stall of the main thread in each step.
-
-    The rows `handed.*` are the most that the scene was handed in one turn of the step.
-    """
+    """Return the rows `stalls.*`, the longest stall of the main thread in each step."""
     longest: dict[str, list[float]] = {}
-    loads: dict[str, SceneLoad] = {}
     for _ in range(1 if quick else 3):
         with tempfile.TemporaryDirectory() as folder:
-            steps = _Steps(Path(folder))
-            for step, seconds in steps.measured().items():
+            for step, seconds in _Steps(Path(folder)).measured().items():
                 longest.setdefault(step, []).append(1e3 * np.array(seconds))
-            loads = steps.loads
-    return _import_rows() + [
-        found
+    return [
+        row(f"stalls.{step}", of_wall, "ms", OWN, of_own)
         for step, values in longest.items()
         for of_wall, of_own in [np.transpose(values)]
-        for found in (
-            row(f"stalls.{step}", of_wall, "ms", OWN, of_own),
-            *_load_rows(step, loads[step]),
-        )
-    ]
-
-
-def _load_rows(step: str, load: SceneLoad) -> list[dict]:
-    """Return the most that one turn has handed over, among all turns of the step."""
-    most, total = asdict(load.most), asdict(load.total)
-    return [
-        row(f"handed.{step}.{kind}", [most[kind]], UNITS[kind], IN_ALL, [total[kind]])
-        for kind in UNITS
-        if total[kind]
-    ]
-
-
-def _import_rows() -> list[dict]:
-    """Return the largest cost of a turn that imports a part of the module, among all turns."""
-    found = subprocess.run(
-        [sys.executable, "-c", IMPORTS], capture_output=True, check=True, text=True
-    )
-    longest, most, milliseconds, modules = map(float, found.stdout.split())
-    return [
-        row("stalls.imports_at_opening", [longest], "ms", IN_ALL, [milliseconds]),
-        row("handed.opening.imports", [most], "modules", IN_ALL, [modules]),
     ]
 
 
@@ -137,7 +70,6 @@ class _Steps:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._longest: dict[str, tuple[float, float]] = {}
-        self.loads: dict[str, SceneLoad] = {}
         self._colin = load_scenario(asset_path("scenarios", "colin27"))
         self._touches = transforms.apply(
             self._colin.perturbed_head_to_world(SEED),
@@ -235,35 +167,14 @@ class _Steps:
             self._write_journal(str(uuid.UUID(int=number + 1)))
         host.answer("cannot be undone", "Yes")
         self._watch("delete_trainee", lambda: host.press("deleteTraineeButton"))
-        larger = self._folder / "larger.db"
-        trainees, trials = LARGER_STUDY
-        for number in range(trainees):
-            self._store(larger, trials, f"T-{number + 1:03d}", trials * number)
-        self._watch("larger_study", lambda: self._open_study(larger))
-        led = self._folder / "led.db"
-        self._store(led, 1)
-        host.type("studyPathLineEdit", str(led))
-        host.choose("traineeComboBox", TRAINEE)
-        host.type("protocolPathLineEdit", str(PROTOCOL))
-        host.answer("Begin the study", "Yes")
-        host.press("beginStudyButton")
-        self._watch("study_step", lambda: host.press("enrollButton"))
 
-    def _open_study(self, path: Path) -> None:
-        host = self._host
-        host.type("studyPathLineEdit", str(path))
-        host.choose("traineeComboBox", TRAINEE)
-        host.wait_until(
-            lambda: host.find("historyTable").rowCount == LARGER_STUDY[1], "it is shown"
-        )
-
-    def _store(self, path: Path, count: int, trainee: str = TRAINEE, first: int = 0) -> None:
-        """Store trials of a trainee in a study: one registration serves for all."""
+    def _store(self, path: Path, count: int) -> None:
+        """Store trials in a study: one registration serves for all."""
         with Study.open(path) as study:
             analysis = analyze_trial(record_from_json(TrialRecord, self._record(0)), self._colin)
             fits, errors = analysis.fits.values(), analysis.target_errors
-            for number in range(first, first + count):
-                record = {**self._record(number), "trainee": trainee}
+            for number in range(count):
+                record = {**self._record(number), "trainee": TRAINEE}
                 study.add_trial(record, fits, errors, analysis.score)
                 study.add_results(
                     record["trialId"], truth=RevealedTruth(tuple(np.eye(4).ravel().tolist()), 1.0)
@@ -281,11 +192,10 @@ class _Steps:
         return write_volume(self._folder / "head.nrrd", scan)
 
     def _watch(self, step: str, work: Callable[[], object]) -> None:
-        with StallWatch() as watch, SceneLoad(self._host.scene) as load:
+        with StallWatch() as watch:
             work()
             self._host.finish_work()
             self._host.idle_for(0.5)
-        self.loads[step] = load
         self._longest[step] = watch.longest_s, watch.longest_own_s
         for stall in sorted(watch.stalls, key=lambda stall: -stall.own_s)[:3]:
             times = f"{1e3 * stall.seconds:.0f} ms, {1e3 * stall.own_s:.0f} of its own"

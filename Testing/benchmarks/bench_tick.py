@@ -1,24 +1,21 @@
 """One whole tick of the simulation, and how punctual 250 of them a second are in the server."""
 
-import dataclasses
 import gc
 import os
 import socket
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import numpy as np
 
-from rastrainer import transforms
 from rastrainer.commands import CommandName, check_arguments
-from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
 from rastrainer.igtl.client import Client
-from rastrainer.protocol import PROTOCOL_VERSION, Phase, TouchRule
-from rastrainer_simulator.core.setup import SimulationSetup, load_setup
+from rastrainer.protocol import PROTOCOL_VERSION
+from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.state import NEUTRAL_STICKS, Motion, OperatorCommand, OperatorInput
 from Testing.benchmarks.loop_health import WatchedLoop
@@ -32,50 +29,24 @@ QUICK_S = 20.0
 GOOD_CLIENTS = 3
 ABOVE = np.array([0.0, 0.0, 165.0])
 TRIAL_ID = "00000000-0000-4000-8000-000000000000"
-STAND_OFF_MM = 30.0
-STICK_TICKS, FEED_TICKS = 900, 2500
-FEED_IN = OperatorInput(translation=(0.0, 0.0, -1.0))
 
 
 def rows(quick: bool) -> list[dict]:
-    """Return the rows `tick.60k`, `tick.200k`, `tick.align`, `tick.drill`, and the loop's.
-
-    `tick.align` is of all ticks in which the guide is aligned, by the robot itself and by sticks at
-    random, `tick.drill` of all in which drill or instrument is fed. See also `_on_time`.
-    """
-    runs = 1 if quick else 5
-    setup = load_setup()
-    anywhere = dataclasses.replace(
-        setup.settings.training, acceptance_radius=10.0, touch_rule=TouchRule.WITHIN_RADIUS
-    )
-    settings = dataclasses.replace(setup.settings, training=anywhere)
-    fed = (Phase.DRILLING, Phase.INSERTING)
-    with tempfile.TemporaryDirectory() as folder:
-        fine = _with_finer_head(setup, Path(folder) / "head.ply")
-        ticks = [
-            *_tick_rows(setup, _tour, runs, {"tick.60k": tuple(Phase)}),
-            *_tick_rows(fine, _tour, runs, {"tick.200k": tuple(Phase)}),
-            *_tick_rows(
-                dataclasses.replace(setup, settings=settings),
-                _procedure,
-                runs,
-                {"tick.align": (Phase.ALIGNING,), "tick.drill": fed},
-            ),
-        ]
-    return [*ticks, *_on_time(QUICK_S if quick else ON_TIME_S)]
+    """Return the row `tick.60k`, and the loop's: see `_on_time`."""
+    return [_tick_row(1 if quick else 5), *_on_time(QUICK_S if quick else ON_TIME_S)]
 
 
 class _Timed:
-    """A simulation, and the times of its ticks, each with the phase before it; s."""
+    """A simulation, and the times of its ticks, s."""
 
     def __init__(self, simulation: Simulation) -> None:
         self.simulation = simulation
-        self.ticks: list[tuple[Phase, float]] = []
+        self.ticks: list[float] = []
 
     def step(self, operator_input: OperatorInput) -> None:
-        phase, begin = self.simulation.state.training.phase, time.perf_counter()
+        begin = time.perf_counter()
         result = self.simulation.step(DT, operator_input)
-        self.ticks.append((phase, time.perf_counter() - begin))
+        self.ticks.append(time.perf_counter() - begin)
         refused = [answer.message for answer in result.answers if not answer.ok]
         assert not refused, refused
 
@@ -90,58 +61,33 @@ class _Timed:
         while self.simulation.state.motion is not Motion.NONE:
             self.step(NEUTRAL_STICKS)
 
-    def push(self, random: np.random.Generator, axes: int, times: int) -> None:
-        """Push the sticks at random, each time for 15 ticks."""
-        for _ in range(times):
-            sticks = random.uniform(-1.0, 1.0, axes).tolist()
-            pushed = OperatorInput(tuple(sticks[:3]), tuple(sticks[3:]) or (0.0, 0.0))
+    def push(self, random: np.random.Generator) -> None:
+        """Push the sticks at random, ten times for 15 ticks."""
+        for _ in range(10):
+            pushed = OperatorInput(tuple(random.uniform(-1.0, 1.0, 3).tolist()), (0.0, 0.0))
             for _ in range(15):
                 self.step(pushed)
 
 
-def _tick_rows(
-    setup: SimulationSetup,
-    play: Callable[[_Timed], None],
-    runs: int,
-    rows: Mapping[str, tuple[Phase, ...]],
-) -> list[dict]:
-    """Return a row of the ticks in some phases; success is the share that took less than 4 ms.
+def _tick_row(runs: int) -> dict:
+    """Return the row of a tour's ticks; success is the share that took less than 4 ms.
 
     A tick's time is the median of the runs, which all do the same work at it: what else the machine
     did in one of them does not count.
     """
-    simulation, played = Simulation(setup, SEED), []
+    simulation, played = Simulation(load_setup(), SEED), []
     gc.collect()
     gc.freeze()
     try:
         for _ in range(runs):
             played.append(_Timed(simulation))
-            play(played[-1])
+            _tour(played[-1])
     finally:
         gc.unfreeze()
-    found = []
-    for name, phases in rows.items():
-        times = [[1e3 * s for phase, s in each.ticks if phase in phases] for each in played]
-        shortest = min(map(len, times))
-        same = np.array([run[:shortest] for run in times])
-        in_time = float((same < 1e3 * DT).mean())
-        found.append(row(name, np.median(same, axis=0), "ms", success=in_time))
-    return found
-
-
-def _with_finer_head(setup: SimulationSetup, path: Path) -> SimulationSetup:
-    """Return the setup with each triangle of the head cut into four."""
-    mesh = read_head_mesh(setup.scenario.head)
-    edges = np.sort(mesh.sides, axis=1)
-    unique, index = np.unique(edges, axis=0, return_inverse=True)
-    ab, bc, ca = len(mesh.vertices) + index.reshape(3, -1)
-    a, b, c = mesh.triangles.T
-    triangles = np.concatenate(
-        [np.stack(t, axis=1) for t in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
-    )
-    vertices = np.concatenate([mesh.vertices, mesh.vertices[unique].mean(axis=1)])
-    write_head_mesh(path, HeadMesh(vertices, triangles))
-    return dataclasses.replace(setup, scenario=dataclasses.replace(setup.scenario, head=path))
+    shortest = min(len(each.ticks) for each in played)
+    same = 1e3 * np.array([each.ticks[:shortest] for each in played])
+    in_time = float((same < 1e3 * DT).mean())
+    return row("tick.60k", np.median(same, axis=0), "ms", success=in_time)
 
 
 def _tour(timed: _Timed) -> None:
@@ -160,39 +106,10 @@ def _tour(timed: _Timed) -> None:
         outside = fiducial + 70.0 * (fiducial - center) / np.linalg.norm(fiducial - center)
         move_to(outside)
         move_to(fiducial)
-        timed.push(random, 3, 10)
+        timed.push(random)
         move_to(outside)
         move_to(center + ABOVE)
     timed.do(CommandName.ABORT)
-
-
-def _procedure(timed: _Timed) -> None:
-    """Touch, register by the truth, which a tick does not notice, and place two electrodes."""
-    timed.do(CommandName.START_TASK, task="task-3", trainee="bench", seed=SEED, procedure="dbs")
-    truth = timed.simulation.truth
-    for _ in truth.fiducials_ras:
-        timed.do(CommandName.CAPTURE)
-    timed.do(CommandName.REGISTER)
-    matrix = transforms.inverse(truth.head_to_world).ravel().tolist()
-    errors = {"freMm": 0.5, "expectedTreMm": 0.5}
-    timed.do(CommandName.USE_REGISTRATION, trialId=TRIAL_ID, matrix=matrix, **errors)
-    timed.do(CommandName.ACCEPT_REGISTRATION)
-    random = np.random.default_rng(SEED)
-    for _ in range(2):
-        timed.do(CommandName.ALIGN_GUIDE, standOffMm=STAND_OFF_MM)
-        timed.wait()
-        timed.push(random, 5, STICK_TICKS // 15)
-        timed.do(CommandName.ALIGN_GUIDE, standOffMm=STAND_OFF_MM)
-        timed.wait()
-        for command in (
-            CommandName.LOCK_GUIDE,
-            CommandName.START_INSERTION,
-            CommandName.RELEASE_INSTRUMENT,
-        ):
-            timed.do(command)
-            for _ in range(0 if command is CommandName.RELEASE_INSTRUMENT else FEED_TICKS):
-                timed.step(FEED_IN)
-    # A registered trial needs no Abort: the next StartTask starts a new one.
 
 
 def _on_time(duration_s: float) -> list[dict]:

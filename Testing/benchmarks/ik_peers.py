@@ -1,4 +1,4 @@
-"""Alternatives to FABRIK, set up to solve the same problems."""
+"""pin-pink, set up to solve the same problems as FABRIK, and the judge of both."""
 
 import numpy as np
 import pink
@@ -11,13 +11,12 @@ TIP = "iiwa_tool_tip_ee"
 TOLERANCE_M = 1e-4
 TOLERANCE_RAD = 1e-3
 MAX_STEPS = 100
-EQUATIONS = {"position": 3, "direction": 5, "pose": 6}
 # How much a turn of the tip about its x, y and z axes counts in each mode.
 TURNS = {"position": (0.0, 0.0, 0.0), "direction": (1.0, 1.0, 0.0), "pose": (1.0, 1.0, 1.0)}
 
 
 class Pinocchio:
-    """The robot as Pinocchio reads it: the judge of every solution, and both peers' model."""
+    """The robot as Pinocchio reads it: the judge of every solution, and pin-pink's model."""
 
     def __init__(self) -> None:
         self.model = pin.buildModelFromUrdf(str(asset_path("robots", "iiwa7", "iiwa7.urdf")))
@@ -72,50 +71,3 @@ class PinPink:
                 return None
             configuration.integrate_inplace(velocity, 1.0)
         return None
-
-
-class LeastSquares:
-    """A loop of damped least squares on Pinocchio, clamped to the joint limits."""
-
-    name = "pinocchio-dls"
-    # The best of those tried on the same targets.
-    damping = 1e-4
-    longest_step = 0.7
-
-    def __init__(self, robot: Pinocchio) -> None:
-        self._robot = robot
-
-    def question(self, target: pin.SE3, mode: str) -> tuple[pin.SE3, str]:
-        return target, mode
-
-    def solve(self, question: tuple[pin.SE3, str], q_start: np.ndarray) -> np.ndarray | None:
-        target, mode = question
-        robot, q = self._robot, np.array(q_start)
-        count = EQUATIONS[mode]
-        damping = self.damping * np.eye(count)
-        for _ in range(MAX_STEPS):
-            error = _local_error(robot.tip(q), target, mode)
-            if np.linalg.norm(error[:3]) <= TOLERANCE_M and (
-                np.linalg.norm(error[3:]) <= TOLERANCE_RAD
-            ):
-                return q
-            jacobian = pin.computeFrameJacobian(
-                robot.model, robot.data, q, robot.frame, pin.ReferenceFrame.LOCAL
-            )[:count]
-            step = jacobian.T @ np.linalg.solve(jacobian @ jacobian.T + damping, error)
-            longest = np.abs(step).max()
-            if longest > self.longest_step:
-                step *= self.longest_step / longest
-            q = np.clip(q + step, *robot.limits)
-        return None
-
-
-def _local_error(tip: pin.SE3, target: pin.SE3, mode: str) -> np.ndarray:
-    """Return what the tip misses along and about its own axes, (3,), (5,) or (6,) float."""
-    inverse = tip.rotation.T
-    off = inverse @ (target.translation - tip.translation)
-    if mode == "position":
-        return off
-    turned = inverse @ target.rotation
-    turn = pin.log3(turned) if mode == "pose" else (-turned[1, 2], turned[0, 2])
-    return np.concatenate((off, turn))

@@ -279,15 +279,6 @@ class PageMouse:
         self._dragged, self._was_fine = stick, fine
         return True
 
-    def turn_view(self, across_px: int) -> None:
-        """Drag with the right button, from the middle of the picture."""
-        size = self._page.viewport_size
-        x, y = size["width"] // 2, size["height"] // 2
-        self._page.mouse.move(x, y)
-        self._page.mouse.down(button="right")
-        self._page.mouse.move(x + across_px, y, steps=5)
-        self._page.mouse.up(button="right")
-
     @property
     def _is_slow(self) -> bool:
         # Early in the tutorial there is no such hint.

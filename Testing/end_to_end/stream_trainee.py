@@ -36,11 +36,6 @@ SINK_M = 0.003
 """How far below the skin the sticks push for, so that the tip comes to rest on it."""
 ON_POINT_M, NEAR_M = 0.002, 0.008
 """Distance at which the tip is stopped, and how far from there it may come to rest."""
-HOVER_M = 0.032
-OFF_FIDUCIALS_M = 0.018
-"""A point this far from every fiducial is clearly no fiducial, even where the skin is steep."""
-ASIDE_M = (0.03, 0.04, 0.05)
-"""How far from the tip to look for such a point."""
 LONGEST_TOUCH_S = 600.0
 """Number of attempts: on a busy machine they are clumsy."""
 STILL_STATES = 10
@@ -67,7 +62,6 @@ class WatchingView:
 
     Attributes:
         state, screen, scene: the latest.
-        holder: who has control, by the latest message.
         trace: the latest news of a trace.
         events: all, in order.
     """
@@ -77,7 +71,6 @@ class WatchingView:
         self.scene: dict | None = None
         self.trace: dict = {"next": None}
         self.screen = Screen()
-        self.holder = ""
         self.events: list[dict] = []
         self._client = client
         self._bodies = client.join(kind="page", device="watcher")["bodies"]
@@ -110,8 +103,6 @@ class WatchingView:
                 message = self._client.next()
                 if message["type"] == "screen":
                     self.screen = record_from_json(Screen, message["screen"], "The screen")
-                elif message["type"] == "control":
-                    self.holder = message["holder"]
                 elif message["type"] == "event":
                     self.events.append(message)
                 elif message["type"] == "trace":
@@ -122,17 +113,17 @@ class WatchingView:
                         self._has_state.notify_all()
 
 
-class StreamTrainee:
-    """Goes through menus by their names, and to fiducials by the sticks.
+class Trainee:
+    """Goes through menus by their names, and to fiducials by the sticks, in their order.
 
     Attributes:
         view: what the trainee sees.
         hands: the input device.
-        again_s: after which a press without an effect is made again, for hands whose presses may
-            be missed. A press that is only slow would count twice.
+        again_s: after which a press without an effect is made again. A press is seen in the next
+            picture, however late: none is missed, and one that is only slow would count twice.
     """
 
-    again_s = TIMEOUT_S
+    again_s = 60.0
 
     def __init__(self, view: WatchingView, hands: Hands):
         self.view = view
@@ -168,13 +159,9 @@ class StreamTrainee:
             assert time.monotonic() < give_up, f"{what} never came; the screen: {self.view.screen}"
             self.view.next_state()
 
-    def until_warned(self, text: str) -> None:
-        """Wait until the screen shows a warning of that text."""
-        self.until(lambda: text in self.warnings, text)
-
-    def until_not_warned(self, text: str) -> None:
-        """Wait until the screen shows no warning of that text."""
-        self.until(lambda: text not in self.warnings, f"the end of: {text}")
+    def until_warned(self, text: str, is_warned: bool = True) -> None:
+        """Wait until the screen shows a warning of that text, or no longer."""
+        self.until(lambda: (text in self.warnings) is is_warned, text)
 
     def until_moved(self) -> None:
         """Wait until the tip has moved by 10 mm."""
@@ -210,22 +197,18 @@ class StreamTrainee:
         before = self.menu_name
         self.press("accept", lambda: self.menu_name != before, f"after {item}")
 
-    def read_on(self, name: str) -> None:
-        """Accept page by page until a menu of that name is open."""
-        while (before := self.menu).name != name:
-            self.press("accept", lambda b=before: self.menu != b, "the next page")
-
-    def read_introduction(self) -> None:
-        """Go from the start menu to the menu of tasks."""
-        self.until_menu("start")
-        self.choose("train")
-        self.until_menu("introduction")
-        self.read_on("controls")
-        self.choose("next")
-        self.until_menu("experiment")
-
     def focus(self, item: str) -> None:
-        """Move the focus to an item."""
+        """Move the focus to an item, and see that it stays there.
+
+        A tapped key is held until the next picture: if that takes long, the focus moves on.
+        """
+        settled = 0
+        while settled < SETTLED_STATES:
+            self._move_focus(item)
+            self.view.next_state()
+            settled = settled + 1 if self.menu.focus == item else 0
+
+    def _move_focus(self, item: str) -> None:
         names = [each.name for each in self.menu.items if each.kind != "axis"]
         assert item in names, f"{self.menu.name} has {names}"
         # A menu that has opened by itself ignores input for a moment.
@@ -271,49 +254,6 @@ class StreamTrainee:
             return now["timeS"] - since[0] > 2.0 * PICTURE_GRACE_S
 
         self.until(has_run, "the trial with its picture")
-
-    def press_away_from_fiducials(self) -> None:
-        """Push the tip against the skin where no fiducial is, as an error, and release."""
-        place, center = self._bare_place(), self.head_center
-        outward = (place - center) / np.linalg.norm(place - center)
-        self.steer_to(self.tip + LIFT_M * outward, 0.01)
-        self.steer_to(place + LIFT_M * outward, 0.005)
-        wanted = self._stick_axes() @ -outward
-        self.hands.push(*(0.5 * wanted).tolist(), False)
-        self.until(lambda: self.view.state["touch"] in ("elsewhere", "too deep"), "the error")
-        self.hands.push(0.0, 0.0, 0.0, False)
-
-    def hover(self, label: str) -> None:
-        """Hold the tip still above a fiducial, far enough to be free of the head."""
-        point, center = self.place_of(label), self.head_center
-        above = point + HOVER_M * (point - center) / np.linalg.norm(point - center)
-        give_up = time.monotonic() + LONGEST_TOUCH_S
-        while time.monotonic() < give_up:
-            self.steer_to(above, 0.004, fine=True)
-            self.hands.push(0.0, 0.0, 0.0, False)
-            self.until_still()
-            is_near = np.linalg.norm(above - self.tip) < NEAR_M
-            if is_near and self.view.state["touch"] == "far":
-                return
-        raise AssertionError(f"the tip never hovered over {label}")
-
-    def _bare_place(self) -> np.ndarray:
-        """Return a place near the tip, the nearest to the eye that is off all fiducials."""
-        outward = (self.tip - self.head_center) / np.linalg.norm(self.tip - self.head_center)
-        first = np.cross(outward, (0.0, 0.0, 1.0))
-        first /= np.linalg.norm(first)
-        fiducials = np.array([self.place_of(label) for label in self.view.scene["fiducials"]])
-        eye = np.array(self.view.state["view"]["position"])
-        angles = np.arange(0.0, 2.0 * np.pi, np.pi / 8.0)
-        sides = np.outer(np.cos(angles), first)
-        sides += np.outer(np.sin(angles), np.cross(outward, first))
-        places = [self.tip + away * side for away in ASIDE_M for side in sides]
-        bare = [
-            place
-            for place in places
-            if np.linalg.norm(fiducials - place, axis=1).min() > OFF_FIDUCIALS_M
-        ]
-        return min(bare, key=lambda place: np.linalg.norm(place - eye))
 
     def approach(self, label: str, near_m: float) -> None:
         """Carry the tip over the head to a place above a fiducial."""
@@ -393,40 +333,12 @@ class StreamTrainee:
             self.hands.push(*wanted.tolist(), fine)
             self.view.next_state()
 
-    def use_camera(self, name: str) -> None:
-        """Change to a camera; from a view that was turned the first press leads to the front."""
-        while (shown := self.view.state)["camera"] != name:
-            before = shown["camera"], shown["view"]
-            self.press("camera", lambda b=before: self._looked_from != b, f"the {name} camera")
-
-    @property
-    def _looked_from(self) -> tuple:
-        return self.view.state["camera"], self.view.state["view"]
-
     def _stick_axes(self) -> np.ndarray:
         """Return (3, 3) float: right, forward and up as the picture shows them, as rows."""
         camera = self.view.state["view"]
         line = np.subtract(camera["focalPoint"], camera["position"])
         axes = camera_axes(tuple(line.tolist()), tuple(camera["viewUp"]))
         return np.array([axes.right, axes.forward, axes.up])
-
-
-class Trainee(StreamTrainee):
-    """Goes through the menus, and touches the points in their order."""
-
-    # A press is seen in the next picture, however late: none is missed.
-    again_s = 60.0
-
-    def focus(self, item: str) -> None:
-        """Move the focus to an item, and see that it stays there.
-
-        A tapped key is held until the next picture: if that takes long, the focus moves on.
-        """
-        settled = 0
-        while settled < SETTLED_STATES:
-            super().focus(item)
-            self.view.next_state()
-            settled = settled + 1 if self.menu.focus == item else 0
 
     def go_home(self) -> None:
         """Go to the start menu from wherever the last trainee has stopped."""
@@ -546,12 +458,3 @@ class CarriedTrainee(Trainee):
         target = {"positionMm": position_mm, "speedMmS": speed_mm_s}
         reply = self.client.send_command("MoveTipTo", target, timeout=60)
         assert reply.ok, reply.error
-
-    def have_touched(self, most: int) -> None:
-        """Have the points touched by commands, up to so many in all."""
-        while (kept := self.touched) < most:
-            label = self.view.state["next"]
-            self.approach(label, 0.004)
-            self.lower_onto(label)
-            assert self.client.send_command("Capture", {}, timeout=60).ok
-            self.until(lambda k=kept: self.touched > k, f"touch {label}")

@@ -16,7 +16,7 @@ from rastrainer.igtl.content import Command
 from rastrainer.igtl.message import Message
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 from rastrainer.scenario.scenario import Scenario
-from Testing.end_to_end.onto_skin import lower_onto_skin
+from Testing.end_to_end.onto_skin import carry_to, lower_onto_skin
 
 TASK = "task-1"
 TRAINEE = "T-042"
@@ -175,16 +175,9 @@ class SurvivingPlayer:
         place = places[number]
         tip = client.wait_for(DeviceName.TOOL_TIP_TO_WORLD, timeout=TIMEOUT_S)
         lifted = _above(np.array(tip.content.matrix)[:3, 3], center)
-        for goal in (lifted, _above(place, center)):
-            self._send(
-                client, CommandName.MOVE_TIP_TO, None, positionMm=goal.tolist(), speedMmS=500
-            )
-
-            def is_there(tip: Message, goal: np.ndarray = goal) -> bool:
-                return np.linalg.norm(np.array(tip.content.matrix)[:3, 3] - goal) < 3.0
-
-            client.wait_for(DeviceName.TOOL_TIP_TO_WORLD, is_there, TIMEOUT_S)
         self._in_flight = CommandName.MOVE_TIP_TO
+        for goal in (lifted, _above(place, center)):
+            carry_to(client, goal, 3.0)
         lower_onto_skin(client, place, center)
         self._in_flight = ""
 

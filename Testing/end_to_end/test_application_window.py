@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import signal
 from pathlib import Path
 
 import pytest
 
-from rastrainer.igtl.client import Client
-from rastrainer_simulator.virtual.scripted_trial import send, send_hello
-from Testing.end_to_end.hands import KeyHands
 from Testing.end_to_end.simulator_process import SERVES, SimulatorProcess, paired_key
-from Testing.end_to_end.stream_trainee import CarriedTrainee, WatchingView
+from Testing.end_to_end.stream_trainee import WatchingView
 from Testing.end_to_end.virtual_display import VirtualDisplay, VirtualKeyboard
 from Testing.end_to_end.window_process import wait_until
 from Testing.running_process import runs, started_by
@@ -29,11 +25,7 @@ class Desk:
     def __init__(self, folder: Path, display: VirtualDisplay, thread: LoopThread) -> None:
         self.home = folder / "home"
         self.home.mkdir(parents=True, exist_ok=True)
-        environment = {
-            **os.environ,
-            "HOME": str(self.home),
-            "DISPLAY": display.name,
-        }
+        environment = {**os.environ, "HOME": str(self.home), "DISPLAY": display.name}
         options = ("--view-port", "0", "--no-gamepad", "--desktop")
         self.simulator = SimulatorProcess(folder / "records", *options, env=environment)
         self.url, self.code = SERVES.search(self.simulator.next_line()).groups()
@@ -56,12 +48,6 @@ class Desk:
         self.keyboard.hold("ControlLeft", True)
         self.keyboard.tap("KeyW")
         self.keyboard.hold("ControlLeft", False)
-
-    def trainee(self, stack: contextlib.ExitStack) -> CarriedTrainee:
-        """Return a trainee at the window's keyboard, whose tip commands carry."""
-        client = stack.enter_context(Client(port=self.simulator.port))
-        send_hello(client, "trainee")
-        return CarriedTrainee(self.view, KeyHands(self.keyboard), client)
 
     @property
     def processes(self) -> list[int]:
@@ -105,43 +91,6 @@ def test_a_killed_window_leaves_the_simulator_with_a_sentence_how_to_come_back(d
     assert f"open {desk.url} in a browser, and type the pairing code {desk.code}" in line
     assert desk.simulator.stop()[0] == 0
     assert desk.profiles == []
-
-
-@pytest.mark.soak
-def test_a_simulator_that_is_stopped_closes_its_window(desk):
-    desk.open_menu()
-    window = desk.processes
-    assert desk.simulator.stop()[0] == 0
-    wait_until(lambda: not any(map(runs, window)), "the end of the window's processes")
-    assert desk.profiles == []
-
-
-@pytest.mark.soak
-@pytest.mark.parametrize("killed", ["window", "both"])
-def test_a_trial_goes_on_with_all_its_touches_after_a_kill(tmp_path, killed):
-    with VirtualDisplay(SIZE) as display, LoopThread() as thread, contextlib.ExitStack() as stack:
-        desk = Desk(tmp_path, display, thread)
-        stack.enter_context(desk.simulator)
-        trainee = desk.trainee(stack)
-        send(trainee.client, "StartTask", {"task": "task-1", "trainee": "P07"})
-        trainee.until(lambda: desk.view.scene["task"] == "task-1", "the scene")
-        trainee.until_running()
-        trainee.have_touched(3)
-        window = desk.processes
-        os.kill(window[0], signal.SIGKILL)
-        if killed == "both":
-            desk.simulator.kill()
-        wait_until(lambda: not any(map(runs, window)), "the end of the window's processes")
-        if killed == "window":
-            assert desk.simulator.stop()[0] == 0
-        again = Desk(tmp_path, display, thread)
-        with again.simulator:
-            trainee = again.trainee(stack)
-            trainee.resume()
-            trainee.have_touched(5)
-            assert len(again.profiles) == 1
-            assert again.simulator.stop()[0] == 0
-        assert again.profiles == []
 
 
 def test_without_a_browser_the_simulator_says_what_to_do(tmp_path):

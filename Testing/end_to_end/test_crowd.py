@@ -19,8 +19,8 @@ def test_many_clients_and_views_at_once_are_all_served(tmp_path, clients, views)
     begin = multiprocessing.get_context("spawn")
     results = begin.Queue()
     with ViewedSimulator(tmp_path / "records", "--view-port", "0") as simulator:
-        ports = (simulator.port, simulator.view_port, simulator.key)
-        asked = (*ports, SECONDS, results, clients, views)
+        address = (simulator.port, simulator.view_port, simulator.key)
+        asked = (address, SECONDS, results, clients, views)
         crowd = begin.Process(target=serve_crowd, args=asked, daemon=True)
         crowd.start()
         served = results.get(timeout=TIMEOUT_S)
@@ -28,6 +28,6 @@ def test_many_clients_and_views_at_once_are_all_served(tmp_path, clients, views)
     assert served.dropped == served.lost == 0
     assert len(served.echoes) == clients
     assert all(served.echoes)
-    assert all(served.tool_tips)
+    assert all(served.poses)
     assert len(served.states) == views
     assert all(served.states)

@@ -87,7 +87,7 @@ def simulation():
     ("trials", "longest_s"), [(2, 0.2), pytest.param(1000, 12.0, marks=pytest.mark.soak)]
 )
 def test_trials_arrive_exactly_once_through_faults_and_restarts_on_both_sides(
-    simulation, loop_thread, tmp_path, capsys, trials, longest_s
+    simulation, loop_thread, tmp_path, trials, longest_s
 ):
     rng, ends, scored = random.Random(2), [0, 0], []
     records, study = tmp_path / "records", tmp_path / "study.db"
@@ -135,5 +135,3 @@ def test_trials_arrive_exactly_once_through_faults_and_restarts_on_both_sides(
     assert TrialArchive(records).unacknowledged() == ()
     assert find_unacknowledged(records) == []
     assert sum(proxy.faults.values()) >= 3
-    with capsys.disabled():
-        print(f"\n{trials} trials: {proxy.faults}; Slicer's side and the server ended {ends}")

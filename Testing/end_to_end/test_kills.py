@@ -15,7 +15,7 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.database.study import Study
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.interrupted_trial import InterruptedTrial
-from rastrainer_simulator.record.trial_archive import SUFFIX, TrialArchive, find_unacknowledged
+from rastrainer_simulator.record.trial_archive import SUFFIX, find_unacknowledged
 from Testing.end_to_end.finished_trials import COLIN, TRAINEE
 from Testing.end_to_end.fork_server import SIMULATOR, SLICER_SIDE, shared_fork_server
 from Testing.end_to_end.simulator_process import READY
@@ -127,30 +127,10 @@ def wait_for_study(lab, is_complete):
 
 
 @pytest.mark.parametrize(
-    ("kills", "resumed"), [(4, 2), pytest.param(300, 150, marks=pytest.mark.soak)]
-)
-def test_a_repeatedly_killed_server_resumes_where_the_trainee_was(tmp_path, capsys, kills, resumed):
-    """A kill between two trials leaves none to resume: there are more kills until so many were."""
-    lab, rng = Lab(tmp_path), random.Random(3)
-    player, killed = SurvivingPlayer(load_scenario(COLIN), rng), 0
-    while killed < kills or player.resumed < resumed:
-        end = lab.start_simulator()
-        assert not player.play(lab.port, Killing(rng, lambda end=end: end(signal.SIGKILL)), 1000)
-        killed += 1
-    end = lab.start_simulator()
-    assert player.play(lab.port, None, 1)
-    end(signal.SIGTERM)
-    check_records(lab, player)
-    offered = {record.trial_id for record in TrialArchive(lab.records).unacknowledged()}
-    assert offered >= player.registered
-    report(capsys, killed, player)
-
-
-@pytest.mark.parametrize(
     ("kills", "resumed"), [(2, 1), pytest.param(300, 100, marks=pytest.mark.soak)]
 )
 def test_a_trainee_whose_server_and_slicer_are_killed_loses_no_touch_and_doubles_no_trial(
-    tmp_path, capsys, kills, resumed
+    tmp_path, kills, resumed
 ):
     """Slicer's side is killed, alone or at once with the server; then all is delivered."""
     lab, rng = Lab(tmp_path), random.Random(8)
@@ -186,13 +166,3 @@ def test_a_trainee_whose_server_and_slicer_are_killed_loses_no_touch_and_doubles
     }
     assert len(stored) == len(records)
     assert stored == check_records(lab, player)
-    report(capsys, killed, player)
-
-
-def report(capsys, killed, player):
-    touches = sum(map(len, player.kept.values()))
-    with capsys.disabled():
-        print(
-            f"\n{killed} kills: {len(player.registered)} trials, {touches} touches, "
-            f"{player.resumed} times resumed"
-        )

@@ -33,10 +33,17 @@ def left(story):
     child.close()
 
 
-def test_opening_the_module_finds_a_leftover_simulator_which_can_be_joined_and_ended(story, left):
+def test_a_leftover_simulator_is_found_when_another_is_started_and_can_be_joined_and_ended(
+    story, request
+):
     host = story.host
     story.choose_own_program()
+    assert not host.find("runningSimulatorFrame").visible
+    left = request.getfixturevalue("left")
+    host.press("startSimulatorButton")
     assert "was not started from here is running" in host.text("runningSimulatorText")
+    assert host.text("programText") == "No simulator was started from here."
+    assert "--records" not in host.find("simulatorLogEdit").plainText
     host.press("connectToRunningButton")
     story.wait_until_connected()
     host.press("endRunningButton")
@@ -45,16 +52,3 @@ def test_opening_the_module_finds_a_leftover_simulator_which_can_be_joined_and_e
     assert host.text("stateText") == "Not connected."
     story.start_simulator()
     assert not host.find("runningSimulatorFrame").visible
-
-
-def test_starting_another_simulator_reveals_the_leftover_one_and_not_a_command_line_message(
-    story, request
-):
-    host = story.host
-    story.choose_own_program()
-    assert not host.find("runningSimulatorFrame").visible
-    request.getfixturevalue("left")
-    host.press("startSimulatorButton")
-    assert host.find("runningSimulatorFrame").visible
-    assert host.text("programText") == "No simulator was started from here."
-    assert "--records" not in host.find("simulatorLogEdit").plainText

@@ -24,11 +24,12 @@ from rastrainer_simulator.core.setup import SimulationSetup, load_setup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record.trial_archive import SUFFIX, TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
-from rastrainer_simulator.replay.resimulation import ReplayReport, replay
+from rastrainer_simulator.replay.resimulation import replay
 from rastrainer_simulator.virtual.play import play_virtual_trial
 from Testing.simulator.virtual.conftest import BRISK
 
 STEP_S = 0.05
+TRIALS = 100
 
 
 class Played(NamedTuple):
@@ -40,7 +41,7 @@ class Played(NamedTuple):
     compared_postures: int
 
 
-def played_trials(seeds: list[int]) -> list[Played]:
+def played_trials(seeds: range) -> list[Played]:
     setup = load_setup()
     simulation = Simulation(setup, seed=0)
     with tempfile.TemporaryDirectory() as folder:
@@ -59,7 +60,7 @@ def play(simulation: Simulation, setup: SimulationSetup, seed: int, folder: Path
     journal.unlink()
     touches_mm = MM_PER_M * np.array([one.position for one in simulation.state.training.touches])
     is_within = is_within_interval(touches_mm, task, seed, setup.scenario)
-    return Played(is_within, report.difference, *compared(report))
+    return Played(is_within, report.difference, report.compared["touch"], report.ticks)
 
 
 def is_within_interval(touches_mm: np.ndarray, task: str, seed: int, scenario: Scenario) -> bool:
@@ -74,28 +75,23 @@ def is_within_interval(touches_mm: np.ndarray, task: str, seed: int, scenario: S
     return bool(low <= true_tre_mm <= high)
 
 
-def compared(report: ReplayReport) -> tuple[int, int]:
-    return report.compared["touch"], report.ticks
+def test_a_played_trial_replays_to_the_last_bit():
+    check_replays(played_trials(range(1)))
 
 
-@pytest.fixture(scope="module", params=[3, pytest.param(100, marks=pytest.mark.soak)])
-def played(request) -> list[Played]:
-    seeds = list(range(request.param))
-    if len(seeds) < 10:
-        return played_trials(seeds)
+@pytest.mark.soak
+def test_true_errors_of_played_trials_lie_in_the_reported_interval_as_often_as_stated():
     with multiprocessing.get_context("spawn").Pool(2) as pool:
-        first, second = pool.map(played_trials, [seeds[0::2], seeds[1::2]])
-    return first + second
-
-
-def test_the_true_target_error_lies_in_the_reported_interval_as_often_as_stated(played):
-    expected = 0.95 * len(played)
+        halves = pool.map(played_trials, [range(0, TRIALS, 2), range(1, TRIALS, 2)])
+    played = [trial for half in halves for trial in half]
+    check_replays(played)
+    expected = 0.95 * TRIALS
     # Three standard deviations of so many trials.
     fewest = expected - 3.0 * math.sqrt(0.05 * expected)
     assert sum(trial.is_within_interval for trial in played) >= fewest
 
 
-def test_recorded_trials_replay_with_the_same_joints_and_touches_to_the_last_bit(played):
+def check_replays(played: list[Played]) -> None:
     assert [trial.difference for trial in played] == [None] * len(played)
     assert all(trial.compared_touches >= 15 for trial in played)
     assert all(trial.compared_postures > 100 for trial in played)

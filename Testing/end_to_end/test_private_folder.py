@@ -72,13 +72,6 @@ def run(words):
     return [*lines, *child.takeLines()]
 
 
-def test_doctor_names_pinocchio_even_if_only_a_pth_file_leads_to_it(from_slicer, folder):
-    lines = run(private_command(from_slicer, folder, PROGRAM, "doctor"))
-    wanted = f"Pinocchio {metadata.version('pin')} computes the robot's kinematics."
-    assert any(wanted in line for line in lines), lines
-    assert not any("PROBLEM" in line.upper() and "python" in line for line in lines), lines
-
-
 def test_a_program_sees_no_package_of_slicer_and_the_environment_before_its_launcher(
     from_slicer, folder
 ):

@@ -66,59 +66,51 @@ def test_a_procedure_is_edited_checked_and_saved_in_a_copy_of_its_scenario(host,
     assert host.find("procedureComboBox").count == 4
 
 
-def test_lines_are_placed_by_two_clicks_and_models_become_no_go_structures(host):
-    host.open()
-    host.choose("procedureKindComboBox", "Stereo-EEG")
+def place_line(host, count):
+    """Place a line by two clicks; it is the last of so many."""
     host.press("placeLineButton")
     host.place(0.0, -20.0, 100.0)
     host.place(2.0, -15.0, 5.0)
-    host.wait_until(lambda: cells(host) and cells(host)[0][1] == "95.2", "its length is shown")
-    assert host.find("checkLinesButton").enabled
-    model = host.scene.AddNewNodeByClass("vtkMRMLModelNode", "Vein")
-    host.choose("noGoComboBox", model)
-    host.press("noGoButton")
-    assert host.text("noGoText") == "To keep away from: Vein"
-    assert host.text("noGoButton") == "Ignore"
-    host.press("noGoButton")
-    assert host.text("noGoText") == "To keep away from: –"
-    host.choose("linesTable", 0)
-    host.press("removeLineButton")
-    assert planLines(host.scene) == []
-    assert not host.find("saveProcedureButton").enabled
+    host.wait_until(lambda: [row[1] for row in cells(host)] == ["95.2"] * count, "its length")
 
 
-def test_buttons_reorder_lines_and_place_a_checkpoint(host):
+def names(host):
+    return [row[0] for row in cells(host)]
+
+
+def test_buttons_place_reorder_remove_and_restore_lines_and_mark_what_to_keep_away_from(host):
     host.open()
-    for name in ("First", "Second"):
-        host.press("placeLineButton")
-        host.place(0.0, -20.0, 100.0)
-        host.place(2.0, -15.0, 5.0)
-        host.wait_until(lambda: cells(host) and cells(host)[-1][1] == "95.2", "its length")
-        host.choose("linesTable", len(cells(host)) - 1)
+    host.choose("procedureKindComboBox", "Stereo-EEG")
+    for count, name in enumerate(("First", "Second"), start=1):
+        place_line(host, count)
+        host.choose("linesTable", count - 1)
         host.type("lineNameLineEdit", name)
-    assert [row[0] for row in cells(host)] == ["First", "Second"]
+    assert host.find("checkLinesButton").enabled
     host.press("raiseLineButton")
-    assert [row[0] for row in cells(host)] == ["Second", "First"]
+    assert names(host) == ["Second", "First"]
     assert [line.GetName() for line in planLines(host.scene)] == ["Second", "First"]
     assert host.text("lineNameLineEdit") == "Second"
     assert not host.find("raiseLineButton").enabled
-    host.choose("linesTable", 1)
-    host.wait_until(lambda: host.find("raiseLineButton").enabled, "the second line can be raised")
-    host.press("raiseLineButton")
-    assert [row[0] for row in cells(host)] == ["First", "Second"]
     host.type("lineDiameterSpinBox", "2.0")
     kept = cells(host)[0], worldPoints(planLines(host.scene)[0]).tolist()
     for _line in range(2):
         host.choose("linesTable", 0)
         host.press("removeLineButton")
-    assert cells(host) == []
+    assert cells(host) == planLines(host.scene) == []
+    assert not host.find("saveProcedureButton").enabled
     for _line in range(2):
         host.press("restoreLineButton")
-    assert [row[0] for row in cells(host)] == ["First", "Second"]
     first, second = planLines(host.scene)
+    assert names(host) == ["Second", "First"]
     assert (cells(host)[0], worldPoints(first).tolist()) == kept
-    assert (instrumentOf(first)[0], instrumentOf(second)[0]) == (2.0, 1.3)
+    assert instrumentOf(first)[0] == 2.0 != instrumentOf(second)[0]
     assert not host.find("restoreLineButton").enabled
+    model = host.scene.AddNewNodeByClass("vtkMRMLModelNode", "Vein")
+    host.choose("noGoComboBox", model)
+    for text, following in (("Vein", "Ignore"), ("–", "Keep away")):
+        host.press("noGoButton")
+        assert host.text("noGoText") == f"To keep away from: {text}"
+        assert host.text("noGoButton") == following
     host.press("placeCheckpointButton")
     host.place(0.0, 80.0, 40.0)
     checkpoints = host.find("checkpointsComboBox").currentNode()

@@ -15,26 +15,18 @@ from Testing.slicer.head.debian_heads import COLIN27, CT_PROJECT, write_ct
 
 pytestmark = pytest.mark.soak
 RASTRAINER = [sys.executable, "-m", "rastrainer_simulator.cli.main", "scenario"]
-MISSING = "{path} is missing; install it: sudo apt-get install {package}"
 
 
-@pytest.fixture
-def ct(tmp_path):
-    """The CT, as a file that Slicer reads."""
-    assert CT_PROJECT.is_file(), MISSING.format(path=CT_PROJECT, package="invesalius-examples")
-    return write_ct(tmp_path / "ct.nrrd")
-
-
-@pytest.fixture
-def mri():
-    """The MRI Colin27."""
-    assert COLIN27.is_file(), MISSING.format(path=COLIN27, package="mricron-data")
-    return COLIN27
-
-
-@pytest.mark.parametrize(("volume", "kind"), [("mri", "approximation"), ("ct", "bone")])
-def test_a_real_head_becomes_a_sound_scenario(request, tmp_path, volume, kind):
-    path, folder = request.getfixturevalue(volume), tmp_path / "made"
+@pytest.mark.parametrize(
+    ("path", "package", "kind"),
+    [
+        pytest.param(COLIN27, "mricron-data", "approximation", id="mri"),
+        pytest.param(CT_PROJECT, "invesalius-examples", "bone", id="ct"),
+    ],
+)
+def test_a_real_head_becomes_a_sound_scenario(tmp_path, path, package, kind):
+    assert path.is_file(), f"{path} is missing; install it: sudo apt-get install {package}"
+    path, folder = write_ct(tmp_path / "ct.nrrd") if kind == "bone" else path, tmp_path / "made"
     subprocess.run([*RASTRAINER, "build", str(path), "-o", str(folder)], check=True)
     scenario = load_scenario(folder)
     mesh = read_head_mesh(scenario.head)

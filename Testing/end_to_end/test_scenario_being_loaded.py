@@ -157,19 +157,6 @@ def test_a_trial_waits_until_the_head_is_loaded_no_matter_who_starts_it(
     assert replay(read_journal(journal), load_setup(ball)).difference is None
 
 
-def test_trials_start_on_the_previous_head_after_another_one_failed_to_load(
-    simulator, instructor, other, ball
-):
-    (ball / "head.ply").write_bytes(b"no mesh")
-    loading = instructor.begin("LoadScenario", folder=str(ball))
-    with simulator.being_loaded():
-        assert other.start("task-1").error == LOADING
-    failed = loading.result(PATIENCE_S)
-    assert not failed.ok
-    assert "head.ply" in failed.error
-    assert other.start("task-1").ok
-
-
 def test_a_client_that_leaves_while_its_scenario_is_loading_blocks_nobody(simulator, other, ball):
     with Peer(simulator.port) as leaving:
         leaving.begin("LoadScenario", folder=str(ball))
@@ -181,18 +168,3 @@ def test_a_client_that_leaves_while_its_scenario_is_loading_blocks_nobody(simula
     task = other.ask("ListTasks").data["tasks"][0]["name"]
     wait_until(lambda: other.start(task).error != LOADING, "the trial")
     assert phase(other) == "running"
-
-
-def test_a_trial_and_a_scenario_wait_while_other_settings_are_applied(
-    simulator, instructor, menu, ball
-):
-    menu.go("settings", "settings")
-    menu.go("fine", "settings")
-    with simulator.being_loaded():
-        assert instructor.start("task-1").error == LOADING
-        assert instructor.ask("LoadScenario", folder=str(ball)).error == LOADING
-    wait_until(lambda: instructor.start("task-1").error != LOADING, "the trial")
-    assert phase(instructor) == "running"
-    (journal,) = simulator.records.glob(f"*{SUFFIX}")
-    settings = read_journal(journal).header.settings
-    assert settings["teleoperation"]["fineSpeed"] != load_setup().settings.teleoperation.fine_speed

@@ -2,31 +2,21 @@
 
 from __future__ import annotations
 
-import json
 import os
 import signal
 import subprocess
 import sys
 import tempfile
 
-import numpy as np
 import pytest
 
-from rastrainer.head.mesh import HeadMesh
-from rastrainer.igtl.client import Client
 from rastrainer.scenario.library import pack, user_library
-from rastrainer.scenario.scenario import load_scenario
-from rastrainer.scenario.writer import HeadDraft, new_folder, write_scenario
-from rastrainer.sections.new_scenario_logic import HEAD_SHARE, planScenario
+from rastrainer.scenario.writer import new_folder, write_scenario
 from rastrainer_simulator.authoring.make import head_process
 from rastrainer_simulator.cli.main import main
-from rastrainer_simulator.virtual.scripted_trial import send_hello
-from Testing.domain.head.spheres import sphere_mesh
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario, png
-from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.slicer.head.phantoms import CT, phantom
 from Testing.slicer.head.volume_file import write_volume
-from Testing.slicer.simulator_double import wait_until
 
 RASTRAINER = [sys.executable, "-m", "rastrainer_simulator.cli.main"]
 
@@ -132,76 +122,3 @@ def test_canceling_also_ends_the_process_that_extracts_the_head(ct, temporary, m
         process.head(progress, lambda _warning: None)
     assert [process.returncode in (None, 0) for process in started] == [False]
     assert not list(temporary.iterdir())
-
-
-PLANNER = """
-import shutil, sys
-print(" 50%  Placing fiducials\\nWarning: The tumor lies too deep.\\n100%  Done")
-shutil.copytree({made!r}, sys.argv[sys.argv.index("-o") + 1])
-"""
-
-
-def test_warnings_of_the_planner_are_shown_beside_those_of_the_head(tmp_path):
-    made = tmp_path / "made"
-    with new_folder(made) as folder:
-        write_scenario(folder, made_up_scenario(), ball_head())
-    (tmp_path / "planner.py").write_text(PLANNER.format(made=str(made)))
-    warnings = planScenario(
-        lambda _tell: (HeadDraft(ball_head(), "made up"), ["The slices are far apart."]),
-        tmp_path / "built",
-        (),
-        [sys.executable, str(tmp_path / "planner.py")],
-    )
-    assert load_scenario(tmp_path / "built").folder == tmp_path / "built"
-    assert warnings == ["The slices are far apart.", "The tumor lies too deep."]
-
-
-def test_a_canceled_build_leaves_nothing(tmp_path):
-    def progress(_step, share):
-        # At the planner's second step, or at the next that is seen.
-        if share > HEAD_SHARE:
-            raise CanceledError
-
-    sphere = sphere_mesh(3)
-    vertices = np.maximum(sphere.vertices, [-np.inf, -np.inf, -70.0])
-    draft = HeadDraft(HeadMesh(vertices, sphere.triangles), "made up")
-    with pytest.raises(CanceledError):
-        planScenario(
-            lambda _tell: (draft, []), tmp_path / "made", (), RASTRAINER, progress=progress
-        )
-    # The planning process removes its partial results, and ends.
-    wait_until(lambda: not list(tmp_path.iterdir()), lambda: None, 60.0)
-
-
-@pytest.fixture
-def environment(tmp_path, monkeypatch):
-    """A separate home for the user, here and in the processes."""
-    for name in ("HOME", "USERPROFILE"):
-        monkeypatch.setenv(name, str(tmp_path))
-    return dict(os.environ)
-
-
-def trains_on(port, name, title):
-    """Load a scenario by its name into a running simulator, and begin a trial on it."""
-    with Client(port=port) as client:
-        send_hello(client, "test")
-        loaded = client.send_command("LoadScenario", {"folder": name}, timeout=60)
-        assert (loaded.ok, loaded.error) == (True, "")
-        assert dict(loaded.data) == {"name": name, "title": title}
-        listed = client.send_command("ListTasks", {}, timeout=60)
-        assert listed.data["scenario"] == name
-        task = listed.data["tasks"][0]["name"]
-        started = client.send_command("StartTask", {"task": task, "trainee": "anna"}, timeout=60)
-        assert (started.ok, started.error) == (True, "")
-        state = client.wait_for(
-            "SimState", lambda message: json.loads(message.content.text)["phase"] == "running", 60
-        )
-        assert json.loads(state.content.text)["task"] == task
-
-
-def test_a_scenario_from_the_library_is_loaded_by_name_and_trained_on(environment, tmp_path):
-    with new_folder(user_library() / "ball") as made:
-        write_scenario(made, made_up_scenario(), ball_head())
-    options = ("--no-views", "--no-gamepad")
-    with SimulatorProcess(tmp_path / "records", *options, env=environment) as simulator:
-        trains_on(simulator.port, "ball", "A ball")

@@ -2,23 +2,15 @@
 
 from __future__ import annotations
 
-import uuid
-
-import pytest
-
 from rastrainer.igtl.client import Client
 from rastrainer.json_records import record_to_json
 from rastrainer.number_text import with_units
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.study.curriculum.curriculum import Curriculum
-from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import standing_in
-from rastrainer.study.database.study import Study
 from rastrainer.study_messages import Assignment, StudyStep
 from rastrainer.trial.trial_row import TrialRow
-from Testing.domain.trial.trial_records import gentle_score, make_record
 from Testing.end_to_end.simulator_process import MenuView, ViewedSimulator, items_of
-from Testing.end_to_end.study_side import STUDY, StudySide
 
 
 def enabled(menu):
@@ -90,26 +82,3 @@ def test_the_trainees_menu_offers_what_slicer_sends_of_a_study_and_of_a_curricul
                     lambda menu, name=name: items_of(menu)["trainee"]["value"] == name,
                 )
             assert "assignments" not in items_of(menu)
-
-
-@pytest.mark.soak
-def test_the_module_sends_the_simulator_a_trainees_progress_including_that_from_another_seat(
-    loop_thread, tmp_path
-):
-    path = tmp_path / STUDY
-    with Study.open(path) as study:
-        study.create_trainee("P08")
-        CurriculumStore(study).choose(TWO)
-    with (
-        ViewedSimulator(tmp_path / "records") as simulator,
-        StudySide(tmp_path, simulator.port),
-        MenuView(loop_thread, simulator) as view,
-    ):
-        view.go_to_experiment("P08")
-        view.until_menu("experiment", lambda menu: "0 of 2 reached" in states(menu))
-        assert states(view.go("assignments", "assignments")) == [with_units("0 / 1"), "locked"]
-        with Study.open(path) as study:
-            record = make_record(trialId=str(uuid.uuid4()), trainee="P08")
-            study.add_trial(record, score=gentle_score(60.0, 0.2))
-        menu = view.until_menu("assignments", lambda menu: "reached" in states(menu))
-        assert states(menu) == ["reached", with_units("0 / 1")]

@@ -26,46 +26,21 @@ NOT_IN_THE_TOUR = {
 TOUR = Path(__file__).parents[1] / "slicer" / "real" / "tour.py"
 
 
-QUIET = ("--no-views", "--no-gamepad")
-"""The options of a simulator in which no one plays."""
-
-
-WITHOUT_A_TRIAL = (
-    "Open the module",
-    "Connect to a web page",
-    "Start and connect",
-    "Create a trainee",
-    "Show scenario and robot",
-    "Delete the trainee and stop",
-)
-
-
-def test_the_tour_steps_that_need_no_trial_succeed_in_the_host(host, tmp_path):
-    steps = tour(host, tmp_path, QUIET, "--only", *WITHOUT_A_TRIAL)
-    assert [step["name"] for step in steps] == [*WITHOUT_A_TRIAL]
-
-
 @pytest.mark.soak
 def test_the_release_tour_succeeds_in_the_host(host, tmp_path):
-    steps = tour(host, tmp_path, FAST, "--patience", "1200")
-    assert len(steps) > 32
-    content = json.loads((tmp_path / "tour" / "tour.json").read_text())
-    assert content["unused"] == sorted(NOT_IN_THE_TOUR)
-
-
-def tour(host, tmp_path, options, *words):
-    """Take the tour with a simulator that is installed elsewhere; return its steps, all good."""
-    program = write_program(tmp_path / "rastrainer", tmp_path / "simulator.pid", options)
+    program = write_program(tmp_path / "rastrainer", tmp_path / "simulator.pid", FAST)
     slicer.app.settings().setValue(PROGRAM.key, str(program))
     # The usual port may be in use by another test that runs at the same time.
     slicer.app.settings().setValue(PORT.key, free_port())
-    status = host.run_script(TOUR, "--", "--output", str(tmp_path / "tour"), *words)
+    words = ("--output", str(tmp_path / "tour"), "--patience", "1200")
+    status = host.run_script(TOUR, "--", *words)
     content = json.loads((tmp_path / "tour" / "tour.json").read_text())
+    assert len(content["steps"]) > 32
+    assert content["unused"] == sorted(NOT_IN_THE_TOUR)
     assert [step["note"] for step in content["steps"] if not step["ok"]] == []
     assert content["errors"] == []
     assert status == 0
     assert len(list((tmp_path / "tour").glob("*.png"))) == len(content["steps"])
-    return content["steps"]
 
 
 def test_a_failing_step_and_an_error_in_the_log_end_slicer_with_an_error(host, tmp_path):

@@ -111,13 +111,8 @@ def test_ralph_answers_200_to_every_statement_and_204_to_repeats(ralph, study, t
     assert main([*words, "--home-page", "https://lab.example.org"]) == 0
     found = json.loads((tmp_path / "out" / "xapi" / "statements.json").read_text())
     assert len(found) >= 10 * TRAINEES
+    drills = draw_drills(np.random.default_rng(3), TRAINEES)
+    found += statements(StudyData("Drills", (), drills=drills), "https://lab.example.org")
     assert ralph.post(found) == 200
     for statement in found:
         assert ralph.post([statement]) == 204
-
-
-def test_ralph_answers_200_to_the_statements_of_drills(ralph):
-    drills = draw_drills(np.random.default_rng(3), TRAINEES)
-    found = statements(StudyData("Drills", (), drills=drills), "https://lab.example.org")
-    assert ralph.post(found) == 200
-    assert ralph.post(found[:1]) == 204

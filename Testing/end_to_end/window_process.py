@@ -86,11 +86,6 @@ class WindowProcess:
         """Return the names of the sounds that were played so far."""
         return self.page.evaluate("heard")
 
-    def wait_for_pictures(self, count: int = 1) -> None:
-        """Wait until a number of further pictures have been shown."""
-        wanted = len(self.pictures()) + count
-        wait_until(lambda: len(self.pictures()) >= wanted, "a picture")
-
     def wait_for_tick(self, tick: int) -> None:
         """Wait until the page shows that tick, or a later one."""
         wait_until(lambda: self.page.evaluate("page.state.tick") >= tick, "a picture of the tick")

@@ -33,14 +33,16 @@ FEW = {
     "agreement": 6,
     "target errors": 5,
     "learning": 10,
-    "null cohorts": 12,
+    "null cohorts": 8,
     "effect sizes": 20,
     "propagation": 3,
-    "groups": 4,
+    "groups": 3,
     "recovery": 3,
     "recovery intervals": 3,
     "aborted trials": 12,
     "sequences": 15,
+    "drill scores": 12,
+    "drill abilities": 12,
 }
 """Fewer data sets for costly tables."""
 COSTLY = {

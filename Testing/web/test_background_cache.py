@@ -15,7 +15,6 @@ BEGIN = """() => {
     if (camera === flat.camera && !camera.layers.isEnabled(0)) window.backgrounds++;
     render.call(stage.renderer, scene, camera);
   };
-  // Arm and view stay where a test puts them.
   page.place = page.take = () => {};
 }"""
 DRAW = """(seconds) => {
@@ -65,7 +64,6 @@ def test_a_moved_arm_is_drawn_over_the_kept_background_as_with_all_of_the_scene(
     assert np.mean(np.abs(kept - whole).max(axis=2) > 40) < 0.02
 
 
-@pytest.mark.parametrize("change", CHANGES)
-def test_the_background_is_drawn_again_once_it_has_changed(page, change):
-    assert drawn_backgrounds(page) == 0
-    assert drawn_backgrounds(page, CHANGES[change]) == 1
+def test_the_background_is_drawn_again_once_whatever_has_changed_in_it(page):
+    drawn = {name: drawn_backgrounds(page, change) for name, change in CHANGES.items()}
+    assert drawn == dict.fromkeys(CHANGES, 1)

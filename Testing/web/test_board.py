@@ -43,10 +43,6 @@ CELLS = """() => {
   const found = [...scroller.querySelectorAll("th, td, button")]
     .filter((part) => part.scrollWidth > part.clientWidth + 1)
     .map((part) => `${part.tagName} ${part.textContent} is cut off`);
-  const line = 44;
-  for (const { clientHeight, textContent } of scroller.querySelectorAll("thead button")) {
-    if (clientHeight > line) found.push(`${textContent} is on another line than its arrow`);
-  }
   scroller.scrollLeft = 10000;
   const { left } = scroller.querySelector("tbody th").getBoundingClientRect();
   const { left: edge } = scroller.getBoundingClientRect();
@@ -148,28 +144,6 @@ def test_a_teacher_adds_a_seat_by_keyboard_sees_it_change_gives_orders_and_remov
     page.context.close()
 
 
-CANCEL_AND_OPEN_AGAIN = """async () => {
-  const dialog = document.getElementById("dialog");
-  const closed = new Promise((done) => dialog.addEventListener("close", done));
-  dialog.querySelector("button[type=button]").click();
-  while (dialog.open) await null;
-  document.getElementById("add").click();
-  await closed;
-  await new Promise(requestAnimationFrame);
-  return dialog.open;
-}"""
-
-
-def test_a_form_opened_while_the_previous_one_closes_stays_open(browser, board):
-    page = open_board(browser, board)
-    page.click("#add")
-    assert page.evaluate(CANCEL_AND_OPEN_AGAIN)
-    page.keyboard.press("Escape")
-    page.wait_for_selector("dialog", state="hidden")
-    assert page.problems == []
-    page.context.close()
-
-
 def test_a_seat_is_watched_live_from_the_board(browser, board, simulator):
     board.add(simulator)
     page = open_board(browser, board)
@@ -216,20 +190,16 @@ def test_the_board_breaks_no_accessibility_rule_and_fits_every_size_in_its_own_l
     page.get_by_text(driven).first.wait_for()
     found = []
 
-    def look(what: str) -> None:
-        # The other sizes lie between these.
-        for size in ("narrowest", "laptop"):
-            resize(page, *SIZES[size])
-            wrong = page.evaluate(CUT_OFF) + page.evaluate(CELLS)
-            wrong += page.evaluate(VIOLATIONS) if size == "narrowest" else []
-            found.extend(f"{what}, {size}: {each}" for each in wrong)
+    def look(what: str, size: str = "narrowest") -> None:
+        resize(page, *SIZES[size])
+        wrong = page.evaluate(CUT_OFF) + page.evaluate(CELLS)
+        wrong += page.evaluate(VIOLATIONS) if size == "narrowest" else []
+        found.extend(f"{what}, {size}: {each}" for each in wrong)
 
+    # The other sizes lie between these.
+    look("tiles", "laptop")
     look("tiles")
     page.click("#add")
     look("form")
-    page.keyboard.press("Escape")
-    simulator.served.close()
-    page.wait_for_selector("#seats > li[data-link=away]")
-    look("away")
     page.context.close()
     assert found == []

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import contextlib
 
-import numpy as np
 import pytest
 
 from Testing.end_to_end.hands import Controllers, PageKeys
@@ -86,52 +85,29 @@ def relay(place):
         yield relay
 
 
-def begin(place, relay, browser, headset):
+@pytest.mark.soak
+@pytest.mark.parametrize(
+    ("fault", "headset"), [("cut", ""), ("stall", ""), ("stall", "metaQuest2")]
+)
+def test_a_cut_or_stalled_network_stops_the_arm_and_pauses_a_trial_that_then_goes_on(
+    place, relay, browser, fault, headset
+):
     page = open_page(browser, relay.url, place.code, headset, draws=False)
     if headset:
         enter_headset(page)
     trainee = place.carried_trainee((Controllers if headset else PageKeys)(page))
     trainee.begin("task-1", page)
     trainee.touch_all(TOUCHED)
-    return page, trainee
-
-
-def stands(place, trainee) -> bool:
-    """Return whether the arm stands still."""
-    before = trainee.tip
-    for _ in range(20):
-        place.view.next_state()
-    return np.linalg.norm(trainee.tip - before) < 1e-4
-
-
-@pytest.mark.soak
-def test_a_broken_connection_pauses_the_trial_which_resumes_when_it_is_restored(
-    place, relay, browser
-):
-    page, trainee = begin(place, relay, browser, "")
     trainee.hands.push(0.0, 0.0, 1.0, False)
-    relay.cut()
+    getattr(relay, fault)()
     trainee.until(lambda: place.view.state["phase"] == "paused", "the pause")
-    trainee.until(lambda: stands(place, trainee), "the arm's stop")
-    trainee.hands.push(0.0, 0.0, 0.0, False)
-    trainee.resume()
-    assert trainee.touched == TOUCHED
-    trainee.touch_all(TOUCHED + 1)
-    trainee.go_home()
-    page.context.close()
-
-
-@pytest.mark.soak
-@pytest.mark.parametrize("headset", ["", "metaQuest2"])
-def test_a_stalled_network_pauses_the_trial_and_is_reported(place, relay, browser, headset):
-    page, trainee = begin(place, relay, browser, headset)
-    relay.stall()
-    trainee.until(lambda: place.view.state["phase"] == "paused", "the pause")
+    trainee.until_still()
     if headset:
         wait_for(page, "page.headset.panels.warning.root.textContent.includes('was lost')")
-    else:
+    elif fault == "stall":
         page.wait_for_selector(LOST)
     relay.resume()
+    trainee.hands.push(0.0, 0.0, 0.0, False)
     trainee.resume()
     assert trainee.touched == TOUCHED
     trainee.touch_all(TOUCHED + 1)

@@ -8,7 +8,6 @@ from enum import Enum
 from pathlib import Path
 
 import pytest
-from coloraide import Color
 
 from rastrainer.number_text import with_units
 from rastrainer_simulator.presentation.screen import (
@@ -217,35 +216,6 @@ def test_the_browsers_focus_follows_the_simulators_and_has_a_name_and_a_role(
     told_page.wait_for_selector(said, state="attached")
 
 
-AROUND_MENU = """() => {
-  const found = [];
-  const menu = document.getElementById("menu");
-  const hidden = menu.scrollHeight - menu.clientHeight;
-  if (hidden > 1) found.push(`${hidden} px of the menu are hidden`);
-  for (const row of ["#status li", "#hints li, #control, #headset"]) {
-    const parts = [...document.querySelectorAll(row)].map((part) => part.getBoundingClientRect());
-    const top = Math.max(...parts.map((part) => part.top));
-    const bottom = Math.min(...parts.map((part) => part.bottom));
-    if (parts.length === 0 || top > bottom) found.push(`${row} take several rows`);
-  }
-  return found;
-}"""
-
-
-@pytest.mark.parametrize("language", LANGUAGES)
-def test_tasks_and_controls_are_shown_as_a_whole_on_larger_windows(
-    told_page, served, screens, language
-):
-    shown, found = screens(language), []
-    for size in ("laptop", "full HD"):
-        resize(told_page, *SIZES[size])
-        for name in ("start", "experiment", "controls"):
-            show(told_page, served, shown[name])
-            told_page.evaluate("frames_(1)")
-            found += [f"{name}, {size}: {each}" for each in told_page.evaluate(AROUND_MENU)]
-    assert found == []
-
-
 IN_FOCUS = """() => {
   return ["li[data-focus]", ".help"].map((selector) => {
     const part = document.querySelector(`#menu ${selector}`);
@@ -284,44 +254,6 @@ def test_typing_goes_on_in_a_field_while_another_item_appears(told_page, served)
     told_page.evaluate(LATER)
     told_page.keyboard.press("7")
     assert told_page.input_value("#menu input:focus") == "P7"
-
-
-TORN = """() => [...document.querySelectorAll("#menu :is(dt, dd)")].flatMap((value) => {
-  const text = value.firstChild.data;
-  const whole = /\\d\\s(?:mm|s|%)|(?:m[aá]x\\.|最大)\\s\\d|\\d+[.,]?\\d*[)）]|\\p{Script=Latin}+/gu;
-  return [...text.matchAll(whole)].filter(({ index, 0: found }) => {
-    const range = document.createRange();
-    range.setStart(value.firstChild, index);
-    range.setEnd(value.firstChild, index + found.length);
-    return range.getClientRects().length > 1;
-  }).map(() => text);
-})"""
-
-
-def test_no_word_of_a_fact_is_torn_and_no_number_from_its_unit_or_limit_on_a_phone(
-    told_page, served, screens
-):
-    resize(told_page, *SIZES["phone"])
-    for language in LANGUAGES:
-        shown = screens(language)
-        for name in ("match", "result", "procedure-errors", "tutorial-done"):
-            show(told_page, served, shown[name])
-            assert "mm" in told_page.inner_text("#menu dl")
-            assert told_page.evaluate(TORN) == [], f"{name} in {language}"
-
-
-DISABLED = """() => {
-  const item = document.querySelector("#menu li:not([data-focus]) > [aria-disabled=true]");
-  const { color, backgroundColor } = getComputedStyle(item);
-  return [color, backgroundColor, getComputedStyle(item.closest(".menu")).backgroundColor];
-}"""
-
-
-def test_disabled_items_are_legible(told_page, served):
-    items = (MenuItem("one", "One", is_enabled=False), MenuItem("two", "Two"))
-    show(told_page, served, Screen(menu=Menu("one", "One", items=items, focus="two")))
-    text, row, menu = map(Color, told_page.evaluate(DISABLED))
-    assert text.contrast(Color.layer([row, menu])) >= 4.5
 
 
 def test_a_selection_is_visible_with_forced_colors(told_page, served, screens):

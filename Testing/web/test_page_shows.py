@@ -48,17 +48,19 @@ DRAWN = """
 """
 
 
-def arrow(tone, height):
-    return ErrorArrow((0.5, 0.0, 0.4), (0.5, 0.0, height), tone)
-
-
-def test_arrows_appear_and_disappear_with_the_screen(page, served):
-    arrows = tuple(map(arrow, (Tone.GOOD, Tone.WARNING, Tone.ERROR), (0.41, 0.42, 0.43)))
-    served.tell(Screen(errors=arrows, hints=(Hint("Esc", "Result", "back"), Hint("D", "Turn"))))
-    wait_for(page, "page.errors.group.children.length === 6")
+def test_arrows_and_named_checkpoints_appear_and_disappear_with_the_screen(page, served):
+    place = (0.5, 0.0, 0.4)
+    ends = ((0.5, 0.0, height) for height in (0.41, 0.42, 0.43))
+    arrows = tuple(map(ErrorArrow, [place] * 3, ends, (Tone.GOOD, Tone.WARNING, Tone.ERROR)))
+    checkpoint = ErrorArrow(place, place, Tone.WARNING, "Left forehead")
+    hints = (Hint("Esc", "Result", "back"), Hint("D", "Turn"))
+    served.tell(Screen(errors=(*arrows, checkpoint), hints=hints))
+    wait_for(page, "page.errors.group.children.length === 8")
     drawn = page.evaluate(DRAWN)
-    assert [color for color, *_place in drawn] == ["8ff0d0", "ffe000", "ef5f66"]
-    assert [place for _color, *place in drawn] == [pytest.approx(list(each.end)) for each in arrows]
+    assert [color for color, *_ in drawn] == ["8ff0d0", "ffe000", "ef5f66", "ffe000"]
+    assert [end for _color, *end in drawn[:3]] == [pytest.approx(list(each.end)) for each in arrows]
+    named = "page.errors.group.children.filter((child) => child.isSprite)"
+    assert page.evaluate(f"{named}.map((name) => name.position.toArray())") == [list(place)]
     # A user with only a mouse can go back, too.
     assert page.locator("#hints button").count() == 1
     page.click("#hints button:has-text('Result')")
@@ -67,19 +69,6 @@ def test_arrows_appear_and_disappear_with_the_screen(page, served):
     pictures = [call[2:] for call in served.presenter.calls if call[0] == "on_picture"]
     # How much of it was loaded before depends on the pieces in which it came.
     assert (pictures[0], pictures[-1]) == (("", 0), ("", 1))
-    served.tell(Screen())
-    wait_for(page, "page.errors.group.children.length === 0")
-
-
-def test_a_checkpoint_has_its_name_above_it_and_others_have_none(page, served):
-    place = (0.5, 0.0, 0.4)
-    named = ErrorArrow(place, place, Tone.WARNING, "Left forehead")
-    served.tell(Screen(errors=(arrow(Tone.GOOD, 0.42), named)))
-    wait_for(page, "page.errors.group.children.length === 4")
-    sprites = "page.errors.group.children.filter((child) => child.isSprite)"
-    assert page.evaluate(f"{sprites}.map((sprite) => sprite.position.toArray())") == [list(place)]
-    wide, high = page.evaluate(f"{sprites}[0].scale.toArray().slice(0, 2)")
-    assert wide > 4 * high > 0.02
     served.tell(Screen())
     wait_for(page, "page.errors.group.children.length === 0")
 
@@ -152,19 +141,6 @@ def test_banners_have_the_colors_that_everybody_can_tell_apart(page, served):
         show(page, served, Screen(instruction=said, warnings=(said,)))
         for banner in ("#instruction", "#warnings li"):
             assert Color(page.eval_on_selector(banner, color)) == Color(wanted).convert("srgb")
-
-
-LEGEND = "Within 10\N{NO-BREAK SPACE}mm of traced points"
-
-
-def test_the_legend_is_shown_with_a_sample_of_the_paint(page, served):
-    served.tell(Screen(status=("Task 1",), coverage=LEGEND))
-    page.wait_for_selector("#status .legend")
-    assert page.inner_text("#status .legend") == LEGEND
-    sample = page.locator("#status .legend i")
-    assert sample.evaluate("e => getComputedStyle(e).backgroundColor") == "rgb(87, 181, 232)"
-    served.tell(Screen(status=("Task 1",)))
-    wait_for(page, "document.querySelector('#status .legend') === null")
 
 
 LISTEN = """

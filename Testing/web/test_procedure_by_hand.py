@@ -153,23 +153,21 @@ class Surgeon(Trainee):
         self.until_still()
 
 
-@pytest.fixture(scope="module", params=["gamepad", XR])
-def operated(tmp_path_factory, browser, request) -> dict:
-    """Carry out the biopsy; return the results."""
-    folder, device = tmp_path_factory.mktemp("operated"), request.param
+@pytest.mark.parametrize("device", ["gamepad", XR])
+def test_a_biopsy_is_carried_out_by_hand_alone_and_scored(tmp_path, browser, device):
     if device == "gamepad":
-        with Lab(folder, "--speed", "3", "--seed", "11") as lab:
-            return operate(lab, TurningGamepad(lab.simulator), device)
-    with Place(folder, "--speed", SLOW) as place:
+        with Lab(tmp_path, "--speed", "3", "--seed", "11") as lab:
+            operate(lab, TurningGamepad(lab.simulator), device)
+        return
+    with Place(tmp_path, "--speed", SLOW) as place:
         # No picture is needed: the panels are drawn, and an empty scene.
         page = open_page(browser, place.url, place.code, "metaQuest2", draws=False)
         enter_headset(page)
-        seen = operate(place, TurningControllers(page), device)
+        operate(place, TurningControllers(page), device)
         assert page.problems == []
-        return seen
 
 
-def operate(place: Place, hands: object, device: str) -> dict:
+def operate(place: Place, hands: object, device: str) -> None:
     surgeon = Surgeon(place.view, hands)
     slicer = place.start_slicer()
     surgeon.go_to_experiment()
@@ -180,65 +178,38 @@ def operate(place: Place, hands: object, device: str) -> dict:
     surgeon.register()
     surgeon.until(lambda: "FRE" in surgeon.view.screen.instruction.text, "a registration")
     surgeon.touch("checkpoint")
-    seen = {"checked": surgeon.view.screen.status}
+    assert any("mm off" in text for text in surgeon.view.screen.status)
     surgeon.next_step("accept", "aligning")
     surgeon.align_by_hand()
-    seen["aligned"] = surgeon.procedure["aim"]
+    aim = surgeon.procedure["aim"]
+    assert aim["entryDistanceMm"] <= ALIGNED_MM
+    assert aim["angleDeg"] <= ALIGNED_DEG
     surgeon.next_step("lock", "drilling")
     surgeon.until(lambda: surgeon.view.screen.ruler is not None, "the ruler")
     surgeon.feed_to(surgeon.ruler.inner_mm + PAST_INNER_MM)
     surgeon.next_step("insert", "inserting")
     surgeon.feed_to(surgeon.ruler.target_mm)
-    seen["inserted"] = surgeon.procedure["feedMm"], surgeon.ruler.target_mm
+    assert surgeon.procedure["feedMm"] == pytest.approx(surgeon.ruler.target_mm, abs=1.0)
     surgeon.next_step("release", "registered")
-    seen["slicer"] = slicer.results()
+    results = slicer.results()
     surgeon.until_menu("result")
-    seen["result"] = surgeon.menu.facts
+    first, second, *_others = surgeon.menu.facts
+    assert [first.label, second.label] == ["Score of the procedure", "Target point error (RMS)"]
+    scored = results["procedure"]
+    assert first.value.startswith(f"{scored['score']['score']:.0f}")
     surgeon.choose("procedure")
     surgeon.until_menu("procedure-errors")
-    seen["errors"] = [fact.label for fact in surgeon.menu.facts]
+    assert "Target point error" in [fact.label for fact in surgeon.menu.facts]
     surgeon.choose("lines")
     surgeon.until(lambda: len(surgeon.view.screen.errors) == 3, "the lines")
-    (seen["line"],) = place.entries("scored")[-1]["arguments"]["details"]["procedure"][
-        "trajectories"
-    ]
-    seen["events"] = [each["kind"] for each in place.view.events]
-    return seen | {"device": device, "operators": place.operators}
-
-
-def test_the_whole_procedure_is_carried_out_with_that_device_alone(operated):
-    assert operated["operators"] == {operated["device"]}
-    assert operated["slicer"]["record"]["mode"] == (
-        "hmd" if operated["device"] == XR else "desktop"
-    )
-
-
-def test_a_checkpoint_is_touched_and_its_error_shown(operated):
-    assert any("mm off" in text for text in operated["checked"])
-    assert "checkpoint" in operated["events"]
-
-
-def test_the_guide_is_brought_onto_the_line_by_hand_with_the_bulls_eye(operated):
-    aim, line = operated["aligned"], operated["line"]
-    assert aim["entryDistanceMm"] <= ALIGNED_MM
-    assert aim["angleDeg"] <= ALIGNED_DEG
+    events = {each["kind"] for each in place.view.events}
+    assert {"checkpoint", "bone", "through"} <= events
+    assert "blocked" not in events
+    details = place.entries("scored")[-1]["arguments"]["details"]
+    (line,), (slicers,) = details["procedure"]["trajectories"], scored["trajectories"]
     assert line["angleByHandDeg"] <= ALIGNED_DEG + 0.1
     assert line["radialByHandMm"] <= 3.0
-
-
-def test_the_ruler_brings_drill_and_needle_to_their_depths(operated):
-    depth_mm, target_mm = operated["inserted"]
-    assert depth_mm == pytest.approx(target_mm, abs=1.0)
-    assert {"bone", "through"} <= set(operated["events"])
-    assert "blocked" not in operated["events"]
-    assert abs(operated["line"]["depthByHandMm"]) <= 1.5
-
-
-def test_slicers_score_and_the_errors_are_shown(operated):
-    first, second, *_others = operated["result"]
-    assert [first.label, second.label] == ["Score of the procedure", "Target point error (RMS)"]
-    scored = operated["slicer"]["procedure"]
-    assert first.value.startswith(f"{scored['score']['score']:.0f}")
-    (line,) = scored["trajectories"]
-    assert line["targetPointError"]["mm"] == operated["line"]["targetMm"]
-    assert "Target point error" in operated["errors"]
+    assert abs(line["depthByHandMm"]) <= 1.5
+    assert slicers["targetPointError"]["mm"] == line["targetMm"]
+    assert place.operators == {device}
+    assert results["record"]["mode"] == ("hmd" if device == XR else "desktop")

@@ -16,7 +16,6 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer.sections.trial_logic import TrialLogic
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.analysis import TrialAnalysis
-from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.presentation.screen import Menu
 from Testing.end_to_end.faulty_proxy import SlicerSide
 from Testing.end_to_end.hands import Controllers, GamepadHands
@@ -162,39 +161,64 @@ class DrawingTrainee(Trainee):
         return head[:3, :3] @ place + head[:3, 3]
 
 
-@pytest.fixture(scope="module", params=["gamepad", XR])
-def drawn(tmp_path_factory, browser, request) -> dict:
-    """Choose the method, touch landmarks, draw, accept the match; return the results."""
-    folder, device = tmp_path_factory.mktemp("drawn"), request.param
-    options = ("--scenario", str(write_landmarked(folder / "scenario")), "--speed")
+@pytest.mark.parametrize("device", ["gamepad", XR])
+def test_a_trace_drawn_by_hand_is_registered_as_shown_and_scored_as_slicer_does(
+    tmp_path, browser, device
+):
+    options = ("--scenario", str(write_landmarked(tmp_path / "scenario")), "--speed")
     if device == "gamepad":
-        with Lab(folder, *options, "2", "--seed", "9", guidance="arrow") as lab:
-            return draw(lab, GamepadHands(lab.simulator), device)
-    with Place(folder, *options, SLOW, guidance="arrow") as place:
+        with Lab(tmp_path, *options, "2", "--seed", "9", guidance="arrow") as lab:
+            traced = draw(lab, GamepadHands(lab.simulator))
+            check_registered(lab, traced, device)
+        return
+    with Place(tmp_path, *options, SLOW, guidance="arrow") as place:
         # No picture is needed: the panels are drawn, and an empty scene.
         page = open_page(browser, place.url, place.code, "metaQuest2", draws=False)
         enter_headset(page)
-        seen = draw(place, Controllers(page), device, lambda: page.evaluate(DRAWN))
+        traced = draw(place, Controllers(page))
+        count, has_ring, is_painted = page.evaluate(DRAWN)
+        assert 0 < count <= traced.traced
+        assert (has_ring, is_painted) == (True, True)
+        check_registered(place, traced, device)
         assert page.problems == []
-        return seen
 
 
-def draw(place: Place, hands: object, device: str, look=lambda: None) -> dict:
+def draw(place: Place, hands: object) -> DrawingTrainee:
+    """Choose the method, touch landmarks, and draw where the rings are."""
     trainee = DrawingTrainee(place.view, hands)
     trainee.go_to_experiment()
     trainee.type_id(None)
     trainee.set_choice("method", METHOD)
     trainee.begin_task("task-1")
     trainee.touch_landmarks()
-    seen = {"device": device, "rings": trainee.draw_until(POINTS), "shown": look()}
-    seen["match"] = trainee.accept_match()
-    seen["result"] = {fact.label: fact.value for fact in trainee.menu.facts}
-    (registered,), (scored,) = place.entries("registration"), place.entries("scored")
-    seen["registered"], seen["scored"] = registered["arguments"], scored["arguments"]
-    seen["slicers"] = scored_by_slicer(place)
-    seen["touched"] = [entry["label"] for entry in place.entries("touch")]
-    seen["traced"], seen["operators"] = place.entries("trace"), place.operators
-    return seen
+    rings = trainee.draw_until(POINTS)
+    places = np.array([ring["positionMm"] for ring in rings])
+    assert len(places) >= POINTS // 20
+    assert np.linalg.norm(np.diff(places, axis=0), axis=1).min() > 10.0
+    return trainee
+
+
+def check_registered(place: Place, trainee: DrawingTrainee, device: str) -> None:
+    """Accept the match, and check what is shown, recorded, and computed by Slicer's side."""
+    shown = trainee.accept_match()
+    result = {fact.label: fact.value for fact in trainee.menu.facts}
+    (registration,), (scored,) = place.entries("registration"), place.entries("scored")
+    registered, slicers = registration["arguments"], scored_by_slicer(place)
+    assert place.operators == {device}
+    assert [entry["label"] for entry in place.entries("touch")] == [each.name for each in COARSE]
+    count = len(place.entries("trace"))
+    assert count >= POINTS > MIN_TRACE_POINTS
+    assert shown["Residual"] == with_units(f"{registered['freMm']:.2f} mm")
+    expected = with_units(f"{registered['expectedTreMm']:.2f} mm")
+    assert shown["Expected error at the target (TRE)"] == expected
+    assert registered["freMm"] < 1.0
+    assert registered["expectedTreMm"] < 3.0
+    assert float(result["True error at the target (TRE)"].removesuffix("mm")) < 5.0
+    assert registered["matrix"] == slicers.rigid.matrix.ravel().tolist()
+    assert registered["freMm"] == slicers.rigid.fre_mm
+    assert scored["arguments"]["score"] == slicers.score.score
+    assert slicers.record.method is RegistrationMethod.SURFACE
+    assert len(slicers.record.trace) == count
 
 
 def scored_by_slicer(place: Place) -> TrialAnalysis:
@@ -208,46 +232,3 @@ def scored_by_slicer(place: Place) -> TrialAnalysis:
     wait_until(lambda: slicer.run_for(10) or scored, "Slicer's score")
     slicer.close()
     return scored[0]
-
-
-def test_landmarks_and_trace_are_recorded_with_that_device_alone(drawn):
-    assert drawn["operators"] == {drawn["device"]}
-    assert drawn["touched"] == [landmark.name for landmark in COARSE]
-    assert len(drawn["traced"]) >= POINTS > MIN_TRACE_POINTS
-
-
-@pytest.mark.parametrize("drawn", [XR], indirect=True)
-def test_the_headset_shows_the_points_the_paint_and_the_ring(drawn):
-    count, has_ring, is_painted = drawn["shown"]
-    assert 0 < count <= len(drawn["traced"])
-    assert (has_ring, is_painted) == (True, True)
-
-
-def test_each_ring_leads_to_another_place(drawn):
-    places = np.array([ring["positionMm"] for ring in drawn["rings"]])
-    assert len(places) >= POINTS // 20
-    assert np.linalg.norm(np.diff(places, axis=0), axis=1).min() > 10.0
-
-
-def test_the_match_shown_to_the_trainee_is_the_one_that_is_registered(drawn):
-    shown, registered = drawn["match"], drawn["registered"]
-    assert shown["Residual"] == with_units(f"{registered['freMm']:.2f} mm")
-    expected = with_units(f"{registered['expectedTreMm']:.2f} mm")
-    assert shown["Expected error at the target (TRE)"] == expected
-    assert registered["freMm"] < 1.0
-    assert registered["expectedTreMm"] < 3.0
-
-
-def test_the_trial_is_scored_and_the_true_error_revealed(drawn):
-    assert drawn["scored"]["details"]["scoreVersion"] == SCORE_VERSION
-    true_error = drawn["result"]["True error at the target (TRE)"]
-    assert float(true_error.removesuffix("mm")) < 5.0
-
-
-def test_slicer_registers_and_scores_it_identically_to_the_last_digit_and_keeps_the_trace(drawn):
-    registered, slicers = drawn["registered"], drawn["slicers"]
-    assert registered["matrix"] == slicers.rigid.matrix.ravel().tolist()
-    assert registered["freMm"] == slicers.rigid.fre_mm
-    assert drawn["scored"]["score"] == slicers.score.score
-    assert slicers.record.method is RegistrationMethod.SURFACE
-    assert len(slicers.record.trace) == len(drawn["traced"])

@@ -12,7 +12,6 @@ import pytest
 
 from Testing.end_to_end.lab import Place
 from Testing.web.chromium import enter_headset, open_page
-from Testing.web.drill_player import begin_drill, play_case
 from Testing.web.trainees_on_page import (
     DESKTOP,
     PHONE,
@@ -39,7 +38,7 @@ def page_of(place, browser, *headset, **options):
         assert page.problems == []
 
 
-def test_two_thumbs_touch_undo_pause_steer_together_stop_the_arm_and_decide(place, browser):
+def test_two_thumbs_touch_undo_pause_steer_together_stop_the_arm_and_turn_the_view(place, browser):
     with page_of(place, browser, size=PHONE, has_touch=True) as page:
         trainee = TappingTrainee(place, page)
         trainee.begin("task-1")
@@ -65,12 +64,20 @@ def test_two_thumbs_touch_undo_pause_steer_together_stop_the_arm_and_decide(plac
             return {hint for hint in hints if "stick" not in hint} == {*buttons.all_inner_texts()}
 
         trainee.until(are_written, "the hints on the buttons")
+        before = place.view.state["view"]
+        drag_a_finger(page)
+        trainee.until(lambda: place.view.state["view"] != before, "another view")
         trainee.press("menu", lambda: trainee.menu is not None, "the menu")
         trainee.go_home()
-        begin_drill(trainee)
-        play_case(trainee, 1, checks=False)
-        trainee.choose("leave")
-        trainee.choose("leave")
+
+
+def drag_a_finger(page):
+    """Drag a finger over the picture."""
+    send = page.context.new_cdp_session(page).send
+    for kind, x in (("touchStart", 60), ("touchMove", 200), ("touchMove", 330)):
+        points = [{"id": 7, "x": x, "y": 300}]
+        send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+    send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
 
 
 def test_a_mouse_enters_an_id_drives_the_arm_and_opens_the_menu(place, browser):
@@ -100,9 +107,7 @@ def test_a_tracked_hand_touches_undoes_it_and_opens_the_menu(place, browser):
     with page_of(place, browser, "metaQuest3") as page:
         enter_headset(page)
         hand = HandTrainee(place, page)
-        hand.go_to_experiment()
-        hand.type_id()
-        hand.begin_task("task-1")
+        hand.begin("task-1")
         hand.touch("1")
         hand.press("undo", lambda: hand.touched == 0, "the undo")
         hand.press("menu", lambda: hand.menu is not None, "the menu")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -58,9 +58,10 @@ class AtPage(Trainee):
     """Reads what the page shows; types the ID on it, or chooses its letters."""
 
     types_on_page = False
+    use: Callable[[Page], Hands]
 
-    def __init__(self, place: Place, page: Page, hands: Hands):
-        super().__init__(place.view, hands)
+    def __init__(self, place: Place, page: Page, hands: Hands | None = None):
+        super().__init__(place.view, hands or type(self).use(page))
         self.place, self.page = place, page
 
     def type_id(self, page: Page | None = None) -> None:  # noqa: ARG002
@@ -93,24 +94,17 @@ class PadTrainee(AtPage):
 class BrowserPadTrainee(AtPage):
     """Uses a gamepad that the browser reads."""
 
-    def __init__(self, place: Place, page: Page):
-        super().__init__(place, page, BrowserPad(page))
+    use = BrowserPad
 
 
 class KeyTrainee(AtPage):
-    types_on_page = True
-
-    def __init__(self, place: Place, page: Page):
-        super().__init__(place, page, PageKeys(page))
+    types_on_page, use = True, PageKeys
 
 
 class ControllerTrainee(AtPage):
     """Uses a headset's controllers."""
 
-    types_on_page = True
-
-    def __init__(self, place: Place, page: Page):
-        super().__init__(place, page, Controllers(page))
+    types_on_page, use = True, Controllers
 
 
 class ListeningTrainee(KeyTrainee):
@@ -153,8 +147,7 @@ class OnPage(AtPage):
 class SteeringTrainee(OnPage):
     """Taps on menus, and does everything else with two thumbs."""
 
-    def __init__(self, place: Place, page: Page):
-        super().__init__(place, page, Thumbs(page))
+    use = Thumbs
 
     def choose_on_page(self, item: str) -> None:
         self.page.tap(f"#menu li[data-name='{item}'] button")
@@ -177,8 +170,7 @@ class TappingTrainee(SteeringTrainee, CarriedTrainee):
 class ClickingTrainee(OnPage):
     """Does everything by the mouse."""
 
-    def __init__(self, place: Place, page: Page):
-        super().__init__(place, page, PageMouse(page))
+    use = PageMouse
 
     def choose_on_page(self, item: str) -> None:
         self.hands.click(item)
@@ -194,11 +186,10 @@ class ClickingTrainee(OnPage):
         assert self.value("trainee") == f"{before}{TRAINEE}"
 
     def begin_task(self, task: str) -> None:
-        """Go to a task, or the tutorial, with sticks on the screen."""
+        """Go to a task with sticks on the screen."""
         self.choose(task)
         self.until_menu(None)
-        shown = "trial-run" if task == "tutorial" else task
-        self.until(lambda: self.view.scene["task"] == shown, "the scene")
+        self.until(lambda: self.view.scene["task"] == task, "the scene")
         if not self.view.screen.has_sticks:
             self.hands.click("press sticks")
         self.until(lambda: self.view.screen.has_sticks, "the sticks")
@@ -207,8 +198,7 @@ class ClickingTrainee(OnPage):
 class HandTrainee(OnPage):
     """Pinches at the panels' buttons; elsewhere the tip follows the pinching hand."""
 
-    def __init__(self, place: Place, page: Page):
-        super().__init__(place, page, TrackedHands(page))
+    use = TrackedHands
 
     def choose_on_page(self, item: str) -> None:
         while not (parts := self.parts() & {item, "scroll down"}):

@@ -15,11 +15,9 @@ from rastrainer.igtl.client import Client
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.virtual.scripted_trial import send_hello
-from Testing.end_to_end.onto_skin import lower_onto_skin
+from rastrainer_simulator.virtual.scripted_trial import send, send_hello
+from Testing.end_to_end.onto_skin import carry_to, lower_onto_skin
 
-SPEED_MM_S = 400
-NEAR_ENOUGH_MM = 1.5
 ABOVE_MM = 40.0
 
 
@@ -45,11 +43,11 @@ class Player:
 
     def capture(self) -> None:
         """Start touching the skin where the tip is."""
-        self._begin(lambda client: _do(client, "Capture"))
+        self._begin(lambda client: send(client, "Capture", {}))
 
     def register(self) -> None:
         """Start registering the touched points."""
-        self._begin(lambda client: _do(client, "Register"))
+        self._begin(lambda client: send(client, "Register", {}))
 
     @property
     def is_done(self) -> bool:
@@ -73,14 +71,14 @@ class Player:
     def _touch(self, client: Client, first: int, last: int) -> None:
         for number in range(first, last + 1):
             above = self._lower(client, number)
-            _do(client, "Capture")
-            _move_to(client, above)
+            send(client, "Capture", {})
+            carry_to(client, above)
 
     def _lower(self, client: Client, number: int) -> np.ndarray:
         """Lower the tip onto a point; return the place above it."""
         state = json.loads(client.wait_for("SimState", timeout=60).content.text)
         above, fiducial, center = list(self._places(state["trialId"]))[number - 1]
-        _move_to(client, above)
+        carry_to(client, above)
         lower_onto_skin(client, fiducial, center)
         return above
 
@@ -94,16 +92,3 @@ class Player:
         for fiducial in transforms.apply(head_to_world, fiducials):
             outward = (fiducial - center) / np.linalg.norm(fiducial - center)
             yield fiducial + ABOVE_MM * outward, fiducial, center
-
-
-def _do(client: Client, name: str, **arguments: object) -> None:
-    reply = client.send_command(name, arguments, timeout=60)
-    assert reply.ok, f"{name}: {reply.error}"
-
-
-def _move_to(client: Client, place: np.ndarray) -> None:
-    def is_there(tip) -> bool:
-        return np.linalg.norm(np.array(tip.content.matrix)[:3, 3] - place) < NEAR_ENOUGH_MM
-
-    _do(client, "MoveTipTo", positionMm=place.tolist(), speedMmS=SPEED_MM_S)
-    client.wait_for("ToolTipToWorld", is_there, 60)
