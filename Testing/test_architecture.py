@@ -9,7 +9,6 @@ import ast
 import functools
 import re
 import sys
-from collections import Counter
 from collections.abc import Iterable, Iterator
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
@@ -228,13 +227,6 @@ def test_the_logic_of_each_section_works_without_qt():
 def test_slicer_and_qt_parts_are_imported_only_where_allowed(part):
     modules = (module for module in FILES if f"{module}.".startswith(f"{part}."))
     assert not outsiders(modules) & FORBIDDEN[part]
-
-
-def test_no_class_of_the_product_has_the_name_of_another():
-    names = [
-        node.name for module in FILES for node in nodes_of(module) if isinstance(node, ast.ClassDef)
-    ]
-    assert [name for name, count in Counter(names).items() if count > 1] == []
 
 
 PAGE = ROOT / "RASTrainerSimulatorServer" / "web" / "src"

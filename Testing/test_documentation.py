@@ -130,19 +130,6 @@ def test_every_link_path_module_and_name_on_a_page_exists(page):
     assert {named for named in names_in(page) if not is_named(*named)} == set()
 
 
-def test_a_missing_path_or_name_would_be_detected():
-    assert is_path("docs/nothing.md")
-    assert not is_there("docs/nothing.md")
-    assert is_there("docs/tutorial.md")
-    assert is_there("tutorial.md")
-    assert not is_there("torial.md")
-    assert is_named("test_documentation.py", "is_named")
-    assert not is_named("test_documentation.py", "is_not_named")
-    assert is_module("rastrainer")
-    assert is_module("rastrainer.__version__")
-    assert not is_module("rastrainer.nothing")
-
-
 def test_the_architecture_page_describes_every_folder():
     described = set(CODE.findall(text_of("docs/architecture.md")))
     packages = [place for source in SOURCES for place in (ROOT / source).glob("rastrainer*")]

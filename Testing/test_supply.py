@@ -70,7 +70,7 @@ def asked_for(project: dict, extras: Iterable[str]) -> set[str]:
 
 
 @pytest.mark.skipif(sys.version_info < (3, 11), reason="the standard library reads no TOML")
-def test_each_lock_holds_every_package_that_the_project_requires():
+def test_each_lock_and_that_of_the_simulator_hold_what_the_project_requires():
     import tomllib
 
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -80,6 +80,8 @@ def test_each_lock_holds_every_package_that_the_project_requires():
     for lock in LOCKS:
         locked = set(re.findall(r"^([a-z0-9._-]+)==", lock.read_text(encoding="utf-8"), re.M))
         assert asked[lock.name] - locked == set(), lock.name
+    names = {pin.split("==")[0] for pin in pinned(SIMULATORS_LOCK)}
+    assert asked_for(project, ()) - names == set()
 
 
 def asked_of(requirements: Path) -> set[str]:
@@ -107,15 +109,6 @@ def test_slicer_sets_up_the_simulator_from_what_is_tested_minus_what_it_never_im
     names = {pin.split("==")[0] for pin in ours}
     assert names & left_out == set()
     assert left_out <= {pin.split("==")[0] for pin in whole}
-
-
-@pytest.mark.skipif(sys.version_info < (3, 11), reason="the standard library reads no TOML")
-def test_the_simulators_lock_holds_everything_the_project_cannot_do_without():
-    import tomllib
-
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    names = {pin.split("==")[0] for pin in pinned(SIMULATORS_LOCK)}
-    assert asked_for(project, ()) - names == set()
 
 
 def test_a_wheel_includes_the_notices_of_what_its_page_is_made_of(tmp_path):

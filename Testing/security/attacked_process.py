@@ -42,10 +42,10 @@ def settled(pid: int, client: Client, wanted: Cost) -> Cost:
             return cost
 
 
-def check_unharmed(before: Cost, after: Cost) -> None:
-    """Check that an attack has left nothing behind."""
-    assert after.descriptors <= before.descriptors + MAX_MORE_DESCRIPTORS
-    assert after.resident_mb - before.resident_mb <= MAX_GROWTH_MB
+def is_unharmed(before: Cost, after: Cost) -> bool:
+    """Return whether an attack has left nothing behind."""
+    has_grown = after.resident_mb - before.resident_mb > MAX_GROWTH_MB
+    return not has_grown and after.descriptors <= before.descriptors + MAX_MORE_DESCRIPTORS
 
 
 def counted_in_log(said: str) -> Counter[str]:

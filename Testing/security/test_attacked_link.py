@@ -8,7 +8,7 @@ from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Transform
 from rastrainer.igtl.message import Message
 from Testing.end_to_end.simulator_process import SimulatorProcess
-from Testing.security.attacked_process import check_unharmed, cost_of, counted_in_log, settled
+from Testing.security.attacked_process import cost_of, counted_in_log, is_unharmed, settled
 from Testing.security.link_attack import LinkAttack
 from Testing.security.mutated_messages import COMMANDS
 from Testing.security.wire_checker import SENT_TYPES
@@ -31,7 +31,8 @@ def attack(folder, warm_up: int, count: int, policed: int) -> None:
         before = settled(simulator.pid, good, quiet)
         attacked = LinkAttack(simulator.port, count, seed=10**6, policed=policed)
         attacked.run()
-        check_unharmed(before, settled(simulator.pid, good, before))
+        after = settled(simulator.pid, good, before)
+        assert is_unharmed(before, after), (before, after)
         good.send(PROBE)
         assert good.wait_for("Probe").content == PROBE.content
         assert good.send_command("ListTasks").ok

@@ -198,17 +198,6 @@ def test_neither_a_ghost_nor_a_replay_tells_a_client_where_the_head_is(place):
     assert all(np.allclose(pose, each[0], atol=1e-3) for each in poses.values() for pose in each)
 
 
-def test_no_two_trials_are_open_at_once_in_a_folder_of_records(place):
-    trial = place.player.do("StartTask", task=TASK, trainee="anna")["trialId"]
-    for trainee in ("anna", "ben"):
-        start = {"task": TASK, "trainee": trainee, "seed": 1}
-        refused = place.listener.send_command("StartTask", start, 60)
-        assert refused.data["code"] == "trial is open"
-    with pytest.raises(AssertionError, match=r"Another simulator .* records in"):
-        SimulatorProcess(place.records, "--no-views")
-    assert place.player.do("Abort")["trialId"] == trial
-
-
 def test_a_board_starts_no_step_of_a_study(place):
     step = StudyStep("anna", "trial", 3, 19, TASK, "desktop")
     place.player.do("StudyStep", **record_to_json(step))
