@@ -49,6 +49,7 @@ def test_two_thumbs_touch_undo_pause_steer_together_stop_the_arm_and_turn_the_vi
         trainee.press("menu", lambda: trainee.menu is not None, "the menu")
         page.wait_for_selector("#touch-controls", state="hidden")
         trainee.resume()
+        page.wait_for_selector("#touch-controls")
         trainee.until_still()
         start = trainee.tip.copy()
         trainee.hands.push(0.7, 0.0, 1.0)
