@@ -95,7 +95,7 @@ def _checkpoint(scenario: Any, header: dict[str, Any], number: int) -> tuple[Any
     from rastrainer import transforms
 
     head_to_world = scenario.perturbed_head_to_world(header.seed)
-    position = scenario.procedure(header.procedure.name).checkpoints[number - 1].position
+    position = scenario.procedure(header.procedure.name).checkpoints[number - 1].position_ras
     outward = np.asarray(position) - scenario.target.position_ras
     outward /= np.linalg.norm(outward)
     return transforms.apply(head_to_world, position), head_to_world[:3, :3] @ outward
