@@ -46,7 +46,8 @@ def showTable(
             array = vtk.vtkStringArray() if isText else vtk.vtkDoubleArray()
             array.SetName(title)
             for value in (*values, *[None] * (fewestRows - len(values))):
-                unknown = "" if isText else math.nan
+                # Where a saved row begins with an empty text, VTK cannot read it again.
+                unknown = "-" if isText else math.nan
                 array.InsertNextValue(unknown if value is None else value)
             node.AddColumn(array)
     return node
