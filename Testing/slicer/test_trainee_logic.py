@@ -115,7 +115,9 @@ def test_the_history_is_a_table_and_two_learning_curves_with_room_for_more(scene
     assert chart.GetTitle().endswith("(scores by fiducials and landmarks cannot be compared)")
 
 
-def test_true_and_expected_errors_of_all_trainees_are_a_table_and_a_plot(scene, logic, add_trial):
+def test_true_and_expected_errors_of_all_trainees_are_a_table_and_a_plot(
+    scene, logic, add_trial, tmp_path
+):
     trials = [add_trial(number, trainee=name) for number, name in ((1, "a"), (2, "b"), (30, "a"))]
     logic.study.change_trainee("b", archived=True)
     found = logic.inStudy(calibration)
@@ -136,6 +138,11 @@ def test_true_and_expected_errors_of_all_trainees_are_a_table_and_a_plot(scene, 
         for shown in ([], trials[:1]):
             draw_chart(showCalibration(scene, calibration_of(trial_rows(shown))), 200, 150)
             draw_chart(showLearningCurve(scene, "a", trials[:1]), 200, 150)
+        storage, again = slicer.vtkMRMLTableStorageNode(), slicer.vtkMRMLTableNode()
+        storage.SetFileName(str(tmp_path / "table.tsv"))
+        assert storage.WriteData(table)
+        assert storage.ReadData(again)
+        assert again.GetNumberOfRows() == table.GetNumberOfRows() == 2
     finally:
         messages.close()
     assert FAILURES.texts == []
