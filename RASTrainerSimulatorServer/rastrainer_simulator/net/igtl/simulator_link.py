@@ -103,9 +103,13 @@ class ClientCommands:
             command, arguments = self._waiting.popleft()
             self._waiting_bytes -= len(command.body)
             self._running += 1
-            answered = partial(self._answered, command)
             future = self._submit(self._connection, command.name, arguments)
-            future.add_done_callback(partial(self._loop.call_soon_threadsafe, answered))
+            future.add_done_callback(partial(self._note_answer, command))
+
+    def _note_answer(self, command: Command, done: Future[Answer]) -> None:
+        # What still waits when the simulator ends is refused after its event loop is closed.
+        with contextlib.suppress(RuntimeError):
+            self._loop.call_soon_threadsafe(self._answered, command, done)
 
     def _answered(self, command: Command, done: Future[Answer]) -> None:
         if self._connection.closed.is_set():
