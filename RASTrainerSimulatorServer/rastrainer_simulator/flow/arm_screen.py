@@ -103,8 +103,8 @@ class ArmScreen:
 
     def _advance_move(self) -> None:
         if self._move is not None and self._is_moving:
-            state = self._session.state
-            self._move.advance(state.sim_time, state.tip, self._session.controls.held)
+            session = self._session
+            self._move.advance(session.simulated_s, session.state.tip, session.controls.held)
 
     @property
     def _state(self) -> SimulationState:

@@ -25,7 +25,7 @@ TAKEN_OVER = 0.2
 class ArmMove:
     """Moves the tip along waypoints (World, m), the last of which is its goal.
 
-    Using the sticks ends it. Times are the simulation's: a slow machine gives the arm no less time.
+    Using the sticks ends it. Times are the simulation's: a slow one gives the arm no less time.
 
     Attributes:
         move_tip: begins a move of the tip to a place in mm, with a speed in mm/s.
@@ -36,14 +36,14 @@ class ArmMove:
     way: list[Vector]
     is_over: bool = False
     blocked_mm: float = 0.0
-    _until_s: float | None = None
-    _nearer_s: float = 0.0
+    _left_s: float = LONGEST_S
+    _stalled_s: float = 0.0
     _nearest: float = math.inf
     _commanded: Vector | None = None
 
-    def advance(self, now_s: float, tip: Vector, sticks: OperatorInput) -> None:
-        if self._until_s is None:
-            self._until_s, self._nearer_s = now_s + LONGEST_S, now_s
+    def advance(self, dt: float, tip: Vector, sticks: OperatorInput) -> None:
+        self._left_s -= dt
+        self._stalled_s += dt
         while len(self.way) > 1 and distance(tip, self.way[0]) < PASSED_M:
             del self.way[0]
         away = distance(tip, self.way[0])
@@ -51,8 +51,8 @@ class ArmMove:
             self._commanded, self._nearest = self.way[0], math.inf
             self.move_tip([MM_PER_M * value for value in self.way[0]], SPEED_MM_S)
         if away < self._nearest - REACHED_M / 10.0:
-            self._nearest, self._nearer_s = away, now_s
-        is_stalled = now_s > min(self._until_s, self._nearer_s + STALLED_S)
+            self._nearest, self._stalled_s = away, dt
+        is_stalled = self._stalled_s > STALLED_S or self._left_s < 0.0
         is_taken_over = max(map(abs, sticks.translation)) > TAKEN_OVER
         is_there = len(self.way) == 1 and away < REACHED_M
         self.is_over = is_there or is_taken_over or is_stalled

@@ -84,6 +84,7 @@ class TrainingSession:
             else None.
         goes_on_blind: the trial that the trainee wants to go on without its picture; "" for none.
         practiced: task and point of the latest practice; no point for the tutorial.
+        simulated_s: simulated time since the previous `advance`.
     """
 
     control_loop: ControlLoop
@@ -119,6 +120,7 @@ class TrainingSession:
         self.lock = InstructorLock(services.pin)
         self.reload = SimulationReload(services, loop, self.complain)
         self.state: SimulationState = loop.latest
+        self.simulated_s = 0.0
 
     def say(self, key: str, **values: object) -> str:
         return self.texts.say(key, **values)
@@ -165,6 +167,7 @@ class TrainingSession:
 
     def advance(self, dt: float, state: SimulationState) -> None:
         self.notices.advance(dt)
+        self.simulated_s = max(0.0, state.sim_time - self.state.sim_time)
         self.state = state
         self.places.advance(dt, state)
         trial_id = self.training.trial_id
