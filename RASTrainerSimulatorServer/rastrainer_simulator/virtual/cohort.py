@@ -13,6 +13,7 @@ import os
 import signal
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -43,7 +44,7 @@ ATTEMPTS = 3
 def run_jobs(
     function: Callable[[Job], Result], jobs: Iterable[Job], workers: int | None = None
 ) -> Iterator[Result]:
-    """Yield the result of each job, in their order; one of a single worker is of this process.
+    """Yield the result of each job, in their order; a single worker is this process.
 
     `function` can be pickled. If a worker process is killed, the jobs that have no result yet are
     done again.
@@ -52,14 +53,14 @@ def run_jobs(
     if workers == 1:
         yield from map(function, jobs)
         return
-    left, killed = list(jobs)[::-1], 0
+    # Not forked: collision meshes and threads of numpy do not survive that.
+    context = multiprocessing.get_context("spawn")
+    left, killed = deque(jobs), 0
     while left:
-        # Not forked: collision meshes and threads of numpy do not survive that.
-        context = multiprocessing.get_context("spawn")
         pool = ProcessPoolExecutor(workers, context, _end_with_parent)
         try:
-            for result in pool.map(function, left[::-1]):
-                left.pop()
+            for result in pool.map(function, tuple(left)):
+                left.popleft()
                 killed = 0
                 yield result
         except BrokenProcessPool:

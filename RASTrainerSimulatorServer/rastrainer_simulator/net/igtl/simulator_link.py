@@ -179,7 +179,7 @@ class SimulatorLink:
         self._answers = answers
         self._slicer_left = slicer_left
         self._commands: dict[ClientConnection, ClientCommands] = {}
-        self._submitted: deque[str] = deque()
+        self._submitted: set[Future[Answer]] = set()
 
     def connected(self, connection: ClientConnection) -> None:
         self._commands[connection] = ClientCommands(connection, self._submit)
@@ -259,9 +259,9 @@ class SimulatorLink:
             return answered(Answer(0, False, TOO_MANY))
         submit = self._submit_checked if name in CHECKED else self._submit_command
         future = submit(name, arguments, connection.name)
-        self._submitted.append(name)
-        # In any thread: a deque can be shared.
-        future.add_done_callback(lambda _done: self._submitted.pop())
+        self._submitted.add(future)
+        # In any thread: each of these changes of the set is a single step.
+        future.add_done_callback(self._submitted.discard)
         return future
 
     def _greet(self, connection: ClientConnection, arguments: Mapping[str, Any]) -> Answer:
