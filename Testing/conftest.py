@@ -21,8 +21,8 @@ HERE = Path(__file__).parent
 WAITING = ("end_to_end", "web", "security")
 """Folders whose tests wait for processes, browsers and attacks."""
 SPREAD = 0.85
-"""Over which share of the run they are spread: side by side, they would leave processors idle, and
-at the end, the other workers."""
+"""Share of the run over which they are spread: all at once, they would leave processors idle, and
+at the end, other workers."""
 TESTS_PER_FULL_COLLECTION = 100
 
 # Random examples are the same each time, and none depends on how fast the machine is.
@@ -39,7 +39,7 @@ _tests_done = 0
 
 
 def pytest_configure():
-    # Collected wherever Python happens to be, Qt's and VTK's objects would also die in a thread
+    # If Python collected garbage at any time, Qt's and VTK's objects would also die in a thread
     # that answers a socket, which ends the process.
     gc.disable()
 
@@ -118,5 +118,5 @@ def _spread(files):
 
 
 def pytest_collection_finish():
-    # What is imported stays to the end: no collection needs to look through it again.
+    # Imported modules stay to the end: no collection needs to look through them.
     gc.freeze()

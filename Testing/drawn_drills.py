@@ -32,12 +32,11 @@ def draw_drill(
     cases: int = CASES,
     overconfidence: float = 1.0,
 ) -> DrillRecord:
-    """Return a drill of a trainee, who follows a model of equal variances.
+    """Return a drill of a trainee who follows a model of equal variances.
 
-    What the trainee sees of a case is normal with standard deviation 1, around half of the
-    sensitivity above 0 for a case over the limit, and as far below for a sound one. `blind_spots`
-    is how much less is seen of a fault. Logits of the right probability are multiplied by
-    `overconfidence`.
+    The evidence of a case is normal with standard deviation 1 and a mean of half the sensitivity
+    if the case is over the limit, minus half of it if the case is sound. `blind_spots` reduce the
+    evidence of faults. `overconfidence` multiplies the logit of the right probability.
     """
     faults = random.permutation(len(FAULTS))
     decided = []
@@ -90,9 +89,9 @@ def draw_drills(
     first: int = 0,
     **model: float | Mapping[Fault, float],
 ) -> tuple[DrillRecord, ...]:
-    """Return the drills of some trainees, on one day after the other.
+    """Return the drills of some trainees, who play one a day.
 
-    `sensitivities` are the means of each drill; those of a trainee differ from them by a normal
+    `sensitivities` has the mean of each drill; each trainee differs from the means by a normal
     number with the standard deviation `spread`.
     """
     own = random.normal(0.0, spread, trainees)

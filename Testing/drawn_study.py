@@ -26,7 +26,7 @@ def draw_study(
 ) -> StudyData:
     """Return a study in which every trainee does every task once in every mode.
 
-    `orders` are the modes in the order of each trainee; by default that of `modes` for all.
+    `orders` has the order of the modes for each trainee, by default `modes` for all.
     """
     orders = orders or [tuple(modes)] * trainees
     numbers = trial_numbers(orders, modes, len(model.task_times_s))

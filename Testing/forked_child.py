@@ -1,4 +1,4 @@
-"""A test's own process in two: what is done without rights, or dies, is done by a child."""
+"""Calls in a forked child of the test's process, which may give up its rights or die."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import multiprocessing
 
 
 def in_child(function, *arguments):
-    """Run in a forked process, which may give up its rights or die, and return what it returns."""
+    """Call in a forked process, which may give up its rights or die; return the result."""
     context = multiprocessing.get_context("fork")
     receiver, sender = context.Pipe(duplex=False)
     process = context.Process(target=lambda: sender.send(function(*arguments)))

@@ -6,13 +6,13 @@ from pathlib import Path
 
 
 def runs(pid: int) -> bool:
-    """Return whether a process runs; one that only waits to be reaped by its parent does not."""
+    """Return whether a process runs, and does not only wait for its parent to reap it."""
     fields = _fields(Path("/proc", str(pid)))
     return bool(fields) and fields[0] != "Z"
 
 
 def started_by(pid: int) -> list[int]:
-    """Return the processes that a process has started and that run, and theirs."""
+    """Return the running descendants of a process."""
     found = []
     for place in Path("/proc").glob("[0-9]*"):
         fields = _fields(place)

@@ -11,7 +11,7 @@ from pathlib import Path
 from rastrainer_simulator.input.gamepads import AXES, BUTTONS
 
 GAMECONTROLLER, WHEEL = 1, 2
-"""SDL's types of joysticks: it lays out a virtual one of the first type as a game controller."""
+"""SDL's types of joysticks; a virtual joystick of the first type becomes a game controller."""
 FULL = 32767
 _TRIGGERS = ("lefttrigger", "righttrigger")
 
@@ -39,7 +39,7 @@ class _Description(ctypes.Structure):
 
 
 def load_sdl() -> ctypes.CDLL:
-    """Return the very library that pygame has loaded."""
+    """Return the SDL library that pygame has loaded."""
     import pygame
 
     package = Path(pygame.__file__).parent
@@ -54,11 +54,11 @@ def load_sdl() -> ctypes.CDLL:
 
 
 class VirtualGamepad:
-    """One gamepad; it may be plugged in and out, and worked from any thread.
+    """One gamepad; it may be plugged in and out, and used from any thread.
 
     Args:
         felt: is called with the strengths (0 to 1) of the two motors at each call of SDL's.
-        name: that the gamepad gives itself.
+        name: of the gamepad.
         kind: SDL's type of the joystick.
     """
 

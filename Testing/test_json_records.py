@@ -102,7 +102,7 @@ def accepted_value(each: RecordField) -> Any:
 
 
 def offered_by(sentence: str) -> Any:
-    """Return the first value that an error says is right, None without one."""
+    """Return the first value that an error calls right; None without one."""
     if found := re.search(r"must be (?:one of|a list of some of) (.+?)(?:, .*)?\.$", sentence):
         with contextlib.suppress(ValueError):
             return json.loads(found[1])
@@ -124,12 +124,12 @@ def nested(hint: Any) -> list[Any]:
 
 
 def valid(kind: type) -> dict[str, Any]:
-    """Return an object each of whose keys is accepted."""
+    """Return an object whose values are accepted."""
     return {each.key: accepted_value(each) for each in record_fields(kind)}
 
 
 def read_or_refuse(kind: type, value: Any) -> str:
-    """Return the error, "" without one; what is accepted is written and reads the same."""
+    """Return the error or ""; an accepted value is written and reads the same."""
     try:
         record = record_from_json(kind, value, "It")
     except InputError as error:

@@ -12,7 +12,7 @@ from rastrainer_simulator.presentation.screen import Screen
 
 _PLACE = re.compile(r"(?:Step|Schritt) (\d+) (?:of|von) (\d+)")
 PUSH = 0.45
-"""Of a stick; what reads it late releases it late."""
+"""A gentle push, which may be released late."""
 _WAYS = {
     TutorialStep.RIGHT: (PUSH, 0.0, 0.0),
     TutorialStep.LEFT: (-PUSH, 0.0, 0.0),
@@ -25,13 +25,13 @@ _WAYS = {
 
 
 class Learner(Protocol):
-    """What the player needs of a trainee, in the flow's process or at a view."""
+    """A trainee for the player, in the flow's process or at a view."""
 
     hands: Any
 
     @property
     def screen(self) -> Screen:
-        """What is on the screen."""
+        """The present screen."""
 
     def until(self, condition: Callable[[], bool], what: str) -> None:
         """Let time pass until a condition is true."""
@@ -68,7 +68,7 @@ class TutorialPlayer:
         if not found:
             return None
         number, count = map(int, found[0].groups())
-        # Those of another device, until the first input of this one.
+        # Steps of another device are shown until the first input.
         if count != len(self._steps):
             return None
         return self._steps[number - 1]

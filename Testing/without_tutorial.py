@@ -1,4 +1,4 @@
-"""The preference by which tests begin with the trial run; the tutorial has tests of its own."""
+"""The preference to begin tests with the trial run; other tests cover the tutorial."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ WITHOUT_TUTORIAL = {"tutorial": TutorialRule.SKIPPED.value}
 
 
 def skip_tutorial(config: Path) -> None:
-    """Have a settings folder skip the tutorial, unless its preferences say something of it."""
+    """Have a settings folder skip the tutorial, unless its preferences mention it."""
     config.mkdir(parents=True, exist_ok=True)
     path = config / PREFERENCES_FILE
     preferences = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}

@@ -1,7 +1,7 @@
 """What module and connection cost Slicer: renderings, processor time, and a command's delay.
 
-In the host of the tests, which counts what Slicer would render and draws nothing, beside a real
-simulator's process.
+Measured in the tests' host, which counts renderings but draws nothing, with a real simulator's
+process.
 """
 
 import tempfile
@@ -31,7 +31,7 @@ class Cost:
 
     Attributes:
         renders: renderings a second.
-        cpu: share of a core, %; the host has a share in it, which looks for messages every 5 ms.
+        cpu: share of a core, %; it includes the host, which looks for messages every 5 ms.
     """
 
     def __init__(self, host: Host, seconds: int, before: Callable[[], None] = lambda: None) -> None:
@@ -103,7 +103,7 @@ def _start_trial(player: Client) -> None:
 
 
 def _mover(player: Client) -> Callable[[], None]:
-    """Return what keeps the arm moving, up and down, for longer than a piece of time."""
+    """Return a function that jogs the arm up or down for longer than `PIECE_S`."""
     directions = [1.0, -1.0]
 
     def move() -> None:

@@ -72,8 +72,8 @@ class _Timed:
 def _tick_row(runs: int) -> dict:
     """Return the row of a tour's ticks; success is the share that took less than 4 ms.
 
-    A tick's time is the median of the runs, which all do the same work at it: what else the machine
-    did in one of them does not count.
+    A tick's time is the median of the runs, which all do the same work: other load of the machine
+    in a single run does not count.
     """
     simulation, played = Simulation(load_setup(), SEED), []
     gc.collect()
@@ -115,10 +115,10 @@ def _tour(timed: _Timed) -> None:
 def _on_time(duration_s: float) -> list[dict]:
     """Return the rows of the server's loop with five clients and a trial being written.
 
-    Three clients watch and one of them jogs; one never reads, one sends garbage. Of `loop.on_time`
-    median and p99 are of each second's share of ticks within 1 ms of their time, `success` is that
-    of all ticks. `loop.memory` is how much the resident memory grew from the second tenth of the
-    time to the last: median against median, and the most against the most.
+    Three clients watch and one of them jogs; one never reads, one sends garbage. `loop.on_time`
+    is the share of ticks within 1 ms of their time: median and p99 over the seconds, `success`
+    over all ticks. `loop.memory` is how much the resident memory grew from the second tenth of the
+    time to the last: median against median, and maximum against maximum.
     """
     with (
         tempfile.TemporaryDirectory() as records,
@@ -149,8 +149,7 @@ def _jog_for_a_second(client: Client) -> None:
 
 @contextmanager
 def _clients(port: int) -> Iterator[tuple[Client, Client]]:
-    """Connect the clients that behave well; return a client that jogs and a client that does
-    not."""
+    """Connect the clients that behave well; yield a client that jogs and another client."""
     clients = [Client(port=port) for _ in range(GOOD_CLIENTS)]
     try:
         for client in clients:
@@ -164,8 +163,7 @@ def _clients(port: int) -> Iterator[tuple[Client, Client]]:
 
 @contextmanager
 def _annoyed(port: int) -> Iterator[None]:
-    """Keep a client that never reads and a client that sends garbage, each back as soon as
-    dropped."""
+    """Run a client that never reads and a client that sends garbage; both reconnect if dropped."""
     is_over = threading.Event()
 
     def never_read() -> None:

@@ -28,7 +28,7 @@ def next_health(client: Client) -> LoopStatistics:
 
 
 def on_time(earlier: LoopStatistics, later: LoopStatistics) -> float:
-    """Return the share of ticks that were on time between heartbeats, 0…1; skipped were not."""
+    """Return the share of ticks that were on time between heartbeats, 0…1; skipped are late."""
     ticks = later.ticks - earlier.ticks
     due = ticks + later.skipped - earlier.skipped
     return (ticks - later.late + earlier.late) / due if due else 1.0
@@ -53,7 +53,7 @@ class WatchedLoop:
         self._heard.result()
 
     def row(self, name: str) -> dict:
-        """Return the share of ticks on time in each second, %; `success` is that of all ticks."""
+        """Return the share of ticks on time in each second, %; `success` is over all ticks."""
         shares = [100.0 * on_time(*two) for two in pairwise(self._healths)]
         first, last = self._healths[0], self._healths[-1]
         ticks, whole = last.ticks - first.ticks, on_time(first, last)

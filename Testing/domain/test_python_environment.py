@@ -57,7 +57,7 @@ def private(tmp_path):
 
 @pytest.fixture
 def libraries(tmp_path):
-    """Slicer's libraries: one that Python needs, under its versioned name, and another."""
+    """Two libraries of Slicer: Python needs only the first, by its versioned name."""
     system = sorted(Path("/usr/lib").glob("*/libz.so.1"))
     if not system:
         pytest.skip("Python has its own compression here")

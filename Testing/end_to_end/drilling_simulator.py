@@ -1,6 +1,6 @@
-"""The simulator with a trainee at a drill, who does what lines of its standard input say.
+"""The simulator with a trainee at a drill, who obeys the lines of its standard input.
 
-Each line is one of `DEEDS`. What is then seen of the drill is printed.
+Each line is one of `DEEDS`; after it, the state of the drill is printed.
 """
 
 from __future__ import annotations
@@ -43,13 +43,13 @@ def seen_of(session):
 
 
 def quick_form(maker, random, _seen):
-    """Return cases that are soon drawn: balanced forms have tests of their own."""
+    """Return cases that are quick to draw: other tests cover balanced forms."""
     seeds = map(int, random.integers(2**31, size=CASES))
     return tuple(maker.case(seed, Fault.BAD_FIDUCIAL) for seed in seeds)
 
 
 def play(asked):
-    """Run the simulator, which does the next of what is asked whenever a case is there."""
+    """Run the simulator, which does the next deed in `asked` whenever a case is ready."""
     advance = TrainingSession.advance
 
     def advanced(session, dt, state):
@@ -63,7 +63,7 @@ def play(asked):
             DEEDS[asked.popleft()](session.drill)
             while not session.drill.is_recorded:
                 session.drill.advance(0.0)
-            # Its pages are of the case before.
+            # The pages show the previous case.
             session.pages.show_start()
             if session.drill.is_ready:
                 print(SAYS + json.dumps(seen_of(session)), flush=True)

@@ -1,4 +1,4 @@
-"""A TCP proxy that does to connections what networks do: seeded, and never to the bytes' order.
+"""A TCP proxy with the faults of networks: they are seeded, and bytes keep their order.
 
 TCP keeps the order within a connection. Two connections have no order: data sent over a connection
 that was cut may arrive after data sent over the next.
@@ -36,7 +36,7 @@ class Fault:
     Attributes:
         after_bytes: of both directions together.
         kind: "cut" (closed), "reset", "half-open" (both ends stay open, nothing passes), or
-            "late" (the client is cut, and what it had sent arrives only later).
+            "late" (the client is cut, and its last data arrive only later).
         lasts_s: duration of a half-open link, or delay of late data.
         delay_s: delay of every piece that passes.
     """
@@ -67,7 +67,7 @@ class FaultyProxy:
     """
 
     def __init__(self, target: int, rng: random.Random, longest_s: float, at_least: int = 0):
-        """Until so many faults have struck, no connection is long enough for a whole trial."""
+        """Until `at_least` faults have struck, no connection lasts for a whole trial."""
         self.target = target
         self.faults: dict[str, int] = {}
         self._rng = rng
@@ -122,8 +122,8 @@ class FaultyProxy:
     def _pass_on(self, client: socket.socket, server: socket.socket, fault: Fault) -> bytes | None:
         """Carry bytes in both directions; None if a peer has left.
 
-        Once the fault strikes, in the middle of a message as a rule, return what the client had
-        sent and the server has not got.
+        Once the fault strikes, usually within a message, return the client's data that the server
+        has not received.
         """
         other = {client: server, server: client}
         left = fault.after_bytes
@@ -163,7 +163,7 @@ class FaultyProxy:
 
 
 class SlicerSide:
-    """`make_logic` returns the logic on `TrialServices`, which is closed with it."""
+    """Slicer's side, headless; closes the logic that `make_logic` returns."""
 
     def __init__(self, path, port, make_logic, find_scenario=None, records=None):
         scene = HeadlessScene().scene

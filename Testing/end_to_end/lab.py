@@ -27,7 +27,7 @@ TIMEOUT_S = 600
 WITHOUT_GRAPHICS = {"silent_s": 10, "lost_s": 20, "gone_s": 300}
 """Limits of views for a machine that draws a headset's pictures by its processor: seconds each."""
 PATIENT = {"silent_s": 60, "lost_s": 600, "gone_s": 600}
-"""A late browser, however busy the machine is, neither releases the input nor pauses the trial."""
+"""A browser that is late on a busy machine neither releases the input nor pauses the trial."""
 
 
 class Place:
@@ -35,7 +35,7 @@ class Place:
 
     Attributes:
         simulator: the process.
-        url, code, key: where the page is; what admits a browser, and other views.
+        url, code, key: of the page; `code` admits a browser, `key` other views.
         view: a spectator.
         records: folder of the journals.
     """
@@ -119,7 +119,7 @@ class Place:
 
     @property
     def operators(self) -> set[str]:
-        """By which devices the latest trial was operated."""
+        """The devices that operated the latest trial."""
         return {entry["operator"] for entry in self.entries("input")} - {""}
 
 
@@ -135,7 +135,7 @@ class Lab(Place):
 
 
 def _begun(journal: Path) -> str:
-    """Return when a trial has begun, UTC; "" before its first line is written."""
+    """Return when a trial began, UTC; "" before its first line is written."""
     with journal.open(encoding="utf-8") as lines:
         header = lines.readline()
     return json.loads(header)["utc"] if header.endswith("\n") else ""
@@ -145,7 +145,7 @@ class SlicerProcess:
     """Slicer's side, headless, with the shipped scenarios."""
 
     def __init__(self, port: int, study: Path, trials: int = 1, errors: IO[str] | None = None):
-        """Start it; its stderr goes to `errors`, or where our own goes."""
+        """Start it; its stderr goes to `errors`, or to our own."""
         words = {
             "port": port,
             "trials": trials,

@@ -32,11 +32,11 @@ class SimulatorProcess:
 
     Attributes:
         ready: the line that says where it is ready.
-        port: where it listens; 0 where it connects.
+        port: where it listens; 0 if it connects.
         pid: of the process.
         command: that starts it.
         is_forked: whether it may be forked.
-        first: done in a forked simulator before it starts, in Python.
+        first: Python code to run in a forked simulator at first.
     """
 
     command = tuple(COMMAND)

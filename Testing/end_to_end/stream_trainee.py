@@ -26,25 +26,25 @@ from Testing.simulator.net.views.served import ViewClient
 
 TIMEOUT_S = 120.0
 LIFT_M = 0.035
-"""How far the tip is taken off the skin before it is carried to the next fiducial."""
+"""Height to which the tip is lifted before it is carried to the next fiducial."""
 COARSE_M, FINE_M = 0.03, 0.01
 """Nearer than this the sticks are pushed less."""
 LEAST_PUSH, LEAST_FINE_PUSH = 0.35, 0.7
 """Beyond the sticks' dead zone."""
 LONGEST_WAY_S = 4.0
 SINK_M = 0.003
-"""How far below the skin the sticks push for, so that the tip comes to rest on it."""
+"""Depth below the skin at which the sticks aim, so that the tip rests on it."""
 ON_POINT_M, NEAR_M = 0.002, 0.008
 """Distance at which the tip is stopped, and how far from there it may come to rest."""
 LONGEST_TOUCH_S = 600.0
-"""Number of attempts: on a busy machine they are clumsy."""
+"""For many attempts: on a busy machine they are clumsy."""
 STILL_STATES = 10
 """The arm is at rest after this number of equal states in a row."""
 TRAINEE = "P7"
 SETTLED_STATES = 20
-"""For how many states in a row a focus stays that no input moves: a third of a second."""
+"""The focus has settled after this number of states in a row: a third of a second."""
 LEAVES = {"trial": "abort", "abort": "abort", "complete": "abort", "result": "menu"}
-"""Which item of a menu leads toward the start."""
+"""Each menu's item that leads to the start."""
 
 
 class Hands(Protocol):
@@ -119,8 +119,8 @@ class Trainee:
     Attributes:
         view: what the trainee sees.
         hands: the input device.
-        again_s: after which a press without an effect is made again. A press is seen in the next
-            picture, however late: none is missed, and one that is only slow would count twice.
+        again_s: time after which a press without an effect is repeated. Every press is seen in the
+            next picture, however late: a repeated slow press would count twice.
     """
 
     again_s = 60.0
@@ -218,7 +218,7 @@ class Trainee:
             self.press(direction, lambda b=before: self.menu.focus != b, "another focus")
 
     def value(self, item: str) -> str:
-        """Return what an item shows."""
+        """Return an item's value."""
         return next(each.value for each in self.menu.items if each.name == item)
 
     def place_of(self, label: str) -> np.ndarray:
@@ -321,7 +321,7 @@ class Trainee:
     def steer_to(self, place: np.ndarray, near: float, fine: bool = False) -> None:
         """Push the sticks toward a place (3,) World, m, until the tip is near it."""
         if self.menu_name == "trial":
-            # The simulator pauses where a busy machine keeps the window from drawing.
+            # The simulator pauses if a busy machine keeps the window from drawing.
             self.choose("resume")
         slow, least = (FINE_M, LEAST_FINE_PUSH) if fine else (COARSE_M, LEAST_PUSH)
         give_up = self.view.state["timeS"] + LONGEST_WAY_S
@@ -334,14 +334,14 @@ class Trainee:
             self.view.next_state()
 
     def _stick_axes(self) -> np.ndarray:
-        """Return (3, 3) float: right, forward and up as the picture shows them, as rows."""
+        """Return right, forward and up in the picture, as rows, (3, 3) float."""
         camera = self.view.state["view"]
         line = np.subtract(camera["focalPoint"], camera["position"])
         axes = camera_axes(tuple(line.tolist()), tuple(camera["viewUp"]))
         return np.array([axes.right, axes.forward, axes.up])
 
     def go_home(self) -> None:
-        """Go to the start menu from wherever the last trainee has stopped."""
+        """Go to the start menu from where the last trainee stopped."""
         while self.menu_name != "start":
             before = self.menu
             if before is None:
@@ -357,7 +357,7 @@ class Trainee:
         self.press("back", lambda: self.menu != before, f"before {before.name}")
 
     def go_to_experiment(self) -> None:
-        """Go from wherever the last trainee has stopped to the choice of head and task."""
+        """Go from where the last trainee stopped to the choice of head and task."""
         self.go_home()
         self.choose("train")
         while self.menu_name != "experiment":
@@ -373,7 +373,7 @@ class Trainee:
     def begin(self, task: str, page: Page | None = None) -> None:
         """Go from the start menu into a task.
 
-        The ID is typed on the page, or without one on the keyboard that the simulator shows.
+        The ID is typed on the page, or without a page on the simulator's keyboard.
         """
         self.go_to_experiment()
         if self.value("trainee") in ("", FIRST_ID):
@@ -382,14 +382,14 @@ class Trainee:
         self.until(lambda: self.view.state["phase"] == "running", "the trial")
 
     def type_id(self, page: Page | None) -> None:
-        """Type the ID on the page, or without one on the keyboard that the simulator shows."""
+        """Type the ID on the page, or without a page on the simulator's keyboard."""
         if page is not None:
             self.focus("trainee")
             page.wait_for_selector("#menu input:focus")
             for typed in accumulate(TRAINEE):
                 page.keyboard.press(typed[-1])
                 self.until(lambda typed=typed: self.value("trainee") == typed, "the ID")
-                # A field forgets what the simulator took long to answer.
+                # A field forgets text that is answered too late.
                 shown = f"document.querySelector('#menu input:focus')?.value === '{typed}'"
                 wait_until(lambda shown=shown: page.evaluate(shown), "the ID on the page")
             return
@@ -410,7 +410,7 @@ class Trainee:
         self.until(lambda: self.view.state["phase"] == "running", "the trial again")
 
     def touch_all(self, most: int = 15) -> None:
-        """Touch the remaining points, up to so many in all."""
+        """Touch the remaining points, up to `most` in all."""
         while self.touched < most:
             label = self.view.state["next"]
             self.approach(label, 0.02)
@@ -423,7 +423,7 @@ class Trainee:
 
 
 class CarriedTrainee(Trainee):
-    """Is quick: commands carry the tip to its goals."""
+    """Is quick: carries the tip by commands."""
 
     def __init__(self, view: WatchingView, hands: object, client: Client):
         super().__init__(view, hands)

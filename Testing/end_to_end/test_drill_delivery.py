@@ -1,4 +1,4 @@
-"""A drill survives the simulator's death in mid case, is stored once, and is a study's step."""
+"""A drill survives the simulator's death in a case, is stored once, and is a study's step."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ TIMEOUT_S = 120.0
 
 
 class Drilling(SimulatorProcess):
-    """A simulator whose trainee does what is asked."""
+    """A simulator whose trainee obeys the test."""
 
     command = (sys.executable, "-m", "Testing.end_to_end.drilling_simulator")
 
@@ -38,7 +38,7 @@ class Drilling(SimulatorProcess):
         self._ask(trainee)
 
     def do(self, *deeds):
-        """Return what is seen after the last of some deeds."""
+        """Do some deeds; return the drill's last state."""
         for deed in deeds:
             self._ask(deed)
         answers = [deed for deed in deeds if deed != "next"]

@@ -39,7 +39,7 @@ TRAINEES = [f"P{number:02d}" for number in range(1, 13)]
 TASKS = ("task-1", "task-2")
 SEATS = 3
 KILLED_SIMULATORS, KILLED_SLICERS, KILLED_DATABASES = 14, 10, 28
-"""Of each seat, of each seat, and in all."""
+"""Per seat, per seat, and in total."""
 KILLS = SEATS * (KILLED_SIMULATORS + KILLED_SLICERS) + KILLED_DATABASES
 PROTOCOL = {
     "modes": ["desktop"],
@@ -54,7 +54,7 @@ PROTOCOL = {
     "questionnaires": [{"name": "sus", "when": "after-mode", "modes": []}],
 }
 PATIENCE_S = 600.0
-"""Patience for what does not change any more."""
+"""After this, nothing changes any more."""
 
 
 class Seat:
@@ -90,7 +90,7 @@ class Seat:
         return self.folder / RECORDS
 
     def play(self, trainee, task, kills):
-        """Play a trial to its end, through up to so many deaths of the simulator."""
+        """Play a trial to its end, through up to `kills` deaths of the simulator."""
         self.player.trainee, self.player.task = trainee, task
         while kills:
             killing = Killing(self.rng, self.kill_simulator)
@@ -114,7 +114,7 @@ class Seat:
 
 
 def patiently(ask):
-    """Return the first true answer, while the database may be away; give up after long."""
+    """Return the first true answer, even while the database is away; give up at last."""
     give_up = time.monotonic() + PATIENCE_S
     while True:
         with contextlib.suppress(InputError):
@@ -148,7 +148,7 @@ class Lab:
         return step is not None and step.name == name
 
     def has_answered(self, trainee):
-        """Answer the questionnaire, if it is not; return whether it was."""
+        """Answer the questionnaire if due; return whether it was done."""
         with opened_when_available(self.place) as study:
             progress = StudyProgress(study)
             progress.count_played(trainee)
@@ -203,7 +203,7 @@ class Lab:
                 part.result()
         patiently(lambda: not any(find_unacknowledged(seat.records) for seat in self.seats))
         for seat in self.seats:
-            # What was answered too late is asked for again over the next connection.
+            # Late answers are asked for again over the next connection.
             seat.kill_slicer()
         patiently(lambda: all(trial.score and trial.truth for trial in self.trials()))
 

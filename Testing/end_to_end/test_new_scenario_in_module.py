@@ -89,7 +89,7 @@ def test_a_trial_on_the_sample_takes_a_few_clicks_from_its_download(host, tmp_pa
     assert len(scenario.tasks) == 6
 
     def shown_images():
-        """The images of the new head; those of the previous one are shown until they are read."""
+        """The new head's images; the previous head's images are shown until they are read."""
         images = Role.HEAD_VOLUME.find(host.scene)
         is_new = images and images.GetName() == "MRBrainTumor1" and images.GetImageData()
         return images if is_new else None

@@ -1,4 +1,4 @@
-"""While the simulator loads a head or settings, no trial starts on the old ones."""
+"""No trial starts on the old head or settings while the simulator loads others."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def held(scenario, *others, load=server.load_setup, Path=Path, **named):
 
 server.load_setup = held
 """
-"""After its start, each scenario is loaded when a test has opened the pipe and closed it again."""
+"""After its start, the simulator loads a scenario when a test has opened and closed the pipe."""
 
 
 class HeldSimulator(ViewedSimulator):
@@ -54,8 +54,8 @@ class HeldSimulator(ViewedSimulator):
 
     @contextmanager
     def being_loaded(self) -> Iterator[None]:
-        """Wait until something is being loaded, and let it be loaded at the end."""
-        # Opened once the simulator has come to it, too.
+        """Wait until something is being loaded, and let it finish at the end."""
+        # Opens once the simulator opens it, too.
         with self._pipe.open("wb"):
             yield
 

@@ -1,4 +1,4 @@
-"""Volumes for `rastrainer scenario build`: broken ones are refused, unusual ones read correctly."""
+"""`rastrainer scenario build` refuses broken volumes, and reads unusual volumes correctly."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def block(folder):
 
 
 def cut_nifti(folder):
-    """Write a head of which the file's end is missing."""
+    """Write a head's file without its end."""
     scan = phantom(spacing=(3.0, 3.0, 3.0), noise=1.0)
     path = write_volume(folder / "head.nii.gz", scan)
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
@@ -123,7 +123,7 @@ def test_an_unusual_volume_becomes_a_scenario_with_the_right_skin(place, capfd, 
 
 
 def everything_in(folder):
-    """Return the content of every file below a folder, None of a folder, by its path."""
+    """Return the content of every file below a folder by path; None for a folder."""
     return {
         path: path.read_bytes() if path.is_file() else None for path in sorted(folder.rglob("*"))
     }

@@ -1,6 +1,6 @@
-"""The simulator's process with a virtual gamepad plugged in, for tests to work over a pipe.
+"""The simulator's process with a virtual gamepad plugged in, which tests use over a pipe.
 
-Run as a module it is that process: `python -m Testing.end_to_end.virtual_gamepad FELT simulator …`
+As a module, it is that process: `python -m Testing.end_to_end.virtual_gamepad FELT simulator …`
 attaches the gamepad to its own SDL and otherwise runs the ordinary `rastrainer simulator …`.
 """
 
@@ -28,7 +28,7 @@ REPOSITORY = Path(__file__).parents[2]
 class SimulatorWithGamepad(SimulatorProcess):
     """`rastrainer simulator` with a gamepad.
 
-    Every move has been sent when the call returns, and they are made in order. `tap` holds
+    Every move has been sent when its call returns; moves are made in order. `tap` holds
     its button until the simulator has read it, however busy the computer is.
     """
 
@@ -39,13 +39,13 @@ class SimulatorWithGamepad(SimulatorProcess):
         self._felt.parent.mkdir(parents=True, exist_ok=True)
         self._felt.touch()
         self.command = (*self.command, str(self._felt), "simulator")
-        # pygame greets on the standard output otherwise, where the simulator's lines are read.
+        # Else pygame greets on the standard output, where the simulator's lines are read.
         environment = {**os.environ, "PYGAME_HIDE_SUPPORT_PROMPT": "1"}
         others = {"stdin": subprocess.PIPE, "cwd": REPOSITORY, "env": environment}
         super().__init__(records, *arguments, **others)
 
     def plug_in(self) -> None:
-        """Plug the gamepad in; it is at first."""
+        """Plug the gamepad in, as at first."""
         self._send({"plug": True})
 
     def unplug(self) -> None:
@@ -76,8 +76,8 @@ class SimulatorWithGamepad(SimulatorProcess):
 class Plug:
     """Plugs the gamepad in and out in the thread that polls gamepads, before it polls.
 
-    In any other thread SDL would call back to Python while the one that looks holds what both
-    need: each would wait for the other.
+    In any other thread SDL would call back to Python while the polling thread holds a lock that
+    both need: a deadlock.
     """
 
     def __init__(self, gamepad: VirtualGamepad):
@@ -105,7 +105,7 @@ class Plug:
 
 
 def main() -> int:
-    """Be the process: run the ordinary program and obey the pipe."""
+    """Run the ordinary program, and obey the pipe."""
     felt = Path(sys.argv[1])
     threading.Thread(target=_obey, args=(felt,), daemon=True).start()
     return run(sys.argv[2:])

@@ -62,8 +62,8 @@ HEADER = (
 def recovered(_sets: int = 0) -> list[Measured]:
     """Return the parameters that were asked for, as the report of the stored cohort gives them.
 
-    Standard errors are those of the interval on the truth's side. By chance, one of 13 estimates is
-    off by more than two in about half of such cohorts.
+    Standard errors come from the interval on the truth's side. In about half of such cohorts, one
+    of 13 estimates is off by more than two by chance.
     """
     found = dict(zip(truths(), estimates(stored_cohort()), strict=True))
     rows = []
@@ -80,9 +80,9 @@ def recovered(_sets: int = 0) -> list[Measured]:
 def asked_for() -> dict[str, float]:
     """Return the true values, by the names of `truths`.
 
-    Omitted is what no option sets: the time that a lapse takes, and what hands and arm add to the
-    errors from trial to trial. The RMSE with the headset grows not only by the scatter: touches
-    stay on the skin, so that no rigid motion explains the whole bias of a view.
+    Values that no option sets are omitted: the time of a lapse, and the errors that hands and arm
+    add from trial to trial. The RMSE grows by more than the scatter with the headset: touches
+    stay on the skin, so no rigid motion explains the whole bias of a view.
     """
     effect, (displaced, left) = POPULATION.modes["hmd"], _effects_of_views()
     return {
@@ -102,10 +102,10 @@ def asked_for() -> dict[str, float]:
 
 
 def _effects_of_views() -> tuple[dict[str, float], dict[str, float]]:
-    """Return what each mode's bias alone does.
+    """Return the effects of each mode's bias.
 
-    The first is the mean square by which it displaces the target, mm². The second is its addition
-    to the mean logarithm of the RMSE of touches that scatter as the hands of the trial do.
+    The first is the mean square of the target's displacement, mm². The second is the increase of
+    the mean logarithm of the RMSE of touches that scatter like the hands of the trial.
     """
     squares, added = defaultdict(list), defaultdict(list)
     for job in trial_jobs(STUDY_PROTOCOL, POPULATION, TRAINEES, SEED):

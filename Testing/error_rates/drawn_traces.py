@@ -1,6 +1,6 @@
 """Surface matches of traces as people draw them: are interval and warning right?
 
-The points of a drawn trace are neighbors, so that a hundred are in a few places of the face.
+The points of a drawn trace are neighbors, so a hundred cover only a few places of the face.
 `drawn_traces.csv` has the matched traces, one a row. `python -m
 Testing.error_rates.drawn_traces` matches the missing traces of `SEEDS` for each head and case,
 all cases in turn. It can be stopped at any time: the table says how many traces there were.
@@ -57,16 +57,16 @@ CASES = (
     (STROKES, 400, 0.0),
 )
 LEAST_HELD, ENOUGH = 0.9, 400
-"""Asked of traces with so many points, on skin at rest."""
+"""Required of so many points, on skin at rest."""
 
 
 @dataclass(frozen=True)
 class Drawn:
     """The match of a trace; lengths are in mm.
 
-    The error at the middle of the head, what was expected of it, and whether its interval holds it;
-    the largest error among seven targets, and how far the match may slide. Warnings are codes with
-    spaces between them, and all else is 0 where the trace was `refused`.
+    The error at the middle of the head, its expectation, and whether the interval contains it; the
+    largest error among seven targets, and how far the match may slide. Warnings are codes with
+    spaces between them; if the trace was `refused`, all results are 0.
     """
 
     head: str
@@ -121,7 +121,7 @@ def _drawn(
 
 
 def measured(traces: int) -> list[Measured]:
-    """Return the table: of what the file holds if so many are asked for, else played anew."""
+    """Return the table, from the file if so many traces are wanted, else played anew."""
     if traces >= SEEDS:
         drawn = stored_rows(FILE, Drawn)
     else:

@@ -1,4 +1,4 @@
-"""What a report says of drills: learning, training, the mean of d′, and what is missed most."""
+"""A report's statements on drills: learning, training, mean d′, and the cause missed most."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def means(sets: int) -> Sequence[Measured]:
 
 
 def missed_most(sets: int) -> Sequence[Measured]:
-    """Return how often another cause than the one missed most has the largest share."""
+    """Return how often a cause that is not missed most has the largest share."""
     random, found = np.random.default_rng(34), []
     for trainees, own in ((4, 5), (10, 1), (10, 5), (20, 1)):
         shares = np.full(len(FAULTS), MISSED)
@@ -117,14 +117,14 @@ def drawn(
 
 
 def sensitivity(hits: np.ndarray, alarms: np.ndarray) -> np.ndarray:
-    """Return d′ of so many refusals over and within the limit, of half the cases each."""
+    """Return d′ from the refusals over and within the limit, of half the cases each."""
     rates = (np.array([hits, alarms]) + 0.5) / (CASES // 2 + 1)
     hit_z, alarm_z = norm.ppf(rates)
     return hit_z - alarm_z
 
 
 def cost(hits: np.ndarray, alarms: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    """Return the mean cost of a case, by the refusals over and within the limit."""
+    """Return a case's mean cost from the refusals over and within the limit."""
     stopped, stopped_right = random.binomial(alarms, STOPS), random.binomial(hits, STOPS)
     again = alarms + hits - stopped - stopped_right
     vain = alarms + random.binomial(hits - stopped_right, 1.0 - REPEATABLE)

@@ -3,7 +3,7 @@
 Time, contacts and every touch were played. A single score scatters by some ten points, mostly
 because of how fifteen errors happen to add up, so that the mean of a dozen says little about two
 points. So the scored trials are put together: each touch has the error of a played touch, turned
-about the skin's normal by chance, and each trial has the time of one of the task's trials.
+randomly about the skin's normal, and each trial has the time of one of the task's trials.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from Testing.error_rates.registered import common_biases, registered_errors
 MAX_OFF = 2.0
 """Points by which a task's mean score may differ from the mean of all tasks."""
 MAX_OFF_TRIAL_RUN = 4.0
-"""The same of a trial run, which nobody passes or fails: its fiducials are on a small patch."""
+"""Same for a trial run, which nobody passes or fails: its fiducials are on a small patch."""
 MORE = 4
-"""Times as many sets for the deviation that is asked for."""
+"""Factor of sets for the required deviation."""
 RESAMPLES = 25
 """Parts of the played trials, each with a quarter of the sets, for a standard error."""
 HEADER = (
@@ -56,10 +56,10 @@ def slow(sets: int) -> list[Measured]:
 
 
 def scores(hands: str, sets: int, seed: int = 22) -> list[Measured]:
-    """Return how far the mean score of each task of every head is from that of all tasks.
+    """Return how far each task's mean score, on every head, is from the mean of all tasks.
 
-    The first is from the touches of all tasks and the times of this one, without contacts; a second
-    one from touches, times and contacts of this task alone. With few sets a point more is allowed.
+    A first score has touches of all tasks and times of this task, without contacts; a second has
+    touches, times and contacts of this task alone. If sets are few, a point more is allowed.
     """
     tasks = [
         PlayedTask(head, task, trials_of(hands, head, task)) for head in HEADS for task in TASKS
@@ -108,7 +108,7 @@ def _mean_scores(
         again = [task.trials[number] for number in random.integers(0, count, count)]
         other = PlayedTask(task.head, task.name, again)
         means.append(other.scores(other.assemble(other.touches, sets // 4, random)).mean())
-    # Less what fewer sets add.
+    # Fewer sets add variance.
     variance = max(np.var(means, ddof=1) - 3 * np.var(own) / sets, 0.0)
     return (
         (float(points.mean()), float(np.std(of_each, ddof=1) / np.sqrt(count))),

@@ -18,8 +18,8 @@ class Measured:
         figure: a share from 0 to 1, or a number if `is_share` is false.
         sets: how many data sets the share is of.
         further: other figures of the same data sets.
-        slack: from a tolerance in standard errors to that of a number; shares have their own.
-        also: what else has to hold with such a tolerance.
+        slack: a number's tolerance, by the tolerance in standard errors; not for shares.
+        also: a further condition with such a tolerance.
         digits: decimals of a number that is not a share.
     """
 

@@ -49,8 +49,8 @@ def registered(
 ) -> tuple[np.ndarray, Registration, np.ndarray]:
     """Return the true pose, a registration, and the errors at checkpoints that it shows, mm.
 
-    The errors of touches are independent and alike in all directions, of RMS length `fle_mm`; all,
-    also those of checkpoints, share a bias along y. Equal seeds give equal poses and errors.
+    Errors of touches are independent and alike in all directions, of RMS length `fle_mm`; all
+    touches, also of checkpoints, share a bias along y. Equal seeds give equal poses and errors.
     """
     random = np.random.default_rng(seed)
     truth = SCENARIO.perturbed_head_to_world(int(random.integers(2**31)))
@@ -70,7 +70,7 @@ def _measured(
     """Return the figures of many procedures, carried out exactly as they were shown."""
     inside, true, expected, fre, checks = [], [], [], [], []
     aims = np.array([trajectory.target_ras for trajectory in DBS.trajectories])
-    # What is in the way plays no part.
+    # Obstacles play no part.
     meshes = ProcedureMeshes(read_procedure_meshes(DBS, SCENARIO.skull_path).skull, {})
     for number in range(sets):
         truth, registration, shown = registered(fle_mm, bias_mm, (*seed, number))

@@ -1,4 +1,4 @@
-"""Whether the interval of the expected TRE contains the true one, and its blind spots."""
+"""Whether the interval of the expected TRE contains the true TRE, and its blind spots."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ HEADER = (
 )
 COUNT, RADIUS_MM, FLE_MM = 15, 90.0, 1.0
 Errors = Callable[[np.ndarray, np.random.Generator], np.ndarray]
-"""From the outward normals (n, 3) at the fiducials to the errors of their touches, (n, 3), mm."""
+"""Maps outward normals (n, 3) at the fiducials to errors of their touches, (n, 3), mm."""
 
 
 def intervals(sets: int, seed: int = 10) -> list[Measured]:

@@ -46,9 +46,9 @@ SAME_MM, WRONG_MM = 0.01, 3.0
 class Comparison:
     """One trace of 200 points on the face, registered by a peer and by us.
 
-    The cost is the sum of the squared distances to the triangles: ours, that of the peer and that
-    of the minimum next to where the peer stopped, both minus ours. The peer and that minimum put
-    the points so far from ours at most; the errors, ours and the peer's, are at the head's center.
+    The cost is the sum of the squared distances to the triangles; `cost_off_mm2` is the peer's
+    minus ours, and `apart_mm` is how far its points are from ours at most. `next_…` are the same
+    for the minimum next to where it stopped. The errors are at the head's center.
     """
 
     head: str

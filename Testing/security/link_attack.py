@@ -18,22 +18,22 @@ MESSAGES_A_CONNECTION = 200
 PIECE = 8
 CONNECTIONS_PER_COLLECTION = 20
 SWALLOWED = 3
-"""This many messages in a row that complete nothing are taken for the body of an earlier one."""
+"""If so many messages in a row complete nothing, they count as an earlier message's body."""
 TIMEOUT_S = 120.0
 
 
 class LinkAttack:
     """Sends mutated messages; every byte that comes back is checked for what harms Slicer.
 
-    A message that claims to be long swallows those after it: then the attack continues with another
-    connection, so that the server has to do with nearly all of them.
+    A message that claims to be long swallows later messages: then the attack continues with
+    another connection, so that the server reads nearly all messages.
 
-    Of the `sent` messages, so many were `mutated`. A reader like the server's takes `decoded`
-    messages from the same bytes, and has `refused` the rest, by the kind of trouble.
+    `mutated` counts the invalid messages among all `sent`. A reader like the server's takes
+    `decoded` messages from the same bytes; `refused` counts the rest by kind of error.
     """
 
     def __init__(self, port: int, count: int, seed: int, clients: int = 4, policed: int = 1):
-        """Prepare for `count` mutated messages; answers on every `policed`-th connection count."""
+        """Prepare `count` mutated messages; check the answers on each `policed`-th connection."""
         self._port = port
         self._count = count
         self._seeds = itertools.count(seed)
@@ -71,7 +71,7 @@ class LinkAttack:
             self.decoded += messages.decoded
             self.refused += messages.reader.errors
             if self.connections % CONNECTIONS_PER_COLLECTION == 0:
-                # Nothing is collected by itself within a test, and streams are circles.
+                # Python collects no garbage within a test, and streams are cycles.
                 gc.collect(1)
 
     async def _send(
@@ -102,7 +102,7 @@ class LinkAttack:
 
 
 class _Messages:
-    """What one connection sends, and what a reader like the server's takes from it."""
+    """One connection's messages, also decoded by a reader like the server's."""
 
     def __init__(self, seed: int) -> None:
         self.mutations = MutatedMessages(seed)
@@ -112,7 +112,7 @@ class _Messages:
 
     @property
     def are_swallowed(self) -> bool:
-        """Whether the server would still wait for the rest of another message, or for nothing."""
+        """Whether the server seems to wait for the rest of an earlier message."""
         return self._swallowed >= SWALLOWED
 
     def next_piece(self) -> bytes:

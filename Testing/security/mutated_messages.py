@@ -91,7 +91,7 @@ def valid_messages() -> list[bytes]:
 
 
 class MutatedMessages:
-    """An endless stream of messages by a seed, of which `mutated` were none of the valid ones."""
+    """An endless stream of messages by a seed; `mutated` counts the invalid messages."""
 
     def __init__(self, seed: int) -> None:
         self.mutated = 0

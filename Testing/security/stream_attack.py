@@ -52,7 +52,7 @@ class StreamAttack:
     """Sends damaged messages to the stream of a view server, one view after the other.
 
     Attributes:
-        mutated: damaged messages that were sent, each after some good ones, one a view.
+        mutated: damaged messages sent, one a view, each after some good messages.
         closed: views that the server has closed.
     """
 
@@ -64,7 +64,7 @@ class StreamAttack:
         self.mutated = self.closed = 0
 
     def run(self, count: int) -> None:
-        """Send a number of damaged messages, each on a separate view: many end theirs."""
+        """Send damaged messages, each from a separate view, which many of them end."""
         for _ in range(count):
             with socket.create_connection((HOST, self._port), TIMEOUT_S) as peer:
                 self._join(peer)

@@ -1,4 +1,4 @@
-"""Any message of a view ends at worst that view."""
+"""At worst, a view's message ends that view."""
 
 import pytest
 
@@ -19,12 +19,12 @@ def attack(folder, warm_up: int, count: int) -> None:
         ViewClient(thread, simulator.url, simulator.key) as view,
     ):
         view.join()
-        # A scene that is built, and what is imported after it, belong to no attack.
+        # Building a scene, and the imports after it, belong to no attack.
         view.next("scene")
         slicer.wait_for("SimServer", timeout=60)
         attacked = StreamAttack(simulator.view_port, simulator.key, seed=7)
         attacked.run(warm_up)
-        # Memory that is reserved once is no leak: that would grow at the next attack, too.
+        # Memory reserved once is no leak: a leak would grow at the next attack, too.
         for _ in range(3):
             before = settled(simulator.pid, slicer, cost_of(simulator.pid, slicer))
             attacked.run(count)

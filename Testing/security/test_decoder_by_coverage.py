@@ -22,7 +22,7 @@ def test_a_coverage_guided_search_finds_no_bytes_that_break_the_decoder(tmp_path
     found = tmp_path / "found"
     found.mkdir()
     words += ["-timeout=10", f"-artifact_prefix={tmp_path}/broken-"]
-    # By a shell: a process inherits the memory's peak of the one that starts it.
+    # Started by a shell: a process inherits its parent's peak of memory.
     done = subprocess.run(
         ["sh", "-c", '"$@"; exit $?', "sh", sys.executable, "-m", module, *words, str(found)],
         capture_output=True,

@@ -41,7 +41,7 @@ TASK = SCENARIO / "tasks" / "task-1.mrk.json"
 
 
 class Family(NamedTuple):
-    """A kind of file: its loader, and the bytes of a good one."""
+    """A kind of file: its loader and a good file's bytes."""
 
     read: Callable[[Path], object]
     good: Callable[[Path], bytes]
@@ -66,7 +66,7 @@ def _scenario(path: Path) -> object:
 
 
 def _volume(path: Path) -> object:
-    """Read a volume; a damaged one that is not refused has voxels and a place in space."""
+    """Read a volume; if it is not refused, it has voxels and a place in space."""
     values, matrix = read_nrrd(path)
     assert values.dtype in (np.uint8, np.int16)
     assert values.ndim == 3

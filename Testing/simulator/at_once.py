@@ -1,4 +1,4 @@
-"""Work that usually runs beside a simulation's steps, done within them."""
+"""Does work within a simulation's steps that usually runs in parallel."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from rastrainer_simulator.viewpoint import best_view
 
 @contextmanager
 def at_once() -> Iterator[None]:
-    """Have best views found before their trial is shown, and nothing wait for the disk.
+    """Find best views before their trial is shown, and do not wait for the disk.
 
-    Else a simulation that goes as fast as it can would take more steps meanwhile on a busy machine.
+    Else a simulation at full speed would take more steps meanwhile on a busy machine.
     """
 
     with mock.patch.object(best_view, "ThreadPoolExecutor", _AtOnce), mock.patch("os.fsync"):
@@ -26,7 +26,7 @@ class _AtOnce:
         pass
 
     def submit(self, work, trial, label, q=None):
-        """Search for a view; without a posture it is only prepared, which can wait till then."""
+        """Search for a view; without a posture, do nothing: the preparation can wait."""
         done = Future()
         done.set_result(None if q is None else work(trial, label, q))
         return done

@@ -1,4 +1,4 @@
-"""What the simulator's tests share."""
+"""Fixtures of simulator tests."""
 
 from dataclasses import replace
 

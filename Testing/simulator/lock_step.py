@@ -31,7 +31,7 @@ class LockStep:
             self.tick()
 
     def write(self) -> None:
-        """Wait until the journal's thread has done what it was given."""
+        """Wait until the journal's thread has done its work."""
         self._loop._writer.submit(lambda: None).result(PATIENCE_S)
 
     def free(self) -> None:

@@ -37,7 +37,7 @@ def write_recorded_trial(
 ) -> np.ndarray:
     """Write the journal of a trial with a touch each second, or less often.
 
-    `traced` points are left after that, one at each sample, and then no more.
+    Each of the first `traced` samples without a touch adds a trace point.
 
     Returns:
         Its tips (n, 3) float, mm.
@@ -63,7 +63,7 @@ def write_recorded_trial(
 def scored_analysis(
     record: Mapping[str, Any], scenario: Scenario, seed: int = 1, true_tre_mm: float = 0.3
 ) -> TrialAnalysis:
-    """Return the analysis of a gentle trial whose head stood where the seed has it.
+    """Return the analysis of a gentle trial with the seed's pose of the head.
 
     The record's other motion metrics are unchanged.
     """
@@ -85,10 +85,10 @@ def touches_on_colin(seed: int = 3, task: str = "task-1", noise_mm: float = 0.6)
 
 
 def store_trial_on_colin(host: Host, record: dict[str, Any], seed: int) -> np.ndarray:
-    """Store a scored trial on Colin27 by the open module's own connection to the study.
+    """Store a scored trial on Colin27 over the open module's connection to the study.
 
-    By another connection, the module would show the change at any time. The points of the record
-    become touches, (15, 3) float, World, mm, which are returned; `seed` is theirs.
+    The module could show a change over another connection at any time. The points of the record
+    become touches drawn by `seed`, which are returned: (15, 3) float, World, mm.
     """
     touched = touches_on_colin(seed, record["task"])
     for point, position in zip(record["points"], touched.tolist(), strict=True):

@@ -76,7 +76,7 @@ def test_sample_data_are_loaded_into_the_slices_or_reported_and_leave_nothing(ho
     assert "Connect this computer to the Internet" in host.messages[-1].text
     assert (logic.attempts, host.scene.GetNumberOfNodes()) == (0, nodes)
     assert host.find("sampleDataButton").enabled
-    # Nor may a sample be loaded though there is a network.
+    # Loading may also fail although there is a network.
     with monkeypatch.context() as patch:
         patch.setattr(logic, "downloadSamples", lambda _name: [None])
         host.press("sampleDataButton")
@@ -90,7 +90,7 @@ def test_sample_data_are_loaded_into_the_slices_or_reported_and_leave_nothing(ho
 
 
 def test_every_button_box_and_list_is_used_in_a_test():
-    """By the string of its name, alone or in a list."""
+    """A test contains its name as a string."""
     root = Path(__file__).parents[2]
     names = {
         widget.get("name")

@@ -143,7 +143,7 @@ def test_the_answer_and_the_true_error_are_shown_but_not_for_another_plan(room):
         assert room.logic.isReachable is room.logic.trueErrorMm is None
         assert "The plan has changed" in room.logic.sentence
         room.logic.forgetTruth()
-    # Nor is one that comes later.
+    # Late answers do not count.
     room.logic.send(node)
     node.SetNthControlPointPosition(0, *TUMOR)
     room.logic.follow(room.logic.read(node))

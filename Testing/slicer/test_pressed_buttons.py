@@ -30,7 +30,7 @@ def host(fresh_module):
 
 
 class Trial(ToldModule):
-    """Waits until the module knows what it is told."""
+    """Waits until the module knows the news."""
 
     def tell(self, phase, number=5):
         trial_id = str(uuid.UUID(int=number))

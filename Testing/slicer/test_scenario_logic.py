@@ -69,7 +69,7 @@ def test_the_robot_is_read_once_and_elsewhere_and_stays_hidden_or_cleared(scene,
         logic.forgetScene()
 
     clear()
-    # While it comes it can be hidden, too.
+    # It can also be hidden while it loads.
     for end in (lambda: logic.setRobotShown(False), clear):
         logic.setRobotShown(True)
         in_turns(work, end)
@@ -78,7 +78,7 @@ def test_the_robot_is_read_once_and_elsewhere_and_stays_hidden_or_cleared(scene,
 
 
 class Search:
-    """A search for the head of a volume, which goes on until it is told to end."""
+    """A search for the head of a volume, which lasts until `end` is set."""
 
     def __init__(self, logic):
         self.end = threading.Event()

@@ -96,7 +96,7 @@ def test_displayed_images_are_read_again_only_when_rebuilt_and_a_users_changes_s
     showScenario(scene, imaged)
     loading.finish()
     assert np.array_equal(slicer.util.arrayFromVolume(loading.node).T, ball_volume(60.0).values)
-    # Of two scenarios shown at once the last one stays, though it has no images.
+    # If two scenarios are shown at once, the last stays, even without images.
     showScenario(scene, replace(imaged, name="other"))
     loading.loader.process()
     showScenario(scene, scenario)

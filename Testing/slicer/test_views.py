@@ -65,7 +65,7 @@ def test_the_slices_jump_to_each_next_point_of_a_trial_unless_the_user_wants_it_
     for label in ("1", "2", "15"):
         play(room, follower, label)
         np.testing.assert_allclose(place(room.scene), fiducials[int(label) - 1], atol=1e-3)
-    # What the user scrolls to stays until another point is next.
+    # Scrolled slices stay until another point is next.
     jumpTo(room.scene, (1.0, 2.0, 3.0))
     follower.process()
     np.testing.assert_allclose(place(room.scene), [1, 2, 3])

@@ -1,10 +1,9 @@
-"""Makes a Python process behave as on a slow, busy machine, which no test may depend on.
+"""Makes a Python process as slow as on a busy machine; no test may depend on speed.
 
-Python imports this module when it starts, wherever its folder is on `PYTHONPATH`: `make test
-SLOW=7` has the tests and all processes that they start do so. Threads, work given to pools, disks
-and the processes themselves are late by up to a second, at random; or it is the one who started
-them, or sent something, that is held up, so that they are done before it looks. The number is the
-seed.
+Python imports this module at its start if its folder is on `PYTHONPATH`: `make test SLOW=7` sets
+that for the tests and all processes that they start. Threads, work given to pools, disks and
+processes are late by up to a second, at random; or the code that started them, or sent something,
+is held up, so that they are done before it looks. The number is the seed.
 """
 
 import asyncio
@@ -42,8 +41,8 @@ def _delay_others() -> None:
         run(thread)
 
     def late_submit(pool, work, /, *arguments, **named):
-        # Only journal lines that reach the disk are slow: each line late would be a disk that no
-        # simulator can write to.
+        # Journal lines are slow only on the disk: if each were late, no simulator could write to
+        # that disk.
         is_journal = pool._thread_name_prefix == "journal"
 
         def late_work(*arguments, **named):
@@ -109,7 +108,7 @@ def _held_up_after(send):
 
 
 def _is_in_loop() -> bool:
-    """Return whether the caller is an event loop, which real time depends on."""
+    """Return whether the caller is an event loop, on which real time depends."""
     return asyncio._get_running_loop() is not None
 
 

@@ -10,13 +10,13 @@ from rastrainer_simulator.flow.session.chosen_trial import FIRST_ID
 from Testing.web.trainees_on_page import AtPage
 
 FAR_MM = 3.0
-"""Who finds a checked place farther off than this stops the operation."""
+"""A checked place farther off than this stops the operation."""
 MM = r"\W*([\d.]+)\smm"
 
 
 @dataclass(frozen=True)
 class PlayedCase:
-    """What was shown of a case, and what was done."""
+    """The shown and chosen values of a case."""
 
     residual_mm: float
     true_error_mm: float

@@ -237,7 +237,7 @@ def test_a_scrolled_list_shows_the_item_in_focus_and_its_help(told_page, served,
 
 
 LATER = "new Promise((done) => setTimeout(() => setTimeout(done)))"
-"""What a focused field does in a moment is done."""
+"""A focused field's timers have run by then."""
 
 
 def test_typing_goes_on_in_a_field_while_another_item_appears(told_page, served):

@@ -16,7 +16,7 @@ from Testing.simulator.statistics.test_variation import drawn
 from Testing.web.chromium import PATIENCE_MS
 
 WIDTH, HEIGHT = 180, 263
-"""Of what may be printed on a page, mm; see `@page` in the report's style."""
+"""The printable area of a page, mm; see `@page` in the report's style."""
 PX_PER_MM = 96 / 25.4
 STUDY = {
     "published": lambda: read_study_data(STUDIES / "published.csv"),
@@ -38,7 +38,7 @@ def test_a_printed_report_has_hardly_more_pages_than_its_content_fills(browser, 
     pdf = page.pdf(prefer_css_page_size=True, print_background=True)
     page.close()
     pages = len(re.findall(rb"/Type\s*/Page\b", pdf))
-    # What page breaks leave empty sums to less than one page.
+    # Page breaks leave less than one page empty in all.
     assert filled <= pages <= math.ceil(filled) + 1
 
 

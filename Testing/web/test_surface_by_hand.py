@@ -40,7 +40,7 @@ SEEN_OFF_MM = 0.3
 TURN_BACK_M = 0.006
 STROKE_POINTS = 12
 TRACING = "over parts that face different ways"
-"""Readings during a stroke."""
+"""Shown during a stroke."""
 DRAWN = """() => {
   const { marks, ring } = page.trace;
   return [marks.count, ring.visible, page.stage.model.skin.vertexColors];
@@ -199,7 +199,7 @@ def draw(place: Place, hands: object) -> DrawingTrainee:
 
 
 def check_registered(place: Place, trainee: DrawingTrainee, device: str) -> None:
-    """Accept the match, and check what is shown, recorded, and computed by Slicer's side."""
+    """Accept the match, and compare the screen, the records and Slicer's results."""
     shown = trainee.accept_match()
     result = {fact.label: fact.value for fact in trainee.menu.facts}
     (registration,), (scored,) = place.entries("registration"), place.entries("scored")

@@ -20,7 +20,7 @@ from Testing.web.trainees_on_page import DEVICES, Device, ListeningTrainee, at_p
 
 
 def check_record(played: list[PlayedCase], record: DrillRecord) -> None:
-    """Check that what was shown and done is recorded."""
+    """Check that the record has the played cases."""
     cases = [
         PlayedCase(
             float(f"{case.residual_mm:.2f}"),
@@ -59,7 +59,7 @@ def delivered_to_slicer(place: Place, study: Study) -> DrillRecord:
 
 
 def delivered_later(place: Place) -> DrillRecord:
-    """Fetch the drill once the simulator has nobody else who would have."""
+    """Fetch the drill if no other client does."""
     with Scorer(place.simulator.port) as scorer:
         record = record_from_json(DrillRecord, scorer.offered()[1])
         trial = {"trialId": record.trial_id}
@@ -68,7 +68,7 @@ def delivered_later(place: Place) -> DrillRecord:
 
 
 TRAINEES = "P7", "A"
-"""Who types, and who chooses letters."""
+"""IDs: typed, and chosen by letters."""
 BY_EAR = Device(ListeningTrainee, "keyboard")
 WITH_SLICER = "keys", "a tracked hand", "the mouse", "by ear"
 

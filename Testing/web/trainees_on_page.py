@@ -68,7 +68,7 @@ class AtPage(Trainee):
         super().type_id(self.page if self.types_on_page else None)
 
     def shown(self) -> str:
-        """Return all text that is shown at the moment, also that of pictures."""
+        """Return all text that is shown at the moment, also in pictures."""
         return self.page.evaluate(_SHOWN)
 
     def read(self, pattern: str) -> re.Match[str]:
@@ -210,7 +210,7 @@ class HandTrainee(OnPage):
             self.hands.choose(item)
 
     def parts(self) -> set[str]:
-        """Return what can be pointed at on the menu."""
+        """Return the menu's parts to point at."""
         return set(self.page.evaluate("page.headset.panels.menu.regions.map(({ name }) => name)"))
 
     def type_id(self, page: Page | None = None) -> None:  # noqa: ARG002
@@ -238,9 +238,9 @@ class HandTrainee(OnPage):
 
 @dataclass(frozen=True)
 class Device:
-    """How a trainee trains: by which input, as it is recorded, and on which display.
+    """How a trainee trains: the input, as it is recorded, and the display.
 
-    `speed` is that for steering, in simulated seconds in a second.
+    `speed` is for steering, in simulated seconds in a second.
     """
 
     trainee: type[AtPage]
@@ -252,7 +252,7 @@ class Device:
 
 XR = "headset's controllers"
 SLOW = "0.3"
-"""The speed for hands that a page reads once a picture: where the processor draws, a picture of a
+"""The speed for hands that a page reads once a picture: if the processor draws, a picture of a
 headset takes a quarter of a second, and a stick that is released so late overshoots."""
 QUEST_2, QUEST_3 = {"headset": "metaQuest2"}, {"headset": "metaQuest3"}
 DEVICES = {

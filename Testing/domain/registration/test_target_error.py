@@ -1,4 +1,4 @@
-"""The expected target error holds the true one, also with an offset that all touches share."""
+"""The interval of the expected TRE contains the true TRE, also if touches share an offset."""
 
 import numpy as np
 import pytest
@@ -129,7 +129,7 @@ def test_the_interval_holds_the_true_error_of_touches_that_slip_along_the_skin(k
         true_mm = np.linalg.norm(transforms.apply(registration.matrix, target) - target)
         error = target_error(registration, target, error_along_surface(registration, normals))
         inside += error.interval_mm[0] <= true_mm <= error.interval_mm[1]
-    # Give or take two and a half standard errors of so many sets.
+    # The tolerance is two and a half standard errors.
     assert inside / sets >= 0.95 - 2.5 * np.sqrt(0.95 * 0.05 / sets)
 
 
@@ -214,7 +214,7 @@ def along_skin(errors, normals):
 def test_the_bias_is_the_least_squares_solution_and_rotates_with_the_head(seed):
     rng = np.random.default_rng(seed)
     normals, bias = skin(rng), rng.normal(0.0, 2.0, 3)
-    # Whatever part of the errors points away from the skin.
+    # Errors across the skin do not count.
     depth = normals * rng.normal(0.0, 3.0, (15, 1))
     exact = common_bias(bias + depth, normals)
     assert exact.vector_mm == pytest.approx(bias, abs=1e-9)

@@ -28,7 +28,7 @@ SHIPPED = Path(__file__).parents[3] / "assets" / "studies" / "published-protocol
 NOW = datetime(2999, 1, 1, tzinfo=timezone.utc)
 
 LATER = dict.fromkeys(("startedUtc", "completedUtc"), "2999-01-01T10:00:00Z")
-"""When a trial is played that was started after its trainee was enrolled."""
+"""Times of a trial that starts after its trainee was enrolled."""
 
 
 def protocol(**changes):
@@ -201,7 +201,7 @@ def test_only_the_right_trial_of_the_right_trainee_counts_and_only_once(study):
     ):
         study.add_trial(other | LATER, score=gentle_score(110.0, 0.5))
         assert progress.count_played("T001").next_step == step
-    # One that can have no score counts for no step.
+    # A trial without a score completes no step.
     study.add_trial(trial_of(step, 3) | LATER)
     assert progress.count_played("T001").next_step == step
     with pytest.raises(InputError, match="done by a stored trial"):
@@ -235,7 +235,7 @@ def test_trials_are_counted_automatically_in_protocol_order_since_enrollment(stu
         trial = trial_of(first, number) | {"task": task, "startedUtc": utc, "completedUtc": utc}
         study.add_trial(trial, score=gentle_score(110.0, 0.5))
 
-    # Delivered in another order than played; one task twice, which is not its second round.
+    # Not delivered in the order played; a task played twice does not make a second round.
     play(3, "task-2", 20)
     play(4, "task-1", 15)
     play(2, "task-1", 10)

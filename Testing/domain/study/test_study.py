@@ -41,7 +41,7 @@ def test_outcomes_are_those_of_one_task_and_mode_with_the_latest_score(study, re
     study.add_results(make_record(1)["trialId"], truth=TRUTH)
     better = gentle_score(50.0, 0.2)
     study.add_results(make_record(1)["trialId"], score=better)
-    # Of others, nothing is read but the numbers: there may be thousands.
+    # Only the numbers are read, no JSON: there may be thousands.
     study.database.change("UPDATE results SET result_json = '{}'")
     first, second = study.outcomes("task-1", "desktop")
     time_s = {"completion_time_s": first.values["completion_time_s"]}

@@ -61,7 +61,7 @@ def test_a_trials_statement_has_success_and_completion_time(data):
         replace(played, values={**played.values, "score": score}, acceptable=acceptable)
         for score, acceptable in ((80.0, True), (80.0, False), (79.9, True))
     ]
-    # The mark is of trials by fiducials alone.
+    # The mark is for trials by fiducials only.
     trials += [replace(trials[0], method="surface"), played]
     protocol = replace(data.protocol, pass_mark=80.0)
     exported = statements(
@@ -118,7 +118,7 @@ def test_an_outcome_is_stored_beside_the_score_of_the_touches(study):
     first = stored.procedure.analysis.trajectories[0]
     assert first.target_point_error.by_registration_mm == pytest.approx(0.5)
     assert first.depth_error_by_hand_mm == pytest.approx(TOO_DEEP_MM)
-    # What was read before is read again.
+    # A trial read before is read anew.
     assert study.history(trial.trainee)[0].procedure == stored.procedure
 
 

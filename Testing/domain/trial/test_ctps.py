@@ -45,7 +45,7 @@ def test_overall_scores_and_correlations_are_as_printed_and_equation_3_yields_ha
     assert f"{published['hmd'].sd_population:.2f}" == "25.47"
     assert f"{published['desktop'].overall:.2f}" == "67.29"
     assert f"{published['desktop'].sd_sample:.2f}" == "25.96"
-    # What is printed as r squared are correlations.
+    # The printed "r squared" are correlations.
     assert f"{published['hmd'].pearson_r:.3f}" == "0.963"
     assert f"{published['desktop'].pearson_r:.3f}" == "0.919"
     assert f"{published['hmd'].r_squared:.3f}" == "0.928"

@@ -33,12 +33,12 @@ if __name__ == "__main__":
 
 
 def bundled_package(folder: Path, pid_file: Path, options: Sequence[str]) -> SimulatorPackage:
-    """Return what a module brings along to set up the simulator of this checkout.
+    """Return a module's package that sets up the simulator of this checkout.
 
     Args:
-        folder: that is made for it.
-        pid_file: into which the simulator's process writes its number.
-        options: further ones of `rastrainer simulator`.
+        folder: created for it.
+        pid_file: gets the number of the simulator's process.
+        options: added to `rastrainer simulator`.
     """
     return write_package(folder, _cli(pid_file, options))
 

@@ -1,4 +1,4 @@
-"""Save pictures of two sections at work: `python -m Testing.end_to_end.module.screenshots DIR`."""
+"""Save pictures of two sections in use: `python -m Testing.end_to_end.module.screenshots DIR`."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from Testing.slicer.host.host import Host
 
 SECTIONS = ("simulator", "trainees", "scenario", "training", "registration", "plan", "score")
 SHOWN_AFTER = {"look_at_registration": "registration", "look_at_score": "score"}
-"""Which section is shown after which step."""
+"""The section to show after each step."""
 FOLDED = ("advancedGroupBox", "pointListsGroupBox")
 """Groups that a user opens now and then."""
 OPTIONS = ("--speed", "4", "--no-views", "--no-gamepad")
-"""Not too fast: the trainee would seem to make a long pause."""
+"""Not faster: the trainee would seem to pause for long."""
 AZIMUTH, ELEVATION, ZOOM = 35.0, 20.0, 1.3
 HEAD, DISTANCE_MM = (0.0, -10.0, 30.0), 620.0
 WIDTH = 520
@@ -26,7 +26,7 @@ WIDTH = 520
 
 @contextlib.contextmanager
 def temporary_host() -> Iterator[tuple[Host, Path]]:
-    """Run Slicer on a computer of its own; yield it with a folder beside that."""
+    """Run Slicer in a temporary folder's subfolder; yield it and the folder."""
     with tempfile.TemporaryDirectory() as temporary:
         host = Host(Path(temporary, "computer of the instructor"))
         try:

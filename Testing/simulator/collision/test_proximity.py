@@ -68,7 +68,7 @@ def test_commanded_motion_into_the_skin_that_is_not_carried_out_adds_up(pressing
     assert pressing.depth == pytest.approx(0.002)
     pressing.move((0.0, 0.0, -0.0005), (0.0, 0.0, -0.0002), skin())
     assert pressing.depth == pytest.approx(0.0023)
-    # By its component into the skin.
+    # Only the part into the skin.
     pressing.move((0.003, 0.0, -0.0004), (0.003, 0.0, 0.0), skin())
     assert pressing.depth == pytest.approx(0.0027)
 

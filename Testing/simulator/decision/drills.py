@@ -25,13 +25,13 @@ SEED = 2**62 + 1234567
 
 @cache
 def _cases(name):
-    """Return a case of every fault on a scenario, quickly made."""
+    """Return a quickly made case of every fault on a scenario."""
     maker = CaseMaker(load_scenario(asset_path("scenarios", name)))
     return {fault: maker.case(1, fault) for fault in (Fault.NONE, *FAULTS)}
 
 
 def cheap_form(maker, random, seen):
-    """Draw cases as `draw_form` does; those of a fault differ by their seeds alone."""
+    """Draw cases like `draw_form`; cases of the same fault differ only by seed."""
     keys: dict[int, Fault] = {}
     while len(keys) < CASES:
         seed = int(random.integers(2**53))
@@ -48,7 +48,7 @@ def cheap_forms():
 
 
 class AtOnce(Executor):
-    """Does everything before it returns, as a disk would that takes no time."""
+    """Does all work before `submit` returns, like a disk that takes no time."""
 
     def submit(self, work, /, *given, **named):
         future = Future()
@@ -94,7 +94,7 @@ def shown(drill):
 
 
 def decide_all(drill, decision=Decision.STOP):
-    """Decide all cases, and have the drill finished."""
+    """Decide all cases, and finish the drill."""
     while not drill.is_over:
         if drill.decided is not None:
             drill.next_case()

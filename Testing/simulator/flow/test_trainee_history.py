@@ -41,7 +41,7 @@ def test_a_task_counts_once_registered(tmp_path):
     # A trainee who has done a task skipped the trial run.
     assert progress.missing_before("P02", HEAD, "task-2", ORDER) is None
     assert progress.missing_before("P03", HEAD, "task-2", ORDER) == "trial-run"
-    # What was done on one head does not count for another.
+    # Tasks done on one head do not count on another.
     assert progress.missing_before("P01", "other", "task-2", ORDER) == "trial-run"
 
 

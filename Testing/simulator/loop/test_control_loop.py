@@ -25,7 +25,7 @@ from Testing.simulator.record.test_interrupted_trial import on_full_disk
 
 TIMEOUT_S = 120.0
 SPEED = 20.0
-"""Of most loops: as fast as it can, a loop would fill journals while a test waits for the disk."""
+"""For most loops: at full speed, a loop would fill journals while a test waits for the disk."""
 
 
 @pytest.fixture(scope="module")

@@ -72,7 +72,7 @@ def test_power_is_that_of_the_tables():
 
 
 def test_power_and_holms_correction_are_those_of_statsmodels():
-    """By statsmodels 0.15.0: `TTestPower().power(effect, n, 0.05)`, `multipletests(p, "holm")`."""
+    """statsmodels 0.15.0: `TTestPower().power(effect, n, 0.05)`, `multipletests(p, "holm")`."""
     expected = {
         (0.5, 34): 0.8077775012792737,
         (0.8, 12): 0.7136600656001074,

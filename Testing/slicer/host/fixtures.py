@@ -31,7 +31,7 @@ def lasting_host(tmp_path_factory):
 
 @pytest.fixture
 def fresh_module(lasting_host, tmp_path):
-    """The open module with an empty scene, and a study of its own."""
+    """The open module with an empty scene and a new study."""
     lasting_host.begin_anew(tmp_path / "study.db")
     yield lasting_host
     lasting_host.widget.logic.session.link.disconnect()

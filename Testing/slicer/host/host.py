@@ -83,7 +83,7 @@ class Host(User):
 
     @property
     def errors(self) -> list[str]:
-        """What went wrong, which Slicer would have only printed; empty in a good test."""
+        """Errors that Slicer would have only printed; empty in a good test."""
         return FAILURES.texts
 
     @property
@@ -122,11 +122,11 @@ class Host(User):
         self.process_events()
 
     def begin_anew(self, study: Path) -> None:
-        """Forget what was done in the open module, and continue with another study."""
+        """Reset the open module, and continue with another study."""
         ANSWERS.clear()
         FAILURES.texts.clear()
         session = self.widget.logic.session
-        # The next simulator may say nothing of a trial.
+        # The next simulator may report no trial.
         session.link.stateChanged.emit({})
         shutil.rmtree(session.places.records, ignore_errors=True)
         self.clear_scene()
@@ -275,7 +275,7 @@ class Host(User):
                 node.PeriodicProcess()
 
     def _note(self, _kind: type, exception: BaseException, trace: Any) -> None:
-        """VTK and Qt hand what Python raised in their callbacks to this hook."""
+        """VTK and Qt pass exceptions in their callbacks to this hook."""
         FAILURES.catch(exception.with_traceback(trace))
 
 

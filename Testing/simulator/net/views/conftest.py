@@ -17,7 +17,7 @@ from Testing.simulator.net.views.served import ServedViews, ViewClient
 
 @pytest.fixture(scope="session", autouse=True)
 def own_cache(tmp_path_factory, setup):
-    """Keep the scenes of the tests out of the user's cache; the one without a task is there."""
+    """Give the tests their own cache of scenes, which has the scene without a task."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         asyncio.run(SceneFiles(scenes_folder()).scene(setup, NO_TASK))

@@ -39,11 +39,11 @@ class RecordingPresenter:
         self.updates = Subscribers()
 
     def pictures(self, _now):
-        """Look through a camera that no scenario has, with nothing beside it."""
+        """Look through a camera that no scenario has, without an inset."""
         return Pictures(LOOKED_FROM)
 
     def ghost(self, _now):
-        """Show none beside the arm."""
+        """Show no ghost."""
 
     def trace_guidance(self, _now):
         return self.guidance

@@ -41,7 +41,7 @@ def test_a_board_is_sent_only_the_seat_and_only_when_it_has_changed(served, conn
     shown = (first["type"], first["trainee"], first["task"], first["score"], first["phase"])
     assert shown == ("seat", "P07", "Task 1", 80.0, "idle")
     served.presenter.reported_seat = Seat("P08")
-    # Between the two there is no state, no screen and no other seat.
+    # No state, screen or other seat came between the two.
     second = board.next()
     assert (second["type"], second["trainee"], second["score"]) == ("seat", "P08", None)
     assert served.presenter.calls == []

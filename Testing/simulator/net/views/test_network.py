@@ -1,4 +1,4 @@
-"""Views of the local network: by TLS alone, with a certificate that can be compared."""
+"""Views of the local network: only by TLS, with a certificate that can be compared."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ def port(served, certificates):
 
 
 def connected(port: int, version: ssl.TLSVersion) -> ssl.SSLSocket:
-    """Return a connection by exactly one version of TLS, to a certificate that is not checked."""
+    """Return a connection over a single version of TLS that does not check the certificate."""
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
     context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
-    # A client of its own default would refuse to speak an old version, and prove nothing.
+    # A client would refuse old versions by default, and prove nothing.
     context.set_ciphers("ALL:@SECLEVEL=0")
     context.minimum_version = context.maximum_version = version
     return context.wrap_socket(socket.create_connection((HOST, port), 60))
@@ -48,10 +48,10 @@ def test_the_page_is_served_over_tls_1_2_and_1_3(port):
 @pytest.mark.filterwarnings("ignore:ssl.TLSVersion:DeprecationWarning")
 def test_tls_older_than_1_2_is_refused(port, certificates):
     version = ssl.TLSVersion.TLSv1_1
-    # By the server, and not by this side.
+    # The server refuses, not this side.
     with pytest.raises(ssl.SSLError, match=r"(?i)alert protocol version|EOF"):
         connected(port, version)
-    # Where the system's own OpenSSL would allow it, too.
+    # Even if the system's OpenSSL would allow it.
     assert own_certificate(certificates).tls.minimum_version > version
 
 

@@ -155,7 +155,7 @@ def test_every_answer_tells_the_browser_what_to_block(served):
 
 @pytest.fixture
 def page(tmp_path, monkeypatch):
-    """A built page, and beside its folder a private file."""
+    """A built page; a private file is next to its folder."""
     folder = tmp_path / "page"
     folder.mkdir()
     (folder / "index.html").write_text("<title>built</title>")

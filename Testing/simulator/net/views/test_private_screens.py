@@ -1,4 +1,4 @@
-"""What a private menu offers is sent to the operator, and to no one else."""
+"""The content of a private menu is sent only to the operator."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ def joined(served, connect, kind, role=ViewRole.VIEW):
 
 
 def screens_and_events(view):
-    """Return the menus and the events before the one that ends a test.
+    """Return the menus and events before the event that ends a test.
 
-    Events come in their order, and screens before them; where a view reads slowly, the plain
-    screen before an older event.
+    Events come in order, after their screens; if a view reads slowly, the plain screen may come
+    before an older event.
     """
     messages = view.all_until(
         lambda message: message["type"] == "event" and message["kind"] == "accept"
@@ -61,7 +61,7 @@ def is_bare(menu) -> bool:
 
 @pytest.fixture
 def seat(served, connect):
-    """Return views by what they are, and their numbers: two windows, two pages, a spectator."""
+    """Return views and their numbers by name: two windows, two pages, a spectator."""
     kinds = {"window": "desktop", "other window": "desktop", "page": "page", "other page": "page"}
     views = {name: joined(served, connect, kind) for name, kind in kinds.items()}
     views["spectator"] = joined(served, connect, "spectator", ViewRole.SPECTATOR)

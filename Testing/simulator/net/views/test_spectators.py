@@ -1,4 +1,4 @@
-"""A spectator sees everything that a view sees, and drives nothing, whatever it sends."""
+"""A spectator sees everything that a view sees, and no message of it drives anything."""
 
 import aiohttp
 import pytest
@@ -31,7 +31,7 @@ def watch(served, connect, role=ViewRole.SPECTATOR, kind="spectator"):
 
 
 def wearers(view):
-    """Return what a spectator has read about the wearer of a headset, state by state."""
+    """Yield the wearer of a headset in each state that a spectator reads."""
     while True:
         yield view.next("state")["headset"]
 

@@ -1,4 +1,4 @@
-"""What views receive of a trace: only what is new, but all of it when they join late."""
+"""Views receive only the new part of a trace, but the whole trace if they join late."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ POSE = np.array([[0, -1, 0, 0.5], [1, 0, 0, -0.25], [0, 0, 1, 0.125], [0, 0, 0, 
 
 
 class TracedTrial(Trial):
-    """A trial by surface whose tip is dragged by hand, and what views receive of it."""
+    """A trial by surface whose tip is dragged by hand, and its messages to views."""
 
     def __init__(self, scenario):
         super().__init__(with_landmarks(scenario))
@@ -40,7 +40,7 @@ class TracedTrial(Trial):
         self.must(CommandName.TRACE, on=False)
 
     def in_head(self, first=0):
-        """Return the points from one on, in the head's frame, mm."""
+        """Return points from `first` on, in the head's frame, mm."""
         places = np.array([point.position for point in self.state.trace.points[first:]])
         points = (MM_PER_M * (places - POSE[:3, 3]) @ POSE[:3, :3]).round(2)
         return tuple(map(tuple, points.tolist()))
