@@ -72,7 +72,7 @@ def _messages() -> Iterator[str]:
 
 
 def _record(record: type) -> str:
-    """Return the docstring of a record and its keys; those of another kind are named once."""
+    """Return the docstring of a record and its keys; records of another kind are named once."""
     about, _, attributes = (inspect.getdoc(record) or "").partition("\n\nAttributes:\n")
     meanings = dict(ATTRIBUTE.findall(" ".join(attributes.split("\n        ")) + "\n"))
     (base,) = record.__bases__[:1]

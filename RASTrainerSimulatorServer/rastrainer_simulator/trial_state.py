@@ -109,7 +109,7 @@ class RegistrationAttempt:
 
 
 class Tool(str, Enum):
-    """What the robot holds. All have the pointer's tip and axis; drill and electrode pass through
+    """The robot's tool. All have the pointer's tip and axis; drill and electrode pass through
     the guide and beyond its tip."""
 
     POINTER = "pointer"
@@ -157,8 +157,8 @@ class GuideAlignment:
     Attributes:
         entry_distance: perpendicular distance of the planned entry from the guide's axis, m.
         angle: between the guide's axis and the planned line, rad.
-        stand_off: distance along the axis from the tip to beside the planned entry, m; below 0
-            where the tip is past it.
+        stand_off: distance along the axis from the tip to the planned entry, m; negative once the
+            tip is past it.
     """
 
     entry_distance: float
@@ -214,7 +214,7 @@ class ProcedureState:
         checkpoints: touched by it, in their order.
         attempts: at registering, before the present one; after its acceptance with it.
         trajectories: in the order of the plan; () before a registration is in use.
-        trajectory: number of the one that is at hand, from 0.
+        trajectory: number of the present trajectory, from 0.
         times_s: of `running` and `verifying`, pauses excluded.
         ended_s: the trial's time in s at which the last instrument was released; None before.
     """

@@ -100,7 +100,7 @@ _SAMPLES = 6
 def without_face_in(volume: HeadVolume, head: HeadMesh) -> HeadVolume:
     """Return the images of a head without its face and without anything around the head.
 
-    The shield of `without_face` alone decides what is removed, so that the images reveal no more
+    Only the shield of `without_face` is removed, so that the images reveal no more
     about the face than the exported surface.
     """
     shield, tip = without_face(head), nose_tip(head)

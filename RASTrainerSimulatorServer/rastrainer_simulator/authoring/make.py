@@ -179,9 +179,10 @@ def copy_with_plan(
 ) -> Scenario:
     """Write a copy of a scenario with another plan into a new folder and return it.
 
-    Arguments that are empty or None change nothing; a procedure replaces that of the same name, all
-    others replace what there is. The target error is reported at the first target; `warn` is called
-    if it is too deep for trials to start above it. Landmarks near the skin are moved onto it.
+    Arguments that are empty or None change nothing; a procedure replaces the procedure of the same
+    name, all other arguments replace the present values. The target error is reported at the first
+    target; `warn` is called if it is too deep for trials to start above it. Landmarks near the skin
+    are moved onto it.
     """
     before = checked_scenario(folder)
     head, skull, volume, no_go = read_files(before)

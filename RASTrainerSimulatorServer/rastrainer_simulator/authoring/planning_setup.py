@@ -22,7 +22,7 @@ from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.viewpoint.best_view import TouchViews
 
 POSES_TRIED = 12
-"""Poses of the head, besides the nominal one, in which what is planned must be reached."""
+"""Number of poses of the head, besides the nominal pose, in which a plan must be reachable."""
 WIDER = 1.2
 """Perturbation of the poses for planning over the perturbation in trials: a margin."""
 

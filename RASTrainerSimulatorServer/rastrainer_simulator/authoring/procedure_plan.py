@@ -119,7 +119,7 @@ def with_procedure(
             name = f"{structure.file.stem[:36]}-{next(numbers)}.ply"
         kept[name] = mesh
         structures.append(replace(structure, file=Path(NO_GO_FOLDER, name)))
-    # In place of the one of its name.
+    # It replaces the procedure of the same name.
     procedures = {each.name: each for each in scenario.procedures}
     procedures[procedure.name] = replace(procedure, no_go=tuple(structures))
     return replace(scenario, procedures=tuple(procedures.values())), kept

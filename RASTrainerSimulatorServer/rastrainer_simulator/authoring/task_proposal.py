@@ -263,7 +263,7 @@ FACE_MARGIN_MM = 10.0
 
 WIDE_SEEDS, TRIAL_SEEDS = range(1000, 1024), range(POSES_TRIED)
 """Seeds of the poses in which a fiducial must be touchable: wider than in trials, and the poses of
-the check. With six wide ones, in 1 of 1,000 trials a fiducial was out of reach."""
+the check. If only six were wide, a fiducial was out of reach in 1 of 1,000 trials."""
 
 SETS_TRIED = 6
 WIDEN_DEG, WIDEST_DEG = 10.0, 75.0

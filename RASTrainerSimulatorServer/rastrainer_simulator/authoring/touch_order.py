@@ -218,7 +218,7 @@ class SurfaceGraph:
         lengths = np.concatenate([straight, across_mm, straight, across_mm, np.zeros(3)])
         order = np.argsort(both[:, 0], kind="stable")
         rows = np.searchsorted(both[order, 0], np.arange(count + 2))
-        # By rows: scipy adds the lengths of paths between the same vertices if these are in pairs.
+        # As rows: given pairs, scipy would add the lengths of paths between the same vertices.
         self._paths = csr_array((lengths[order], both[order, 1], rows), shape=(count + 1,) * 2)
         self._known: dict[tuple[float, ...], float] = {}
 

@@ -62,7 +62,7 @@ def draw_form(
 
 
 def _off(form: list[DecisionCase]) -> float:
-    """Return by how much a form misses what is asked of it, relative to the limits."""
+    """Return by how much a form misses its requirements, relative to the limits."""
     mean = float(np.mean([case.difficulty for case in form]))
     off = max(abs(mean - MEAN_DIFFICULTY) / DIFFICULTY_SLACK - 1.0, 0.0)
     is_sound = np.array([case.is_sound for case in form])

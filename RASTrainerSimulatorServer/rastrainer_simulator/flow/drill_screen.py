@@ -146,7 +146,7 @@ class DrillScreen(ArmScreen):
             said = self._message("case.blocked", Tone.WARNING, place=place, distance=off)
         if not session.preferences.speech:
             return said
-        # Who listens hears what others see: where the place really is.
+        # A listener hears what others see: the true position of the place.
         case = session.placed_case
         true = in_meters(case.truly(case.places[self._place]))
         return replace(said, text=f"{said.text} {self._toward(place, true)}")

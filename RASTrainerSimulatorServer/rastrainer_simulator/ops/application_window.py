@@ -127,7 +127,7 @@ class ApplicationWindow:
         remove_unused_folders(parent)
         self._folder = Path(tempfile.mkdtemp(dir=parent))
         self._lock = open_lock_file(self._folder / LOCK_NAME)
-        # Without locks, as on some network disks, no folder is taken for unused.
+        # Without locks, as on some network disks, no folder counts as unused.
         with contextlib.suppress(OSError):
             lock(self._lock)
         # A page that leads to ours: others can read a command line, but not this file.

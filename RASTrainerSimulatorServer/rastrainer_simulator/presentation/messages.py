@@ -107,7 +107,7 @@ class HeadsetPose:
 
 @dataclass(frozen=True)
 class News(ViewMessage):
-    """What a view is sent; a board is sent a `WelcomeNews` and `SeatNews`."""
+    """The messages to a view; a board receives a `WelcomeNews` and `SeatNews`."""
 
 
 @dataclass(frozen=True)
@@ -336,7 +336,7 @@ class SeatNews(SeatReport, ViewMessage):
 
 @dataclass(frozen=True)
 class ViewInput(ViewMessage):
-    """What a view may send."""
+    """The messages from a view."""
 
 
 @dataclass(frozen=True)

@@ -262,7 +262,7 @@ class TrialArchive:
         `at` is for the entry that is appended to the trial's journal, or RecordError is raised.
         """
         trial_id = arguments["trialId"]
-        # The arguments as they are read from a journal, so that repeated ones compare equal.
+        # As a journal returns them, so that repeated arguments compare equal.
         arguments = json.loads(json.dumps(arguments))
         entry, trial = self._found(trial_id).after(command, arguments, sender)
         if entry is not None:

@@ -146,7 +146,7 @@ T = TypeVar("T")
 
 
 class JournalLoading(Generic[T]):
-    """Reads journals in a thread while the control loop runs; `loaded` is what comes of it."""
+    """Reads journals in a thread while the control loop runs; `loaded` is the result."""
 
     def __init__(self, load: Callable[[Callable[[], None]], T]) -> None:
         """Start; `load` is given a function that raises InputError as soon as it is canceled."""

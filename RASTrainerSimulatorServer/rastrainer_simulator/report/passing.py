@@ -121,8 +121,8 @@ def passing(data: StudyData, found: list[ModePassing]) -> Markup:
 def _failures(data: StudyData, mode: str, mark: float) -> tuple[dict[str, list[bool]], int]:
     """Return whether each trial of each trainee failed, in order of starting.
 
-    A trial without a score did, and an aborted one that counts as not passed; the number of these
-    is returned, too.
+    A trial without a score failed, and an aborted trial if it counts; the number of such aborted
+    trials is returned, too.
     """
     aborted = [
         TrialRow.of(record)

@@ -62,8 +62,8 @@ MAX_SUBJECTS = 10_000
 def paired_power(effect_dz: float, n: int, with_period: bool = False) -> float:
     """Return the probability that n subjects show an effect (two-sided paired t-test, 5 %).
 
-    The effect is the true mean difference over the true standard deviation of the differences. To
-    separate the effect of the period (`with_period`) takes a degree of freedom; the orders are
+    The effect is the true mean difference over the true standard deviation of the differences. The
+    effect of the period, if separated (`with_period`), takes a degree of freedom; the orders are
     taken as balanced.
     """
     dof = n - 1 - with_period

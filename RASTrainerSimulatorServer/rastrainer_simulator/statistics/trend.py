@@ -31,7 +31,7 @@ MAX_ORDERS = 9999
 
 
 class TrendVerdict(Enum):
-    """What a series of trials shows."""
+    """The direction of a series of trials."""
 
     FALLS = "falls"
     STEADY = "steady"

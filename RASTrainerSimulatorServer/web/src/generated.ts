@@ -53,7 +53,7 @@ export interface CoveringBodies {
 /** The state of a trial. */
 export type Phase = "idle" | "running" | "paused" | "complete" | "verifying" | "aligning" | "drilling" | "inserting" | "registered" | "scored";
 
-/** What the robot holds. All have the pointer's tip and axis; drill and electrode pass through */
+/** The robot's tool. All have the pointer's tip and axis; drill and electrode pass through */
 export type Tool = "pointer" | "guide" | "drill" | "electrode";
 
 /** Offset of the planned line from the guide's axis, seen along the axis: right and up. */

@@ -1,4 +1,4 @@
-/** What the page says itself, because the simulator cannot or does not know. */
+/** The page's own sentences, for states that the simulator cannot tell or does not know. */
 
 import { page as de } from "./texts/de.json";
 import { page as en } from "./texts/en.json";
@@ -14,7 +14,7 @@ const TABLES = typeset({ de, en, es, fr, zh });
 let table: Readonly<Record<TextName, string>> = en;
 useLanguage(navigator.language);
 
-/** Speak the language that the simulator's texts are in; English where there is no table of it. */
+/** Speak the language of the simulator's texts, or English if there is no table of it. */
 export function useLanguage(tag: string): void {
   const language = tag.slice(0, 2);
   table = TABLES[language] ?? en;
@@ -31,7 +31,7 @@ export function holderName(holder: string): string {
   return name in table ? table[name as TextName] : holder;
 }
 
-/** Who drives the arm, as people read it. */
+/** Return the holder of the control, in words. */
 export function sayHolder(holder: string, isYou: boolean): string {
   return holder === "" ? say("nobody") : say(isYou ? "you" : "other", { source: holderName(holder) });
 }

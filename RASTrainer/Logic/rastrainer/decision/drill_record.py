@@ -97,7 +97,7 @@ class CaseTruth:
 
 @dataclass(frozen=True, kw_only=True)
 class DecidedCase(CaseTruth):
-    """A case of a drill, and what was decided.
+    """A case of a drill, with the trainee's decision.
 
     Attributes:
         checks: names of the checked places, in order; "tip" is where the trainee held the tip.

@@ -20,8 +20,8 @@ HARM_COST, AGAIN_COST, STOP_COST, VAIN_COST, CHECK_COST = 10.0, 1.0, 2.0, 4.0, 0
 """Costs relative to a registration, which costs 1: to proceed beyond the limit, to register again,
 to stop and look for the cause, to do either in vain, and to check a place. Our own convention."""
 BELIEVER_COST, IDEAL_COST = 4.6, 1.8
-"""Mean cost of a case for who believes the residual, and for an ideal observer; measured on
-simulated ones (Testing/error_rates/tables.md)."""
+"""Mean cost of a case for a trainee who trusts the residual, and for an ideal observer; measured on
+simulated trainees (Testing/error_rates/tables.md)."""
 MOST_HARMFUL, MOST_VAIN = 1, 2
 """A drill of twenty is passed with at most so many decisions to proceed beyond the limit, and so
 many sound registrations refused: by 90 % of those who are right in 95 % of all cases, and by 1 % of

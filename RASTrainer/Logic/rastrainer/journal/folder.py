@@ -60,7 +60,7 @@ _Text = Annotated[str, text(1000, 0)]
 
 @dataclass(frozen=True)
 class FolderHolder:
-    """The simulator that holds a folder, with 0 and "" for what is unknown or missing.
+    """The simulator that holds a folder, with 0 and "" for unknown or missing values.
 
     `started` is UTC, ISO 8601, and `started_by` empty if a person started it. On host and port it
     listens for OpenIGTLink; `page` is the address of its page.

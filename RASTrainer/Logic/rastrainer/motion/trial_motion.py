@@ -46,8 +46,8 @@ class Throughput:
     """Speed and accuracy of pointing in one number: mean of effective index of difficulty over
     movement time.
 
-    Along the task axes, the effective width is 4.133·RMS distance of the end points from their
-    targets, and an effective distance that of each movement.
+    Both are measured along the task axes: the effective width, 4.133·RMS distance of the end points
+    from their targets, and the effective distance of each movement.
     """
 
     bits_per_s: float

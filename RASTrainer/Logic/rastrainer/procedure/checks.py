@@ -173,7 +173,7 @@ def unusable_lines(procedure: Procedure, head: HeadMesh, skull: HeadMesh) -> lis
 
 
 def entry_fault(off_skin_mm: float) -> str | None:
-    """Return what is wrong with an entry so far above the skin; below 0 it is below it."""
+    """Return the fault of an entry at this height above the skin, or None; negative is inside."""
     if abs(off_skin_mm) <= ENTRY_OFF_SKIN_MM:
         return None
     side = "above the skin" if off_skin_mm > 0.0 else "below the skin, within the head"

@@ -63,7 +63,7 @@ class SurfaceMatch:
 
     @property
     def warnings(self) -> tuple[RegistrationWarning, ...]:
-        """What looks wrong, to be shown before the match is accepted."""
+        """Warnings to show before the match is accepted."""
         return tuple(find_match_warnings(self))
 
 

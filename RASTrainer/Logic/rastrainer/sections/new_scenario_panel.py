@@ -194,7 +194,7 @@ _SHOWN = [_("Nasion"), _("Right outer canthus"), _("Left outer canthus")]
 _SHOWN += [_("Right inner canthus"), _("Left inner canthus"), _("Right tragus")]
 _SHOWN += [_("Left tragus"), _("Tip of the nose")]
 NAMES = dict(zip(FACE_LANDMARKS, _SHOWN, strict=True))
-"""What a landmark is called here, by its name in files."""
+"""The landmarks' names on the screen, by their names in files."""
 ENTRIES = [(NAMES[name], name) for name in FACE_LANDMARKS]
 
 

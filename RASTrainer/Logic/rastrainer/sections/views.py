@@ -96,9 +96,9 @@ DEVICES = {
 class SliceFollower:
     """Moves the slices just enough to go through a point; their orientation stays.
 
-    By the settings, they jump to each point that is to be touched next, or stay at the tip of the
-    tool. In a procedure they may lie along guide, drill and instrument, until these are done: one
-    across the instrument (probe's-eye view), two along it. `later` has the views moved one after
+    As set, they jump to each point that is to be touched next, or stay at the tip of the tool. In
+    a procedure they may lie along guide, drill and instrument, until these are done: one across
+    the instrument (probe's-eye view), two along it. `later` has the views moved one after
     the other, where they need not follow the tool.
     """
 

@@ -67,7 +67,7 @@ def check_journal(
 
 
 def _lines(journal: bytes, sealed: str) -> tuple[list[entries.Line], int]:
-    """Return the lines of a trial, up to what came after it, and the place of the sealed one."""
+    """Return the lines of a trial, without any that follow it, and the index of the sealed line."""
     lines: list[entries.Line] = []
     previous, place = NO_LINE, None
     for number, line in enumerate(journal.splitlines(), start=1):

@@ -83,8 +83,8 @@ class RatingStore:
     ) -> tuple[str, ...]:
         """Assign replays to a rater; return their trials in the rater's order.
 
-        All raters get the same trials: those of the other raters, and if these are fewer than
-        `count`, more of `trial_ids`, drawn at random. Each rater gets them in another order. A
+        All raters get the same trials; if the other raters have fewer than `count`, more are drawn
+        at random from `trial_ids`. Each rater gets them in another order. A
         rater's earlier replays keep their places.
         """
         rater = accepted(pseudonym, rater, "The name of a rater")

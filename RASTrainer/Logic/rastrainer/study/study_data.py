@@ -32,7 +32,7 @@ from rastrainer.trial.trial_row import TrialRow
 
 @dataclass(frozen=True)
 class StudyData:
-    """The data of a report; `gap` says what is missing from its virtual cohort.
+    """The data of a report; `gap` names the missing part of its virtual cohort.
 
     Attributes:
         trials: Without trial runs; for trainees in a protocol, only trials of its steps.

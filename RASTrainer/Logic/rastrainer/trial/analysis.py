@@ -82,8 +82,8 @@ class TrialAnalysis(touch_registration.TouchRegistration):
         """Return the analysis with the truth and its score.
 
         The score uses the true error of the rigid registration and, of a trial by fiducials, the
-        common bias of its touches. A landmark has no exact place, and a trace no bias. References,
-        by task, are those of a study's protocol; other tasks have the scenario's.
+        common bias of its touches. A landmark has no exact place, and a trace no bias. `references`
+        of a study's protocol, by task, replace the scenario's.
         """
         record = self.record
         tre_mm = region_of(scenario).tre_mm(self.rigid.matrix, truth.matrix)

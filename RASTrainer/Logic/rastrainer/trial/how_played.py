@@ -161,7 +161,7 @@ class PlayRecording:
         return replace(self._how, pace=pace, way_mm=dict(self._way_mm), view_s=dict(self._view_s))
 
     def _add_time(self, line: entries.Line) -> None:
-        """Add what has passed since the last entry, except in a pause and after the last point."""
+        """Add the time since the last entry, except in a pause and after the last point."""
         entry, times = line.entry, (line.at.sim_time_s, line.at.monotonic_s)
         is_after_interruption = isinstance(entry, entries.Continued)
         if self._times is not None and not (is_after_interruption or self._phase is Phase.PAUSED):

@@ -210,7 +210,7 @@ class TrialRecord(AnyTrial):
 class AbortedTrial(AnyTrial):
     """A trial that was started and never registered.
 
-    With touches it counts as an attempt: aborting bad trials helps no one to pass.
+    If it has touches, it counts as an attempt: aborting bad trials helps no one to pass.
 
     Attributes:
         elapsed_s: simulated time from the start to the end, or to the last touch where all were

@@ -15,7 +15,7 @@ Row = TypeVar("Row", bound="TrialRow")
 
 @dataclass(frozen=True)
 class TrialRow:
-    """What is known of one trial; texts are empty if unknown.
+    """The known facts about one trial; texts are empty if unknown.
 
     Attributes:
         number: of the trainee's trials in this mode, from 1; 0 for a trial run, or if unknown.

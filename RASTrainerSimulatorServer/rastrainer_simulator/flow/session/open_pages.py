@@ -63,7 +63,7 @@ class PageContent:
 
 
 class PageOwner(Protocol):
-    """What pages read and change: a trainee's session, or a rater's work."""
+    """The data that pages read and change: a trainee's session, or a rater's work."""
 
     pages: OpenPages
 

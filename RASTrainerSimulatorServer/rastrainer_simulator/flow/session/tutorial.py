@@ -340,7 +340,7 @@ class Tutorial:
         if step is None:
             return None
         if step in (TutorialStep.BEST_VIEW, TutorialStep.LOWER):
-            # From here on, the next point is marked.
+            # The next point is marked from this step on.
             self._first.has_points = True
         first = self._first_seen or before
         if first.yaw_deg is None and before.yaw_deg is not None:

@@ -180,7 +180,7 @@ class JoinedViews:
             view.outbox.put_latest(StateNews.type, whole if view.is_spectator else text)
 
     def _put_pairing(self, view: ViewSocket) -> None:
-        # With the code, a spectator could come back as a driver.
+        # A spectator who knew the code could come back as a driver.
         if view.is_local and self._pairing and not view.is_spectator:
             view.outbox.put_latest(PairingNews.type, self._pairing)
 

@@ -149,7 +149,7 @@ def quaternion(rows: Sequence[Sequence[float]]) -> tuple[float, float, float, fl
     """Return the unit quaternion (x, y, z, w) of a rotation matrix, given row by row.
 
     The largest of the four is found first and the others divided by it (Shepperd 1978), so that no
-    angle loses digits. Of a (4, 4) pose, only the rotation counts.
+    angle loses digits. Only the rotation of a (4, 4) pose counts.
     """
     (xx, xy, xz, *_), (yx, yy, yz, *_), (zx, zy, zz, *_) = rows[:3]
     squares = (1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz, 1 + xx + yy + zz)

@@ -164,7 +164,7 @@ class HeldInput:
     def take(self, kind: str, *values: Any) -> None:
         """Process a message of a pad, of sticks, or of a key.
 
-        No hand holds more than a few keys, so further ones are ignored. A Shift key that was down
+        No hand holds more than a few keys, so further keys are ignored. A Shift key that was down
         when the view fell silent, and has not come up since, stays held: the next key must not
         move the arm fast because a computer draws slowly.
         """

@@ -14,7 +14,7 @@ export class Loading {
     this.place.append(this.text, this.bar);
   }
 
-  /** Show the number of loaded bytes of `total`, 0 where that is not known. */
+  /** Show the number of loaded bytes of `total`, which is 0 if unknown. */
   show(loaded: number, total: number): void {
     this.place.hidden = false;
     const known = { loaded: figure(loaded / MB), total: figure(total / MB) };

@@ -1,4 +1,4 @@
-/** The page: connects to the simulator, shows its screens, and sends what is pressed. */
+/** The page: connects to the simulator, shows its screens, and sends the user's input. */
 
 import { Connection, readRole } from "../stream/connection";
 import { byId } from "../elements";

@@ -30,7 +30,7 @@ export interface Region {
 }
 
 /**
- * The elements are laid out in the page, invisible. A browser draws elements on a canvas only as an SVG picture
+ * The page arranges the elements, invisible. A browser draws elements on a canvas only as an SVG picture
  * (`foreignObject`), which holds its own style sheet and loads nothing: pictures are drawn on top of it.
  */
 export class ElementPanel extends Panel {

@@ -41,7 +41,7 @@ function isSkin({ mark }: SliceLine): boolean {
   return mark === "skin";
 }
 
-/** A picture in the picture cuts off what is beyond the cell. */
+/** A nested SVG picture clips at the edges of the cell. */
 function cell({ name, letters, lines }: Slice, x: number, y: number, scale: number): string {
   const half = CELL / 2;
   const edge = half - LETTER / 2;

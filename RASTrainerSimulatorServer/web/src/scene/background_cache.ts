@@ -33,7 +33,7 @@ export class BackgroundCache {
   /**
    * Draw a scene into a box of the canvas, in pixels; return whether a better picture is to follow.
    *
-   * `content` says what, beside camera and box, the background depends on.
+   * `content` names everything else, besides camera and box, on which the background depends.
    */
   draw(scene: Scene, camera: Camera, box: Box, content: string, now: number): boolean {
     const { renderer } = this;

@@ -12,8 +12,8 @@ import { isSoftware } from "./graphics";
 export type Finish = "matt" | "glossy";
 
 /**
- * Replace the meshes at and below `root`, but those in `apart`, by one that is lit and one that
- * glows, and return these. Nothing below `root` may be moved afterward.
+ * Replace the meshes at and below `root`, except those in `apart`, with a lit mesh and a
+ * glowing mesh, and return these two. Nothing below `root` may be moved afterward.
  */
 export function batch(root: Object3D, finish: Finish, apart: ReadonlySet<Object3D>): Mesh[] {
   const lit: BufferGeometry[] = [];

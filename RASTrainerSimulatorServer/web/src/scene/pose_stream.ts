@@ -75,7 +75,7 @@ export class PoseStream {
     return this.times[(this.count - 1) % SLOTS]!;
   }
 
-  /** Let the clock go on until `now` and return what it shows. */
+  /** Advance the clock to `now` and return its time. */
   private play(now: number): number {
     const passed = Math.max(0, now - this.looked);
     this.looked = now;

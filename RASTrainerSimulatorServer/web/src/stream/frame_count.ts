@@ -11,7 +11,7 @@ export class FrameCount {
   private dropped = 0;
   private last = 0;
   private reported = 0;
-  /** Of the display, Hz; estimated unless `fixedHz` is known. */
+  /** Interval of the display's pictures, ms; estimated unless `fixedHz` is known. */
   private interval = 1000 / 60;
   fixedHz = 0;
 
@@ -21,7 +21,7 @@ export class FrameCount {
     return this.fixedHz > 0 ? this.fixedHz : 1000 / this.interval;
   }
 
-  /** The display asks for a picture at `now` (ms); what it did not ask for was dropped. */
+  /** The display asks for a picture at `now` (ms); pictures that it skipped were dropped. */
   asked(now: number): void {
     const passed = now - this.last;
     this.last = now;

@@ -14,8 +14,8 @@ export function isCodeGiven(): boolean {
 }
 
 /**
- * Return when the browser is paired: by the code in the address, which is tried first, or by one that is
- * typed. `complaint` is shown until then; `watch` labels the button of those who only watch.
+ * Return when the browser is paired: by the code in the address, which is tried first, or by a typed
+ * code. `complaint` is shown until then; `watch` labels the button of people who only watch.
  */
 export async function pair(form: HTMLFormElement, say: Say, complaint = "", watch = ""): Promise<void> {
   const [, given, role] = GIVEN.exec(location.hash) ?? [];
@@ -48,7 +48,7 @@ export async function pair(form: HTMLFormElement, say: Say, complaint = "", watc
   form.hidden = true;
 }
 
-/** Return what is wrong with a code, "" for nothing; `wrong` names the sentence about a wrong one. */
+/** Return the fault of a code, or ""; `wrong` is the key of the sentence about a wrong code. */
 async function send(say: Say, code: string, role: ViewRole, wrong: Sentence): Promise<string> {
   try {
     const answer = await fetch("pair", { method: "POST", body: JSON.stringify({ code, role }) });

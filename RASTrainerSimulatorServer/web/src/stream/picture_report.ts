@@ -16,7 +16,7 @@ export class PictureReport {
     this.task = null;
   }
 
-  /** So many bytes of a task's scene have come, of `total`, 0 where that is not known. */
+  /** So many bytes of a task's scene have come, of `total`, which is 0 if unknown. */
   loaded(task: string, bytes: number, total: number): void {
     const share = total > 0 ? Math.min(1 - STEP, bytes / total) : 0;
     if (task !== this.task || share >= this.share + STEP) this.tell(task, share);

@@ -42,8 +42,8 @@ export class CloseUp {
   }
 
   /**
-   * Draw the picture if it is its turn; `hidden` is not to be seen in it. With the state's `inset`, it is
-   * looked along the skin from there, also behind the head.
+   * Draw the picture if it is its turn, without `hidden`. If the state has an `inset`, the camera looks
+   * along the skin from there, also behind the head.
    */
   draw(stage: Stage, hidden: Object3D, { inset, translucent }: StateNews): void {
     const { model, renderer } = stage;

@@ -55,7 +55,7 @@ export class Hands {
     fine: false,
     yawDeg: 0,
   };
-  /** What was sent last: translation, rotation, and whether finely. */
+  /** The input sent last: translation, rotation, and whether it is fine. */
   private sent = [0, 0, 0, 0, 0, 0];
   private repeated = "";
   private repeatIn = 0;

@@ -40,7 +40,7 @@ export class Headset {
   private mustRecenter = false;
   private looked = 0;
   private shownNews: SceneNews | null = null;
-  /** Of both eyes together: place, line of sight, up, and level ahead. */
+  /** The middle of both eyes: place, line of sight, up, and level ahead. */
   private readonly eyes = { place: new Vector3(), gaze: new Vector3(), up: new Vector3(), ahead: new Vector3() };
   private readonly tip = new Vector3();
 

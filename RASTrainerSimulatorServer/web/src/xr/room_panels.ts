@@ -32,7 +32,7 @@ const WORK: Seat = { aside: 0.6, above: 0.05, away: 1.1 };
 const CLOSE_UP: Seat = { aside: 0.72, above: -0.5, away: 0.85 };
 /** Stands between the head and the close-up, below the facts for the work. */
 const GUIDING: Seat = { aside: 0.24, above: -0.42, away: 0.85 };
-/** Below a menu. While the arm is driven, so far above the head's top that no point of it is covered. */
+/** Places of the warning: below a menu; while the arm is driven, above the head, covering no point of it. */
 const WARNING_AT_MENU: Seat = { aside: 0, above: -0.54, away: 0.55 };
 const WARNING_AWAY = 1;
 const WARNING_OVER_HEAD = 0.2;

@@ -79,7 +79,7 @@ def readLinkMeshes(folder: Path, progress: Progress = no_progress) -> tuple[Link
 def _surface(part: MeshPart, pose: np.ndarray) -> vtk.vtkPolyData:
     """Return a mesh in its link's frame, mm, with its normals, and its color at each point.
 
-    `pose` (4, 4) float, m, is that of the mesh.
+    `pose` (4, 4) float, m, is the pose of the mesh.
     """
     if not part.path.is_file():
         raise InputError(f"The robot's mesh {part.path} is missing.")

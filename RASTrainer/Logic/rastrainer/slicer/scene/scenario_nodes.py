@@ -28,7 +28,7 @@ FIDUCIALS = RegistrationMethod.FIDUCIALS
 SKULL_COLOR = (0.95, 0.92, 0.82)
 SKIN_OPACITY_OVER_SKULL = 0.5
 OUTLINE = {"Visibility2D": True, "SliceIntersectionThickness": 2}
-"""Of head and skull in slice views: a width of one pixel is hardly visible on an MRI."""
+"""Line width of head and skull in slice views: one pixel is hardly visible on an MRI."""
 
 
 def showScenario(scene: Any, scenario: Scenario, later: CallLater = callNow) -> None:

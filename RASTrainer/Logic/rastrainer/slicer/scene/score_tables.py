@@ -137,7 +137,7 @@ def _parts(score: TrialScore) -> list[Row]:
 
 
 def drillRows(drill: DrillRecord) -> list[Row]:
-    """Return the score of a drill of decisions, and what it follows from."""
+    """Return the score of a drill of decisions, and the figures behind it."""
     score = drill_score(drill.cases)
     version = _("passed; version {v}") if score.is_passed else _("not passed; version {v}")
     beyond = sum(total for _missed, total in score.missed.values())

@@ -55,7 +55,7 @@ def showReplay(
 ) -> Any:
     """Put a trial into the scene as a Sequence, replacing the previous one.
 
-    `poses` (n, 4, 4) float, mm, are those of the tool at the samples of the track.
+    `poses` (n, 4, 4) float, mm, are the tool's poses at the samples of the track.
 
     It uses separate nodes, so that a running simulator does not disturb it. `rest` is called with
     the share of the work done after each slice; it may let the application draw, and may raise to

@@ -228,7 +228,7 @@ class Study(AbstractContextManager["Study"]):
 
         A trial that is already stored is not changed, and `DeletedTrialError` is raised if it was
         deleted. An unknown trainee is added without consent, so that no trial is lost. The record
-        may be an untrusted JSON object; of one that was `delivered`, unknown keys are stored, too.
+        may be an untrusted JSON object: then unknown keys are stored, too.
         `others` are further results, as of `add_results`.
         """
         if not isinstance(record, TrialRecord):
