@@ -100,8 +100,8 @@ _SAMPLES = 6
 def without_face_in(volume: HeadVolume, head: HeadMesh) -> HeadVolume:
     """Return the images of a head without its face and without anything around the head.
 
-    Only the shield of `without_face` is removed, so that the images reveal no more
-    about the face than the exported surface.
+    The removed part of the face depends only on the shield of `without_face`, so that the images
+    reveal no more about the face than the exported surface.
     """
     shield, tip = without_face(head), nose_tip(head)
     grid = Grid(volume.values.shape, volume.ijk_to_ras)
