@@ -127,7 +127,7 @@ def wait_for_study(lab, is_complete):
 
 
 @pytest.mark.parametrize(
-    ("kills", "resumed"), [(2, 1), pytest.param(300, 100, marks=pytest.mark.soak)]
+    ("kills", "resumed"), [(2, 1), pytest.param(200, 70, marks=pytest.mark.soak)]
 )
 def test_a_trainee_whose_server_and_slicer_are_killed_loses_no_touch_and_doubles_no_trial(
     tmp_path, kills, resumed
