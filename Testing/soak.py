@@ -115,7 +115,7 @@ PARTS = (
             "end_to_end/test_many_seats.py",
             "end_to_end/test_delivery.py",
         ),
-        19,
+        14,
     ),
     Part(
         "long run",

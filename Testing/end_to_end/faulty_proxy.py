@@ -50,7 +50,7 @@ class Fault:
 def draw_fault(rng: random.Random, longest_s: float) -> Fault:
     """Return the fate of a connection."""
     return Fault(
-        after_bytes=int(10.0 ** rng.uniform(2.0, 4.5)),
+        after_bytes=int(10.0 ** rng.uniform(2.0, 5.0)),
         kind=rng.choice(["cut", "reset", "half-open", "late"]),
         lasts_s=rng.uniform(0.0, longest_s),
         delay_s=rng.choice([0.0, 0.0, rng.uniform(0.0, 0.02)]),
