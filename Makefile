@@ -27,14 +27,10 @@ AGAIN ?=
 RUN_AGAIN := $(if $(AGAIN),-p Testing.run_again)
 AS_SLOW := $(if $(SLOW),RASTRAINER_SLOW=$(SLOW) PYTHONPATH=$(CURDIR)/Testing/slow_machine)
 
-# A test that hangs says where and ends the run, and so does a worker that crashes: xdist would wait
-# for the rest of its file for ever. Python keeps what it has compiled, whatever the environment says:
-# hundreds of processes start.
-ENDING := --max-worker-restart=0 -o faulthandler_timeout=900 -o faulthandler_exit_on_timeout=true
-
+# Python keeps what it has compiled, whatever the environment says: hundreds of processes start.
 test: .venv/test-installed page
 	$(BIN)/python tools/system_packages.py test
-	$(ONE_THREAD) PYTHONDONTWRITEBYTECODE= RASTRAINER_KINEMATICS=$(KINEMATICS) $(AS_SLOW) $(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder $(ENDING) $(RUN_AGAIN) -q
+	$(ONE_THREAD) PYTHONDONTWRITEBYTECODE= RASTRAINER_KINEMATICS=$(KINEMATICS) $(AS_SLOW) $(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder $(RUN_AGAIN) -q
 
 # What takes hours: attacks, crashes, cut links, whole trials in the headset. `make soak PART=3` runs
 # one of the parts that `make soak PART=list` lists, each of at most 20 minutes.
